@@ -1,0 +1,63 @@
+"""From a kind's derived terms to the source of its kernels: common subexpressions, then one loop over elements."""
+
+from __future__ import annotations
+
+import sympy as sp
+from sympy.printing.precedence import precedence
+from sympy.printing.pycode import PythonCodePrinter
+
+from .derive import Derived
+from .terms import KERNEL_ARGUMENTS, TERM_SETS
+from .kind import Kind
+
+HEADER = "from math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
+
+
+class _Printer(PythonCodePrinter):
+    """Plain function names; small and half powers as products and roots (a general power costs fifty products)."""
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        base, power = expr.as_base_exp()
+        twice = 2 * power
+        if not (twice.is_Integer and 1 <= abs(int(twice)) <= 12):
+            return super()._print_Pow(expr, rational=rational)
+        whole, half = divmod(abs(int(twice)), 2)
+        factor = self.parenthesize(base, precedence(expr))
+        product = "*".join([factor] * whole + [f"sqrt({self._print(base)})"] * half)
+        return f"({product})" if power > 0 else f"(1.0/({product}))"
+
+
+def kernel_source(kind: Kind, term_set: str, derived: Derived, name: str) -> str:
+    """Python source of one kernel, to be compiled by numba.
+
+    Every entry of term k of element e goes to ``value[place[1 + k] + entries_k*e + entry]``.
+    """
+    e, numbers = kind.symbolic
+    terms, equations = derived.terms, derived.n_equations
+    outputs = [(k, len(terms.get(term, ())), n, entry.expression)
+               for k, term in enumerate(TERM_SETS[term_set])
+               for n, entry in enumerate(terms.get(term, ()))]  # fmt: skip
+    shared, results = sp.cse([expression for *_, expression in outputs], symbols=sp.numbered_symbols("s_"), order="none")
+    needed = {symbol for expression in [*results, *(part for _, part in shared)] for symbol in expression.free_symbols}
+    printer = _Printer({"fully_qualified_modules": False, "precision": 17})
+
+    body: list[str] = []
+    for slot, frame in enumerate(e.frames):
+        for offset, state, symbols in ((2 * slot, "q", frame.q), (2 * slot + 1, "u", frame.u)):
+            if needed & set(symbols):
+                body.append(f"at = index[{2 * len(e.frames)}*e + {offset}]")
+                body += [f"{s.name} = {state}[at + {k}]" for k, s in enumerate(symbols) if s in needed]
+    body += [f"{s.name} = number[{len(numbers)}*e + {k}]" for k, s in enumerate(numbers) if s in needed]
+    for vector in ("lam", "mu"):
+        body += [
+            f"{vector}{k} = {vector}[place[0] + {equations}*e + {k}]"
+            for k in range(equations)
+            if sp.Symbol(f"{vector}{k}", real=True) in needed
+        ]
+    body += [f"{symbol.name} = {printer.doprint(part)}" for symbol, part in shared]
+    body += [
+        f"value[place[{1 + k}] + {entries}*e + {n}] = {printer.doprint(result)}"
+        for (k, entries, n, _), result in zip(outputs, results, strict=True)
+    ]
+    lines = [f"def {name}({KERNEL_ARGUMENTS}):", "    for e in range(count):", *(f"        {line}" for line in body)]
+    return HEADER + "\n".join(lines) + "\n"

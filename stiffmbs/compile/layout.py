@@ -1,0 +1,60 @@
+"""How arrays reach compiled code: a table of addresses with one named column for each array.
+
+A layout lists names and types once; `packed` makes the table on the Python side, and native code reads it through
+a view with the same names (`stiffmbs.compile.native.access`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+Layout = Mapping[str, str]
+
+INTS, FLOATS, INT, FLOAT = "ints", "floats", "int", "float"
+
+STATE: Layout = {
+    "n_q": INT, "n_u": INT, "n_c": INT,
+    "q": FLOATS, "u": FLOATS, "lam": FLOATS, "mu": FLOATS,
+    "n_calls": INTS, "calls": INTS, "values": INTS, "mass": FLOATS,
+}  # fmt: skip
+"""A system's state and kernels: q and u with the ground's at their end; for each term set the number of its kernel
+calls, the address of their arguments (rows of `CALL`) and the address of its values; the mass matrix's entries."""
+
+CALL = ("kernel", "count", "index", "number", "place")
+"""The arguments of one kernel call, as 64-bit numbers."""
+
+EQUATIONS: Layout = {
+    "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
+    "r_row": INTS, "r_source": INTS, "r_operand": INTS, "r_factor": FLOATS,
+    "n_slots": INT, "n_entries": INT, "m_slot": INTS, "m_source": INTS, "m_constant": FLOATS, "m_cj": FLOATS,
+    "at_q": INTS, "at_u": INTS, "at_mu": INTS, "at_lam": INTS, "has_mu": INT, "has_lam": INT,
+}  # fmt: skip
+"""Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
+
+FACTORS: Layout = {
+    "n": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "order": INTS,
+    "l_start": INTS, "l_row": INTS, "l": FLOATS, "u_start": INTS, "u_row": INTS, "u": FLOATS,
+    "pivot": INTS, "work": FLOATS, "stack": INTS, "x": FLOATS,
+}  # fmt: skip
+"""A sparse matrix by columns, its factors and work space (`stiffmbs.compile.native.factors`)."""
+
+
+def packed(layout: Layout, values: Mapping[str, np.ndarray | int | float]) -> np.ndarray:
+    """The table for a layout: addresses of arrays, and numbers as they are.
+
+    The arrays must be contiguous, of the layout's type, and live as long as the table is used.
+    """
+    table = np.empty(len(layout), dtype=np.int64)
+    for column, (name, kind) in enumerate(layout.items()):
+        value = values[name]
+        if kind == INT:
+            table[column] = int(value)
+        elif kind == FLOAT:
+            table[column : column + 1].view(np.float64)[0] = value
+        else:
+            assert isinstance(value, np.ndarray) and value.flags.c_contiguous, name
+            assert value.dtype == (np.int64 if kind == INTS else np.float64), name
+            table[column] = value.ctypes.data
+    return table

@@ -1,0 +1,180 @@
+"""Sparse LU factors of a matrix whose pattern stays the same.
+
+`factor` is Gilbert and Peierls' left-looking LU with threshold partial pivoting (SIAM J. Sci. Stat. Comput. 9,
+1988; in the form of Davis, Direct Methods for Sparse Linear Systems, 2006, ch. 6).  `refactor` repeats the
+elimination along the pivots found before, without searching; where a pivot has become too small against its column
+it gives up and the pivots are sought anew, so that the fixed order is only ever a saving.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+KEEP_DIAGONAL = 0.1
+"""A diagonal pivot is taken when it is at least this part of the largest in its column (less fill)."""
+TOO_SMALL = 1e-3
+"""A pivot of an earlier order is refused when it is less than this part of its column."""
+
+DONE, SINGULAR, FULL = 0, 1, 2
+
+
+@njit
+def _reach(f, column, top_of_stack):
+    """The rows that a column's elimination touches, in topological order at stack[top:n]; marks are undone later."""
+    n = f.n
+    top = n
+    for p in range(f.a_start[column], f.a_start[column + 1]):
+        start = f.a_row[p]
+        if f.stack[2 * n + start]:
+            continue
+        head = 0
+        f.stack[n] = start  # the stack of open rows
+        while head >= 0:
+            row = f.stack[n + head]
+            pivot = f.pivot[row]
+            if not f.stack[2 * n + row]:
+                f.stack[2 * n + row] = 1
+                f.stack[3 * n + head] = 0 if pivot < 0 else f.l_start[pivot] + 1
+            end = 0 if pivot < 0 else f.l_start[pivot + 1]
+            finished = True
+            for at in range(f.stack[3 * n + head], end):
+                below = f.l_row[at]
+                if not f.stack[2 * n + below]:
+                    f.stack[3 * n + head] = at + 1
+                    head += 1
+                    f.stack[n + head] = below
+                    finished = False
+                    break
+            if finished:
+                head -= 1
+                top -= 1
+                f.stack[top] = row
+    return top
+
+
+@njit
+def factor(f):
+    """Find pivots and factors of the matrix in `f`; returns DONE, SINGULAR, or FULL (room for the factors too small)."""
+    n = f.n
+    for k in range(n):
+        f.pivot[k] = -1
+        f.work[k] = 0.0
+        f.stack[2 * n + k] = 0
+    l_end = 0
+    u_end = 0
+    f.ready[0] = 0
+    for k in range(n):
+        f.l_start[k] = l_end
+        f.u_start[k] = u_end
+        if l_end + n > f.capacity or u_end + n > f.capacity:
+            return FULL
+        column = f.order[k]
+        f.l_start[k + 1] = l_end  # so that a column that is not there yet looks empty
+        top = _reach(f, column, n)
+        for at in range(top, n):
+            f.work[f.stack[at]] = 0.0
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            f.work[f.a_row[p]] += f.a[p]
+        best = -1
+        largest = 0.0
+        for at in range(top, n):
+            row = f.stack[at]
+            f.stack[2 * n + row] = 0
+            pivot = f.pivot[row]
+            value = f.work[row]
+            if pivot < 0:
+                if abs(value) > largest:
+                    largest = abs(value)
+                    best = row
+            else:
+                for p in range(f.l_start[pivot] + 1, f.l_start[pivot + 1]):
+                    f.work[f.l_row[p]] -= f.l[p] * value
+                f.u_row[u_end] = pivot
+                f.u[u_end] = value
+                u_end += 1
+        if best < 0 or not largest > 0.0 or largest == float("inf"):
+            return SINGULAR
+        if f.pivot[column] < 0 and abs(f.work[column]) >= KEEP_DIAGONAL * largest:
+            best = column
+        value = f.work[best]
+        f.u_row[u_end] = k
+        f.u[u_end] = value
+        u_end += 1
+        f.pivot[best] = k
+        f.l_row[l_end] = best
+        f.l[l_end] = 1.0
+        l_end += 1
+        for at in range(top, n):
+            row = f.stack[at]
+            if f.pivot[row] < 0:
+                f.l_row[l_end] = row
+                f.l[l_end] = f.work[row] / value
+                l_end += 1
+            f.work[row] = 0.0
+    f.l_start[n] = l_end
+    f.u_start[n] = u_end
+    for p in range(l_end):
+        f.l_row[p] = f.pivot[f.l_row[p]]
+    f.ready[0] = 1
+    return DONE
+
+
+@njit
+def refactor(f):
+    """Factors of the matrix in `f` along the pivots of the last `factor`; DONE, or SINGULAR where a pivot is too small."""
+    n = f.n
+    for k in range(n):
+        column = f.order[k]
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            f.work[f.pivot[f.a_row[p]]] += f.a[p]
+        last = f.u_start[k + 1] - 1
+        for p in range(f.u_start[k], last):
+            j = f.u_row[p]
+            value = f.work[j]
+            f.u[p] = value
+            f.work[j] = 0.0
+            for below in range(f.l_start[j] + 1, f.l_start[j + 1]):
+                f.work[f.l_row[below]] -= f.l[below] * value
+        value = f.work[k]
+        f.work[k] = 0.0
+        f.u[last] = value
+        largest = abs(value)
+        for p in range(f.l_start[k] + 1, f.l_start[k + 1]):
+            largest = max(largest, abs(f.work[f.l_row[p]]))
+        if not (abs(value) > TOO_SMALL * largest and largest < float("inf")):
+            for i in range(n):
+                f.work[i] = 0.0
+            return SINGULAR
+        for p in range(f.l_start[k] + 1, f.l_start[k + 1]):
+            row = f.l_row[p]
+            f.l[p] = f.work[row] / value
+            f.work[row] = 0.0
+    return DONE
+
+
+@njit
+def factored(f):
+    """Factors by the known pivots where they serve, else by new ones."""
+    if f.ready[0] and refactor(f) == DONE:
+        return DONE
+    return factor(f)
+
+
+@njit
+def solve(f, b):
+    """Overwrite b by the solution of A x = b."""
+    n = f.n
+    for k in range(n):
+        f.x[f.pivot[k]] = b[k]
+    for k in range(n):
+        value = f.x[k]
+        for p in range(f.l_start[k] + 1, f.l_start[k + 1]):
+            f.x[f.l_row[p]] -= f.l[p] * value
+    for k in range(n - 1, -1, -1):
+        last = f.u_start[k + 1] - 1
+        value = f.x[k] / f.u[last]
+        f.x[k] = value
+        for p in range(f.u_start[k], last):
+            f.x[f.u_row[p]] -= f.u[p] * value
+    for k in range(n):
+        b[f.order[k]] = f.x[k]

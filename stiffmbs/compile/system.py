@@ -1,0 +1,287 @@
+"""The compiled model: sizes, mass, and the terms of all elements with their places in the whole.
+
+Solvers see a `System` and no element: the entries of each term, where they stand among the values that kernels
+write, and which equation and coordinate each belongs to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..describe.element import Element
+from ..describe.marker import GROUND
+from ..describe.model import ModelData
+from ..errors import InputError
+from . import routines
+from .kind import Kind, kind_of, numbers_of
+from .layout import STATE, packed
+from .machine import Compiled, compiled_source
+from .record import KindRecord, record_of
+from .terms import KERNEL_SIGNATURE, TERM_AXES, TERM_SETS
+
+PLANAR = 3
+"""Coordinates, and velocities, of a planar body."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """The elements of one kind.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Element by element.
+    index : ndarray of int, shape (count, 2 * bodies)
+        Offsets of each body in q and u; the ground's are past the end.
+    numbers : ndarray, shape (count, parameters)
+        Kernel parameters; may be changed in place.
+    first_row : int
+        Of the first element's equations.
+    """
+
+    kind: Kind
+    record: KindRecord
+    names: tuple[str, ...]
+    elements: tuple[Element, ...]
+    index: np.ndarray
+    numbers: np.ndarray
+    first_row: int
+
+    @property
+    def count(self) -> int:
+        return len(self.names)
+
+
+@dataclass(frozen=True)
+class Term:
+    """Where the entries of a term stand: `source` in the values of its set, `row` and `column` in the whole.
+
+    Entries that belong to the ground are left out.
+    """
+
+    source: np.ndarray
+    row: np.ndarray
+    column: np.ndarray
+
+
+@dataclass(frozen=True)
+class System:
+    """A compiled model.
+
+    Attributes
+    ----------
+    bodies : tuple of str
+        In the order of their coordinates.
+    q, u : ndarrays
+        Coordinates (x, y, phi of each body; m, rad) and velocities at the start, as described.
+    mass : ndarray, shape (n_u,)
+        The diagonal of the mass matrix: m, m, I of each body.
+    groups : tuple of Group
+        Elements by kind.
+    equations : tuple of (str, str)
+        Joint and equation name of each constraint row.
+    """
+
+    bodies: tuple[str, ...]
+    q: np.ndarray
+    u: np.ndarray
+    mass: np.ndarray
+    groups: tuple[Group, ...]
+    equations: tuple[tuple[str, str], ...]
+
+    @property
+    def n_q(self) -> int:
+        return len(self.q)
+
+    @property
+    def n_u(self) -> int:
+        return len(self.u)
+
+    @property
+    def n_c(self) -> int:
+        return len(self.equations)
+
+    @cached_property
+    def places(self) -> dict[str, np.ndarray]:
+        """For each term set and group: the first equation, then each term's first value."""
+        return {term_set: self._places(term_set) for term_set in TERM_SETS}
+
+    def _places(self, term_set: str) -> np.ndarray:
+        terms = TERM_SETS[term_set]
+        places = np.zeros((len(self.groups), 1 + len(terms)), dtype=np.int64)
+        end = 0
+        for k, term in enumerate(terms):
+            for g, group in enumerate(self.groups):
+                places[g, 0] = group.first_row
+                places[g, 1 + k] = end
+                end += group.count * len(group.record.patterns.get(term, ()))
+        return places
+
+    def size(self, term_set: str) -> int:
+        """Number of values that the kernels of a set write; the mass entries and a one stand behind them."""
+        return sum(
+            group.count * len(group.record.patterns.get(term, ())) for group in self.groups for term in TERM_SETS[term_set]
+        )
+
+    def term(self, term_set: str, name: str) -> Term:
+        """The entries of a term in a set, those of the ground left out."""
+        k = TERM_SETS[term_set].index(name)
+        axes = TERM_AXES[name]
+        parts = [
+            self._group_entries(g, group, int(self.places[term_set][g, 1 + k]), name, axes)
+            for g, group in enumerate(self.groups)
+        ]
+        source, row, column = (np.concatenate([part[i] for part in parts]) for i in range(3))
+        inside = (row < self._extent(axes[0])) & (column < (self._extent(axes[1]) if len(axes) > 1 else 1))
+        return Term(source[inside], row[inside], column[inside])
+
+    def _extent(self, axis: str) -> int:
+        return {"q": self.n_q, "u": self.n_u, "c": self.n_c}.get(axis, np.iinfo(np.int64).max)
+
+    def _group_entries(self, g: int, group: Group, first: int, name: str, axes: str) -> tuple[np.ndarray, ...]:
+        pattern = np.array(group.record.patterns.get(name, ()), dtype=np.int64).reshape(-1, 2)
+        elements = np.arange(group.count)[:, None]
+        source = first + elements * len(pattern) + np.arange(len(pattern))[None, :]
+        row = self._whole(group, axes[0], pattern[:, 0])
+        column = self._whole(group, axes[1], pattern[:, 1]) if len(axes) > 1 else np.zeros_like(source)
+        return source.ravel(), row.ravel(), column.ravel()
+
+    def _whole(self, group: Group, axis: str, own: np.ndarray) -> np.ndarray:
+        """Numbers in the whole for the elements' own numbers, shape (count, entries)."""
+        elements = np.arange(group.count)[:, None]
+        match axis:
+            case "c":
+                return group.first_row + elements * group.record.n_equations + own[None, :]
+            case "q" | "u":
+                body, offset = own // PLANAR, own % PLANAR
+                return group.index[:, 2 * body + (axis == "u")] + offset[None, :]
+            case _:
+                return np.broadcast_to(own[None, :], (group.count, len(own)))
+
+    @cached_property
+    def kernels(self) -> dict[str, dict[int, Compiled]]:
+        """For each term set the compiled kernel of each group that contributes to it."""
+        return {
+            term_set: {
+                g: compiled_source(group.record.sources[term_set], "kernel", KERNEL_SIGNATURE)
+                for g, group in enumerate(self.groups)
+                if term_set in group.record.sources
+            }
+            for term_set in TERM_SETS
+        }
+
+    def state(self) -> State:
+        """New working memory for one solver: state vectors and room for every term."""
+        return State(self)
+
+
+class State:
+    """The working memory of one solver on one system: current q, u, lam, mu, and the values of all terms.
+
+    Attributes
+    ----------
+    q, u, lam, mu : ndarrays
+        Shapes (n_q,), (n_u,), (n_c,), (n_c,): what the kernels see.
+    table : ndarray of int
+        Addresses for compiled code (`stiffmbs.compile.layout.STATE`).
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self._q = np.concatenate([system.q, np.zeros(PLANAR)])
+        self._u = np.concatenate([system.u, np.zeros(PLANAR)])
+        self.q, self.u = self._q[: system.n_q], self._u[: system.n_u]
+        self.lam, self.mu = np.zeros(max(system.n_c, 1)), np.zeros(max(system.n_c, 1))
+        self.values = {s: np.concatenate([np.zeros(system.size(s)), system.mass, [1.0]]) for s in TERM_SETS}
+        self._calls = {s: self._kernel_calls(s) for s in TERM_SETS}
+        self.table = packed(STATE, self._fields())
+        self._terms = routines.TERMS.load()
+
+    def _kernel_calls(self, term_set: str) -> np.ndarray:
+        system = self.system
+        return np.array(
+            [
+                (kernel.address, group.count, group.index.ctypes.data, group.numbers.ctypes.data,
+                 system.places[term_set][g].ctypes.data)
+                for g, kernel in system.kernels[term_set].items()
+                for group in [system.groups[g]]
+            ],
+            dtype=np.int64,
+        ).reshape(-1, 5)  # fmt: skip
+
+    def _fields(self) -> Mapping[str, Any]:
+        self._n_calls = np.array([len(self._calls[s]) for s in TERM_SETS], dtype=np.int64)
+        self._calls_at = np.array([self._calls[s].ctypes.data for s in TERM_SETS], dtype=np.int64)
+        self._values_at = np.array([self.values[s].ctypes.data for s in TERM_SETS], dtype=np.int64)
+        return {
+            "n_q": self.system.n_q, "n_u": self.system.n_u, "n_c": self.system.n_c,
+            "q": self._q, "u": self._u, "lam": self.lam, "mu": self.mu,
+            "n_calls": self._n_calls, "calls": self._calls_at, "values": self._values_at, "mass": self.system.mass,
+        }  # fmt: skip
+
+    def evaluate(self, term_set: str, t: float) -> None:
+        """Compute all terms of a set at the current state."""
+        self._terms(t, list(TERM_SETS).index(term_set), self.table.ctypes.data)
+
+    def vector(self, term_set: str, name: str) -> np.ndarray:
+        """A vector term from the last evaluation of its set, assembled."""
+        term = self.system.term(term_set, name)
+        result = np.zeros(self.system.n_c if TERM_AXES[name] == "c" else self.system.n_u)
+        np.add.at(result, term.row, self.values[term_set][term.source])
+        return result
+
+    def matrix(self, term_set: str, name: str) -> np.ndarray:
+        """A matrix term from the last evaluation of its set, dense."""
+        term = self.system.term(term_set, name)
+        shape = tuple(self.system.n_c if axis == "c" else self.system.n_u for axis in TERM_AXES[name])
+        result = np.zeros(shape)
+        np.add.at(result, (term.row, term.column), self.values[term_set][term.source])
+        return result
+
+
+def compile_model(model: ModelData) -> System:
+    """Compile a model: kernels from the cache or newly made, and every term's place.
+
+    Raises
+    ------
+    InputError
+        When an element's equations cannot be compiled; names the element.
+    """
+    bodies = tuple(model.bodies)
+    offset = {name: PLANAR * k for k, name in enumerate(bodies)} | {GROUND: PLANAR * len(bodies)}
+    sorted_elements: dict[Kind, list[tuple[str, Element]]] = {}
+    for name, element in model.elements():
+        sorted_elements.setdefault(kind_of(element, model), []).append((name, element))
+    groups: list[Group] = []
+    equations: list[tuple[str, str]] = []
+    for kind, members in sorted_elements.items():
+        groups.append(_group(kind, members, model, offset, len(equations)))
+        equations += [(name, label) for name, element in members for label in type(element).equation_names(element)]
+    return System(
+        bodies=bodies,
+        q=np.array([c for body in model.bodies.values() for c in (*body.position, body.angle)]),
+        u=np.array([c for body in model.bodies.values() for c in (*body.velocity, body.omega)]),
+        mass=np.array([m for body in model.bodies.values() for m in (body.mass, body.mass, body.inertia)]),
+        groups=tuple(groups),
+        equations=tuple(equations),
+    )
+
+
+def _group(
+    kind: Kind, members: list[tuple[str, Element]], model: ModelData, offset: dict[str, int], first_row: int
+) -> Group:
+    try:
+        record = record_of(kind)
+    except InputError as error:
+        raise InputError(f"{members[0][0]}: {error}") from None
+    names, elements = zip(*members, strict=True)
+    index = [[offset[body] for body in element.bodies() for _ in ("q", "u")] for element in elements]
+    numbers = [numbers_of(element, model) for element in elements]
+    return Group(
+        kind, record, names, elements, np.array(index, dtype=np.int64), np.array(numbers, dtype=float), first_row
+    )

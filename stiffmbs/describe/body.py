@@ -1,0 +1,69 @@
+"""Planar rigid bodies."""
+
+from __future__ import annotations
+
+from pydantic import Field, field_validator
+
+from .fields import NAME_PATTERN, Described, measured, pair, positive
+from .marker import Marker, Placement
+
+
+class Body(Described):
+    """A planar rigid body: coordinates x, y of its centre of mass and its angle phi.
+
+    Parameters
+    ----------
+    mass : float
+        kg, greater than zero.
+    inertia : float
+        About the centre of mass, kg m^2, greater than zero.
+    position, angle : floats
+        Where the centre of mass is and how the body is turned at the start (moved by assembly if joints ask), m, rad.
+    velocity, omega : floats
+        At the start, m/s, rad/s.
+    markers : mapping of str to Placement
+        Named points and directions on the body.
+    """
+
+    mass: positive("mass") = Field(description="mass, kg")
+    inertia: positive("moment of inertia") = Field(description="moment of inertia about the centre of mass, kg m^2")
+    position: pair("length") = Field((0.0, 0.0), description="centre of mass at the start, m")
+    angle: measured("angle") = Field(0.0, description="angle at the start, rad")
+    velocity: pair("velocity") = Field((0.0, 0.0), description="velocity of the centre of mass at the start, m/s")
+    omega: measured("angular velocity") = Field(0.0, description="angular velocity at the start, rad/s")
+    markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
+
+    @field_validator("markers")
+    @classmethod
+    def _named(cls, markers: dict[str, Placement]) -> dict[str, Placement]:
+        check_names(markers, "marker")
+        return markers
+
+
+class BodyHandle:
+    """A body of a model, as `Model.add` returns it: a shorthand for its markers and coordinates."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def at(self, xi: float | str, eta: float | str, angle: float | str = 0.0) -> Marker:
+        """The marker at a point of the body's own axes, m, turned by `angle`, rad."""
+        return Marker(body=self.name, point=(xi, eta), angle=angle)
+
+    def __getattr__(self, coordinate: str):
+        """The SymPy symbol of a coordinate (``x``, ``y``, ``angle``), for `ConstraintEquation`."""
+        if coordinate not in ("x", "y", "angle"):
+            raise AttributeError(f"a body has the coordinates x, y and angle, not '{coordinate}'")
+        import sympy
+
+        return sympy.Symbol(f"{self.name}.{coordinate}", real=True)
+
+
+def check_names(names: dict[str, object], what: str) -> None:
+    """Refuse names that could not stand in a formula or a channel."""
+    import re
+
+    for name in names:
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            shown = "no name" if name in (None, "") else f"the name {name!r}"
+            raise ValueError(f"found a {what} with {shown}, expected letters, digits and _ not starting with a digit")

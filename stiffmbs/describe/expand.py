@@ -1,0 +1,134 @@
+"""Scene text before validation: parameters, repeated entries and values set from outside.
+
+A repeated entry stands for many: ``"link{k}": {for: "k in 1..N", mass: 1, position: ["{k} - 0.5", 0]}``; in its
+name and its text, ``{...}`` is replaced by its value for each k.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ..errors import InputError
+from .fields import NAME_PATTERN
+from .formula import FormulaError
+from .quantity import CONSTANTS, FUNCTIONS, UNITS, Quantity, in_si, quantity
+
+MOST_REPEATS = 1_000_000
+_LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
+_BRACES = re.compile(r"\{([^{}]*)\}")
+
+
+def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
+    """Put a value at a path such as ``bodies.cart.mass``, ``run.rtol`` or a parameter's bare name.
+
+    Raises
+    ------
+    InputError
+        When the path leads through something that has no keys.
+    """
+    if path in (scene.get("parameters") or {}):
+        path = f"parameters.{path}"
+    *ways, last = path.split(".")
+    place: Any = scene
+    for k, way in enumerate(ways):
+        if isinstance(place, dict):
+            place = place.setdefault(way, {})
+        elif isinstance(place, list) and way.isdigit() and int(way) < len(place):
+            place = place[int(way)]
+        else:
+            raise InputError(f"--set {path}: found no '{'.'.join(ways[: k + 1])}' in the scene")
+    if isinstance(place, dict) and last:
+        place[last] = value
+    elif isinstance(place, list) and last.isdigit() and int(last) < len(place):
+        place[int(last)] = value
+    else:
+        raise InputError(f"--set {path}: found no such place in the scene")
+
+
+def read_parameters(found: Any) -> dict[str, Quantity]:
+    """The scene's own names; one may use those above it.
+
+    Raises
+    ------
+    InputError
+        When a name is no identifier or is a unit's, or a value is no number.
+    """
+    parameters: dict[str, Quantity] = {}
+    if found is None:
+        return parameters
+    if not isinstance(found, dict):
+        raise InputError(f"parameters: found {found!r}, expected a mapping of names to numbers")
+    for name, value in found.items():
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            raise InputError(f"parameters: found the name {name!r}, expected letters, digits and _")
+        if name in UNITS or name in CONSTANTS or name in FUNCTIONS or name == "t":
+            raise InputError(f"parameters.{name}: found the name of a unit, constant or function, expected another")
+        try:
+            parameters[name] = quantity(value, parameters) if isinstance(value, str) else Quantity(in_si(value, "number"))
+        except FormulaError as error:
+            raise InputError(f"parameters.{name}: {error}") from None
+    return parameters
+
+
+def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity]) -> Any:
+    """Replace each entry that has a ``for`` by the entries that it stands for.
+
+    Raises
+    ------
+    InputError
+        When the loop cannot be read or two of its entries have the same name.
+    """
+    if not isinstance(entries, dict):
+        return entries
+    expanded: dict[Any, Any] = {}
+    for name, entry in entries.items():
+        if not (isinstance(entry, dict) and "for" in entry):
+            expanded[name] = entry
+            continue
+        where = f"{section}.{name}"
+        pattern = {key: value for key, value in entry.items() if key != "for"}
+        variable, first, last = _loop(where, entry["for"], parameters)
+        for k in range(first, last + 1):
+            names = {**parameters, variable: Quantity(float(k))}
+            repeated = _filled(where, name, names)
+            if repeated in expanded:
+                raise InputError(f"{where}: found the name '{repeated}' twice, expected a name with {{{variable}}}")
+            expanded[repeated] = _filled(where, copy.deepcopy(pattern), names)
+    return expanded
+
+
+def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[str, int, int]:
+    match = _LOOP.match(text) if isinstance(text, str) else None
+    if match is None:
+        raise InputError(f"{where}.for: found {text!r}, expected a loop such as 'k in 1..N'")
+    variable = match[1]
+    if variable in parameters or variable in UNITS or variable in FUNCTIONS:
+        raise InputError(f"{where}.for: found the loop variable '{variable}', which has a meaning already")
+    try:
+        first, last = (quantity(bound, parameters).value for bound in (match[2], match[3]))
+    except FormulaError as error:
+        raise InputError(f"{where}.for: {error}") from None
+    if first != round(first) or last != round(last) or last - first > MOST_REPEATS:
+        raise InputError(f"{where}.for: found {first:g}..{last:g}, expected whole numbers, at most {MOST_REPEATS} apart")
+    return variable, round(first), round(last)
+
+
+def _filled(where: str, value: Any, names: Mapping[str, Quantity]) -> Any:
+    if isinstance(value, dict):
+        return {_filled(where, key, names): _filled(where, item, names) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_filled(where, item, names) for item in value]
+    if not isinstance(value, str):
+        return value
+
+    def number(match: re.Match[str]) -> str:
+        try:
+            result = quantity(match[1], names).value
+        except FormulaError as error:
+            raise InputError(f"{where}: {error}") from None
+        return str(round(result)) if result == round(result) else repr(result)
+
+    return _BRACES.sub(number, value)

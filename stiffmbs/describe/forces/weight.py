@@ -1,0 +1,27 @@
+"""Weight: gravity on a body."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from ..element import Force, Symbolic
+from ..fields import measured, pair
+from ..marker import Marker
+
+
+class Weight(Force):
+    """The model's gravity on one body; made by the model, not written in scenes (hence without a kind)."""
+
+    kind: ClassVar[str] = ""
+
+    i: Marker
+    mass: measured("mass")
+    gravity: pair("acceleration")
+
+    @staticmethod
+    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        return [(e.mass * e.gravity[0], e.i.point[0]), (e.mass * e.gravity[1], e.i.point[1])]
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        return -e.mass * (e.gravity[0] * e.i.point[0] + e.gravity[1] * e.i.point[1])

@@ -1,0 +1,25 @@
+"""Fixed joint."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ..element import Joint, Symbolic
+from ..marker import Marker
+
+
+class Fixed(Joint):
+    """Weld: two markers coincide in place and direction."""
+
+    kind: ClassVar[str] = "fixed"
+    equations: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
+
+    type: Literal["fixed"] = "fixed"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*(e.i.point - e.j.point), e.i.angle - e.j.angle]

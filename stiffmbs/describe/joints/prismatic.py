@@ -1,0 +1,29 @@
+"""Prismatic (translational) joint."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ..element import Joint, Symbolic
+from ..marker import Marker
+
+
+class Prismatic(Joint):
+    """Slider: marker i stays on the line through marker j along j's axis and keeps j's direction.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.13, with the angle itself in
+    place of its sine.
+    """
+
+    kind: ClassVar[str] = "prismatic"
+    equations: ClassVar[tuple[str, ...]] = ("normal", "angle")
+
+    type: Literal["prismatic"] = "prismatic"
+    i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose axis is the line to slide along")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [(e.i.point - e.j.point).dot(e.j.normal), e.i.angle - e.j.angle]

@@ -1,0 +1,28 @@
+"""Revolute joint."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ..element import Joint, Symbolic
+from ..marker import Marker
+
+
+class Revolute(Joint):
+    """Pin: a point of body i and a point of body j coincide.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.10.
+    """
+
+    kind: ClassVar[str] = "revolute"
+    equations: ClassVar[tuple[str, ...]] = ("x", "y")
+
+    type: Literal["revolute"] = "revolute"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return e.i.point - e.j.point

@@ -1,0 +1,65 @@
+"""A marker: a point and a direction fixed on a body (Adams' word), or on ground."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field, GetJsonSchemaHandler, model_validator
+
+from .fields import NAME_PATTERN, Described, measured, pair
+
+GROUND = "ground"
+
+_REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
+
+
+class Placement(Described):
+    """Where a named marker sits on its body."""
+
+    point: pair("length") = Field((0.0, 0.0), description="position in the body's own axes, from its centre of mass, m")
+    angle: measured("angle") = Field(0.0, description="direction of the marker's axis against the body's, rad")
+
+
+class Marker(Described):
+    """A marker used by an element: of a body by name, or given on the spot.
+
+    Written as ``cart`` (the centre of mass), ``bar.end`` (a marker that the body names), ``ground``, or
+    ``{body: bar, point: [-300 mm, 0], angle: 90 deg}``.
+
+    Parameters
+    ----------
+    body : str
+        The body, or ``"ground"``.
+    marker : str, optional
+        A marker that the body names; excludes `point` and `angle`.
+    point : tuple of float
+        Position in the body's own axes, from its centre of mass, m.
+    angle : float
+        Direction of the marker's axis against the body's, rad.
+    """
+
+    body: str = Field(description="a body of the scene, or ground")
+    marker: str | None = Field(None, pattern=NAME_PATTERN, description="a marker that the body names")
+    point: pair("length") = Field((0.0, 0.0), description="position in the body's own axes, m")
+    angle: measured("angle") = Field(0.0, description="direction of the axis against the body's, rad")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_reference(cls, found: Any) -> Any:
+        if isinstance(found, str):
+            body, _, marker = found.partition(".")
+            return {"body": body, "marker": marker or None}
+        if isinstance(found, dict) and found.get("marker") and {"point", "angle"} & found.keys():
+            raise ValueError("found a marker's name and a point, expected one or the other")
+        if not isinstance(found, dict | Marker):
+            raise ValueError(f"found {found!r}, expected a body, body.marker, or a mapping with body and point")
+        return found
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [_REFERENCE, handler(core_schema)]}
+
+    @property
+    def label(self) -> str:
+        return f"{self.body}.{self.marker}" if self.marker else self.body
+

@@ -1,0 +1,170 @@
+"""The model: bodies, joints and forces by name, checked as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any
+
+from pydantic import Field, field_validator, model_validator
+
+from ..errors import InputError
+from . import forces, joints
+from .body import Body, BodyHandle, check_names
+from .element import Element, Force, Joint, kinds
+from .fields import Described, pair
+from .forces.weight import Weight
+from .marker import GROUND, Marker, Placement
+
+JOINTS = kinds(joints, Joint)
+FORCES = kinds(forces, Force)
+RESERVED = (GROUND, "energy", "constraint", "time", "t")
+
+AnyJoint = Annotated[reduce(or_, JOINTS.values()), Field(discriminator="type")]
+AnyForce = Annotated[reduce(or_, FORCES.values()), Field(discriminator="type")]
+
+
+class ModelData(Described):
+    """What a model holds, as it stands in a scene; checked as a whole.
+
+    Parameters
+    ----------
+    name : str
+        Shown in summaries.
+    gravity : tuple of float
+        Acceleration along the ground's x and y, m/s^2.
+    bodies, joints, forces : mappings by name
+        Names are shared by all three, as channels are named after them.
+    """
+
+    name: str = Field("", description="shown in summaries")
+    gravity: pair("acceleration") = Field((0.0, 0.0), description="along the ground's x and y, m/s^2")
+    bodies: dict[str, Body] = Field(description="bodies by name")
+    joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
+    forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
+
+    @field_validator("bodies", "joints", "forces", mode="before")
+    @classmethod
+    def _names(cls, named: Any, info: Any) -> Any:
+        if isinstance(named, dict):
+            check_names(named, "entry")
+            for name in named:
+                if name in RESERVED:
+                    raise ValueError(f"found the name '{name}', which is reserved, expected another")
+        return named
+
+    @model_validator(mode="after")
+    def _whole(self) -> ModelData:
+        if not self.bodies:
+            raise ValueError("bodies: found no body, expected at least one")
+        seen: dict[str, str] = {}
+        for section in ("bodies", "joints", "forces"):
+            for name in getattr(self, section):
+                if name in seen:
+                    raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
+                seen[name] = f"{section}.{name}"
+        for section in ("joints", "forces"):
+            for name, element in getattr(self, section).items():
+                check_element(f"{section}.{name}", element, self.bodies)
+        return self
+
+    def elements(self) -> Iterator[tuple[str, Element]]:
+        """Every joint, force and weight with its name (a weight has its body's)."""
+        yield from self.joints.items()
+        yield from self.forces.items()
+        if self.gravity != (0.0, 0.0):
+            for name, body in self.bodies.items():
+                yield name, Weight(i=name, mass=body.mass, gravity=self.gravity)
+
+    def place(self, marker: Marker) -> Placement:
+        """Where a marker sits on its body."""
+        if marker.marker is None:
+            return Placement(point=marker.point, angle=marker.angle)
+        return self.bodies[marker.body].markers[marker.marker]
+
+
+def check_element(where: str, element: Element, bodies: dict[str, Body]) -> None:
+    """Refuse an element that names an unknown body or marker, or that joins a body to itself."""
+    for field, marker in element.markers():
+        if marker.body != GROUND and marker.body not in bodies:
+            raise ValueError(f"{where}.{field}: found the unknown body '{marker.body}', expected {_listed(bodies)}")
+        if marker.marker is not None:
+            own = {} if marker.body == GROUND else bodies[marker.body].markers
+            if marker.marker not in own:
+                raise ValueError(f"{where}.{field}: found '{marker.label}', expected one of its markers ({', '.join(own) or 'none'})")
+    for field, formula in element.formulas():
+        for body in formula.bodies:
+            if body not in bodies:
+                raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {_listed(bodies)}")
+    placed = [marker.body for _, marker in element.markers()]
+    if len(placed) > 1 and len(set(placed)) == 1:
+        raise ValueError(f"{where}: found '{placed[0]}' on both sides, expected two different bodies")
+
+
+def _listed(bodies: dict[str, Body]) -> str:
+    names = list(bodies)
+    return ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), GROUND])
+
+
+class Model:
+    """A model built in Python, piece by piece.
+
+    Examples
+    --------
+    >>> from stiffmbs import Body, Model, Prismatic, Revolute
+    >>> model = Model("cart-pendulum", gravity=(0, -9.81))
+    >>> cart = model.add("cart", Body(mass=10, inertia=1))
+    >>> bar = model.add("bar", Body(mass=1, inertia=0.03, position=(0.3, 0)))
+    >>> model.add("rail", Prismatic(i="cart", j="ground"))
+    >>> model.add("hinge", Revolute(i=bar.at(-0.3, 0), j="cart"))
+    """
+
+    def __init__(self, name: str = "", gravity: tuple[float | str, float | str] = (0.0, 0.0)) -> None:
+        self.name = name
+        self.gravity = gravity
+        self.bodies: dict[str, Body] = {}
+        self.joints: dict[str, Joint] = {}
+        self.forces: dict[str, Force] = {}
+
+    def add(self, name: str, part: Body | Joint | Force) -> BodyHandle | None:
+        """Add a body (its handle is returned), a joint or a force under a name.
+
+        Raises
+        ------
+        InputError
+            When the name is taken, reserved or no identifier, or the part names an unknown body.
+        """
+        section: dict[str, Any]
+        match part:
+            case Body():
+                section = self.bodies
+            case Joint():
+                section = self.joints
+            case Force():
+                section = self.forces
+            case _:
+                raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force")
+        taken = {*self.bodies, *self.joints, *self.forces, *RESERVED}
+        if name in taken:
+            raise InputError(f"{name}: found a name that is taken or reserved, expected another")
+        try:
+            check_names({name: part}, "part")
+            if isinstance(part, Element):
+                check_element(name, part, self.bodies)
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        section[name] = part
+        return BodyHandle(name) if isinstance(part, Body) else None
+
+    def data(self) -> ModelData:
+        """The model as it would stand in a scene.
+
+        Raises
+        ------
+        InputError
+            When the model has no body.
+        """
+        return ModelData(
+            name=self.name, gravity=self.gravity, bodies=self.bodies, joints=self.joints, forces=self.forces
+        )

@@ -1,0 +1,57 @@
+"""How a scene is to be run."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from .fields import Described, measured, not_negative, positive
+
+
+class RunSettings(Described):
+    """Duration, output and solver of a run.
+
+    Parameters
+    ----------
+    duration : float
+        s, greater than zero.
+    start : float
+        Time at the start, s.
+    output : float, optional
+        Spacing of the output points, s; without it (and without `points`) a thousandth of the duration.
+    points : int or "steps", optional
+        Number of output points, evenly spaced, ends included; or the solver's own steps.
+    solver : str
+        ``bdf`` (SUNDIALS IDA) or ``projected`` (explicit, with projection onto the constraints).
+    formulation : str
+        Of the residual that ``bdf`` integrates.
+    rtol, atol : floats
+        Error tolerances of ``bdf``; atol (m, rad, m/s, rad/s) is rtol unless given.
+    step : float
+        Step of ``projected``, s.
+    projection : bool
+        Whether ``projected`` returns to the constraints after each step.
+    max_step : float
+        Largest step of ``bdf``, s; 0 for none.
+    """
+
+    duration: positive("time") = Field(10.0, description="s")
+    start: measured("time") = Field(0.0, description="time at the start, s")
+    output: positive("time") | None = Field(None, description="spacing of the output points, s")
+    points: int | Literal["steps"] | None = Field(None, description="number of output points, or the solver's own steps")
+    solver: Literal["bdf", "projected"] = Field("bdf", description="bdf (SUNDIALS IDA) or projected (explicit)")
+    formulation: Literal["SI2"] = Field("SI2", description="of the residual that bdf integrates")
+    rtol: measured("number") = Field(1e-6, ge=1e-14, le=0.1, description="relative error tolerance of bdf")
+    atol: positive("number") | None = Field(None, description="absolute error tolerance of bdf; rtol unless given")
+    step: positive("time") = Field(1e-3, description="step of projected, s")
+    projection: bool = Field(True, description="whether projected returns to the constraints after each step")
+    max_step: not_negative("time") = Field(0.0, description="largest step of bdf, s; 0 for none")
+
+    @model_validator(mode="after")
+    def _one_grid(self) -> RunSettings:
+        if self.output is not None and self.points is not None:
+            raise ValueError("found both 'output' and 'points', expected one of them")
+        if isinstance(self.points, int) and self.points < 2:
+            raise ValueError(f"points: found {self.points}, expected 2 or more")
+        return self

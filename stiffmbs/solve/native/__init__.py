@@ -1,0 +1,1 @@
+"""Loops that numba compiles; imported only when they have to be compiled."""
