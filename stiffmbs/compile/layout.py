@@ -29,16 +29,27 @@ EQUATIONS: Layout = {
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
     "r_row": INTS, "r_source": INTS, "r_operand": INTS, "r_factor": FLOATS,
     "n_slots": INT, "n_entries": INT, "m_slot": INTS, "m_source": INTS, "m_constant": FLOATS, "m_cj": FLOATS,
-    "at_q": INTS, "at_u": INTS, "at_mu": INTS, "at_lam": INTS, "has_mu": INT, "has_lam": INT,
+    "at_q": INTS, "at_u": INTS, "at_mu": INTS, "at_lam": INTS, "has_q": INT, "has_u": INT, "has_mu": INT, "has_lam": INT,
 }  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
 FACTORS: Layout = {
     "n": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "order": INTS,
     "l_start": INTS, "l_row": INTS, "l": FLOATS, "u_start": INTS, "u_row": INTS, "u": FLOATS,
-    "pivot": INTS, "work": FLOATS, "stack": INTS, "x": FLOATS,
+    "pivot": INTS, "work": FLOATS, "b": FLOATS, "stack": INTS, "x": FLOATS,
 }  # fmt: skip
 """A sparse matrix by columns, its factors and work space (`stiffmbs.compile.native.factors`)."""
+
+
+MECHANICS: Layout = {
+    "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
+    "accelerations": INTS, "acceleration_factors": INTS, "largest": FLOATS,
+}  # fmt: skip
+"""The tables of one state and its three block systems; `largest` receives what a step reports besides its status."""
+
+
+IDA: Layout = {"state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT}
+"""What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array."""
 
 
 def packed(layout: Layout, values: Mapping[str, np.ndarray | int | float]) -> np.ndarray:

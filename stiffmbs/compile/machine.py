@@ -105,7 +105,28 @@ def _object_code(function: Callable[..., Any], signature: str) -> bytes:
     built = numba.cfunc(re.sub(r"(\w+)\*", r"CPointer(\1)", signature), error_model="numpy")(function)
     module = llvm.parse_assembly(built.inspect_llvm())
     module.get_function(built._wrapper_name).name = SYMBOL
+    _close(module)
     return _target().emit_object(module)
+
+
+def _close(module: Any) -> None:
+    """Leave one function that needs nothing but the mathematical library, so that it can be loaded without numba.
+
+    Once everything else is private, the optimiser sees that nothing raises and drops numba's error paths.
+    """
+    import llvmlite.binding as llvm
+
+    for function in module.functions:
+        if not function.is_declaration and function.name != SYMBOL:
+            function.linkage = llvm.Linkage.internal
+    for variable in module.global_variables:
+        if not variable.is_declaration:
+            variable.linkage = llvm.Linkage.internal
+    builder = llvm.create_pass_builder(_target(), llvm.create_pipeline_tuning_options(speed_level=3))
+    builder.getModulePassManager().run(module, builder)
+    missing = [f.name for f in module.functions if f.is_declaration and f.name.startswith(("numba", "Py", "NRT"))]
+    if missing:
+        raise RuntimeError(f"compiled code would need {', '.join(missing)}, expected code that cannot raise")
 
 
 def _linked(code: bytes, signature: str) -> Compiled:

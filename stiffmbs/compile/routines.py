@@ -26,7 +26,4 @@ class Routine:
         return compiled_routine(self.module, self.name, self.signature).address
 
 
-_EVALUATE = "stiffmbs.compile.native.evaluate"
-TERMS = Routine(_EVALUATE, "terms", "void(float64, int64, int64*)")
-RESIDUAL = Routine(_EVALUATE, "residual", "void(float64, float64*, float64*, float64*, int64*, int64*)")
-MATRIX = Routine(_EVALUATE, "matrix", "void(float64, float64*, float64, float64*, int64*, int64*)")
+TERMS = Routine("stiffmbs.compile.native.evaluate", "terms", "void(float64, int64, int64*)")

@@ -128,6 +128,18 @@ class System:
             group.count * len(group.record.patterns.get(term, ())) for group in self.groups for term in TERM_SETS[term_set]
         )
 
+    def values_of(self, values: np.ndarray, term_set: str, element: str) -> dict[str, np.ndarray]:
+        """The values that one element wrote for each term of a set."""
+        found = {}
+        for g, group in enumerate(self.groups):
+            if element in group.names:
+                e = group.names.index(element)
+                for k, term in enumerate(TERM_SETS[term_set]):
+                    width = len(group.record.patterns.get(term, ()))
+                    first = self.places[term_set][g, 1 + k] + e * width
+                    found[term] = values[first : first + width]
+        return found
+
     def term(self, term_set: str, name: str) -> Term:
         """The entries of a term in a set, those of the ground left out."""
         k = TERM_SETS[term_set].index(name)

@@ -10,7 +10,10 @@ from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 
-from ..layout import EQUATIONS, FACTORS, STATE, Layout
+from ..layout import EQUATIONS, FACTORS, IDA, MECHANICS, STATE, Layout
+
+compiled = njit(error_model="numpy")
+"""Marks a function for use in compiled routines: a division by zero gives infinity, nothing raises."""
 
 
 @intrinsic
@@ -63,9 +66,11 @@ def view_of(name: str, layout: Layout) -> Callable[..., Any]:
     arguments = ", ".join(reads[kind].format(column) for column, kind in enumerate(layout.values()))
     namespace: dict[str, Any] = {"fields": fields, "ints": ints, "floats": floats}
     exec(f"def view(table):\n    return fields({arguments})\n", namespace)  # made from the layout above
-    return njit(namespace["view"])
+    return compiled(namespace["view"])
 
 
 state_view = view_of("State", STATE)
 equations_view = view_of("Equations", EQUATIONS)
 factors_view = view_of("Factors", FACTORS)
+ida_view = view_of("Ida", IDA)
+mechanics_view = view_of("Mechanics", MECHANICS)

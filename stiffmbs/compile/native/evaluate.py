@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from numba import njit
-
-from .access import call_kernel, equations_view, floats, ints, state_view
+from .access import call_kernel, compiled, floats, ints, state_view
 
 POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT = range(5)
 CALL_WIDTH = 5
 
 
-@njit
+@compiled
 def evaluate(s, term_set, t):
     """Compute all terms of a set at the state held in `s`; returns a pointer to their values."""
     calls = ints(s.calls[term_set])
@@ -24,13 +22,15 @@ def evaluate(s, term_set, t):
     return values
 
 
-@njit
+@compiled
 def load(s, e, y):
     """Take q, u, mu and lam out of a vector of unknowns."""
-    for k in range(s.n_q):
-        s.q[k] = y[e.at_q[k]]
-    for k in range(s.n_u):
-        s.u[k] = y[e.at_u[k]]
+    if e.has_q:
+        for k in range(s.n_q):
+            s.q[k] = y[e.at_q[k]]
+    if e.has_u:
+        for k in range(s.n_u):
+            s.u[k] = y[e.at_u[k]]
     if e.has_mu:
         for k in range(s.n_c):
             s.mu[k] = y[e.at_mu[k]]
@@ -39,7 +39,7 @@ def load(s, e, y):
             s.lam[k] = y[e.at_lam[k]]
 
 
-@njit
+@compiled
 def add_products(e, values, y, yp, r):
     """r = sum of factor * value * operand, the operand being 1, an unknown, or an unknown's derivative."""
     for k in range(e.n):
@@ -52,29 +52,13 @@ def add_products(e, values, y, yp, r):
         r[e.r_row[k]] += e.r_factor[k] * values[e.r_source[k]] * yp[e.r_operand[k]]
 
 
-@njit
+@compiled
 def add_entries(e, values, cj, a):
     """The matrix: every value, times its constant and its part in cj, in its slot."""
     for k in range(e.n_slots):
         a[k] = 0.0
     for k in range(e.n_entries):
         a[e.m_slot[k]] += values[e.m_source[k]] * (e.m_constant[k] + e.m_cj[k] * cj)
-
-
-def residual(t, y, yp, r, state, equations):
-    """The residual r(t, y, y') of a formulation."""
-    s = state_view(state)
-    e = equations_view(equations)
-    load(s, e, y)
-    add_products(e, evaluate(s, e.residual_set, t), y, yp, r)
-
-
-def matrix(t, y, cj, a, state, equations):
-    """The iteration matrix dr/dy + cj dr/dy' of a formulation, in its slots."""
-    s = state_view(state)
-    e = equations_view(equations)
-    load(s, e, y)
-    add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
 
 
 def terms(t, term_set, state):

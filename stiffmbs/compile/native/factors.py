@@ -8,7 +8,7 @@ it gives up and the pivots are sought anew, so that the fixed order is only ever
 
 from __future__ import annotations
 
-from numba import njit
+from .access import compiled
 
 KEEP_DIAGONAL = 0.1
 """A diagonal pivot is taken when it is at least this part of the largest in its column (less fill)."""
@@ -18,7 +18,7 @@ TOO_SMALL = 1e-3
 DONE, SINGULAR, FULL = 0, 1, 2
 
 
-@njit
+@compiled
 def _reach(f, column, top_of_stack):
     """The rows that a column's elimination touches, in topological order at stack[top:n]; marks are undone later."""
     n = f.n
@@ -52,7 +52,7 @@ def _reach(f, column, top_of_stack):
     return top
 
 
-@njit
+@compiled
 def factor(f):
     """Find pivots and factors of the matrix in `f`; returns DONE, SINGULAR, or FULL (room for the factors too small)."""
     n = f.n
@@ -119,7 +119,7 @@ def factor(f):
     return DONE
 
 
-@njit
+@compiled
 def refactor(f):
     """Factors of the matrix in `f` along the pivots of the last `factor`; DONE, or SINGULAR where a pivot is too small."""
     n = f.n
@@ -152,7 +152,7 @@ def refactor(f):
     return DONE
 
 
-@njit
+@compiled
 def factored(f):
     """Factors by the known pivots where they serve, else by new ones."""
     if f.ready[0] and refactor(f) == DONE:
@@ -160,7 +160,7 @@ def factored(f):
     return factor(f)
 
 
-@njit
+@compiled
 def solve(f, b):
     """Overwrite b by the solution of A x = b."""
     n = f.n

@@ -1,0 +1,137 @@
+"""BDF of variable order and step: SUNDIALS IDA through scikit-sundae, as Adams' GSTIFF."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..compile.equations import Equations
+from ..compile.layout import IDA, packed
+from ..compile.routines import Routine
+from ..describe.settings import RunSettings
+from .formulations import FORMULATIONS
+from .initial import InitialValues
+from .mechanics import Mechanics
+from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
+
+_MODULE = "stiffmbs.solve.native.ida_callbacks"
+RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
+JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, float64, int64, int64*)")
+
+DENSE_UP_TO = 90
+"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
+OUT_OF_THE_ERROR_TEST = 1e15
+"""Absolute tolerance of multipliers, which scikit-sundae cannot suppress in the error test (measured: without this
+the index-2 problems fail; with it the tolerance has to be corrected for the unknowns that still count in the norm)."""
+HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
+MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
+
+
+class _Ida:
+    """IDA set up for one system and formulation."""
+
+    def __init__(self, mechanics: Mechanics, settings: RunSettings) -> None:
+        from sksundae.ida import IDA as SundialsIda
+
+        self.equations = Equations(FORMULATIONS[settings.formulation], mechanics.system)
+        n = self.equations.n
+        self.history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
+        self.history[3] = HISTORY_ROOM
+        dense = n <= DENSE_UP_TO
+        rows, columns = self.equations.pattern
+        self._table, self._kept = self.equations.table(rows * n + columns if dense else None)
+        self._callback_table = packed(
+            IDA,
+            {
+                "state": mechanics.state.table, "equations": self._table, "history": self.history,
+                "array_header": object.__basicsize__,
+            },
+        )  # fmt: skip
+        linear: dict[str, Any] = {"linsolver": "dense"} if dense else {"linsolver": "sparse", "sparsity": self._sparsity()}
+        rtol, atol = self._tolerances(settings)
+        self._ida = SundialsIda(
+            self._residual(), jacfn=self._jacobian(), rtol=rtol, atol=atol,
+            max_num_steps=MOST_STEPS_BETWEEN_OUTPUTS, max_step=settings.max_step, **linear,
+        )  # fmt: skip
+
+    def _sparsity(self) -> Any:
+        from scipy.sparse import csc_matrix
+
+        rows, columns = self.equations.pattern
+        return csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.equations.n,) * 2)
+
+    def _tolerances(self, settings: RunSettings) -> tuple[float, np.ndarray]:
+        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts positions and velocities."""
+        at = self.equations.at
+        differential = np.concatenate([at["q"], at["u"]])
+        correction = np.sqrt(self.equations.n / len(differential))
+        atol = np.full(self.equations.n, OUT_OF_THE_ERROR_TEST)
+        atol[differential] = (settings.atol if settings.atol is not None else settings.rtol) * correction
+        return settings.rtol * correction, atol
+
+    def _residual(self) -> Any:
+        call, ida = RESIDUAL.load(), self._callback_table.ctypes.data
+
+        def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
+            call(t, id(y), id(yp), id(r), ida)  # an array's attribute .ctypes.data costs more than the residual
+
+        return residual
+
+    def _jacobian(self) -> Any:
+        call, ida = JACOBIAN.load(), self._callback_table.ctypes.data
+
+        def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
+            call(t, id(y), cj, id(a), ida)
+
+        return jacobian
+
+    def begin(self, start: InitialValues, t: float) -> Any:
+        """Start at consistent values."""
+        at = self.equations.at
+        y, yp = np.zeros(self.equations.n), np.zeros(self.equations.n)
+        y[at["q"]], y[at["u"]] = start.q, start.u
+        y[at["lam"]] = start.lam
+        yp[at["q"]], yp[at["u"]] = start.u, start.acceleration
+        self.history[0] = t
+        return self._ida.init_step(t, y, yp)
+
+    def results(self, grid: Grid) -> Iterator[Any]:
+        """IDA's result at each time of the grid, or after each of its steps."""
+        if grid.times is not None:
+            for time in grid.times[1:]:
+                yield self._ida.step(time, method="normal", tstop=grid.end)
+            return
+        t = grid.start
+        while t < grid.end:
+            result = self._ida.step(grid.end, method="onestep", tstop=grid.end)
+            t = result.t
+            yield result
+
+
+def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+    """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`."""
+    ida = _Ida(mechanics, settings)
+    system = mechanics.system
+    rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
+    rows.append(grid.start, start.q, start.u)
+    at_q, at_u = ida.equations.at["q"], ida.equations.at["u"]
+    outcome, message, result = Outcome.DONE, Outcome.DONE.value, ida.begin(start, grid.start)
+    try:
+        for result in ida.results(grid):
+            if result.status < 0:
+                outcome, message = Outcome.STOPPED, _stopped_sentence(result)
+                break
+            rows.append(result.t, result.y[at_q], result.y[at_u])
+            watch(result.t)
+    except KeyboardInterrupt:
+        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
+    steps = int(ida.history[1])
+    statistics = {"steps": steps, "residuals": result.nfev, "jacobians": result.njev, "rejected": int(ida.history[2])}
+    step_times = ida.history[HISTORY_HEAD : HISTORY_HEAD + min(steps, HISTORY_ROOM)].copy()
+    return Trajectory(*rows.stored, outcome, message, statistics, step_times)
+
+
+def _stopped_sentence(result: Any) -> str:
+    return f"IDA stopped at t = {result.t:.9g} s: {result.message.rstrip('.').lower()}"

@@ -1,0 +1,115 @@
+"""Initial values: positions assembled, velocities corrected, accelerations and multipliers solved for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import AssemblyError
+from .mechanics import POSITION_TOLERANCE, Mechanics
+
+WORTH_TELLING = 1e-9
+"""Moves of a coordinate (m, rad, m/s, rad/s) below this are not mentioned."""
+
+
+@dataclass(frozen=True)
+class InitialValues:
+    """A consistent start.
+
+    Attributes
+    ----------
+    q, u, acceleration, lam : ndarrays
+        Coordinates, velocities, accelerations and multipliers that satisfy the constraints on every level.
+    moved : tuple of (str, str, float)
+        Body, coordinate and change, for every coordinate or velocity that had to be changed noticeably.
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    lam: np.ndarray
+    moved: tuple[tuple[str, str, float], ...]
+
+    def sentence(self) -> str:
+        """What was moved, in words; empty where nothing was."""
+        if not self.moved:
+            return ""
+        body, coordinate, change = max(self.moved, key=lambda move: abs(move[2]))
+        bodies = len({name for name, _, _ in self.moved})
+        return f"assembly changed {bodies} of the bodies at the start, most {body}.{coordinate} by {change:.3g}"
+
+
+def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
+    """Make the described start consistent.
+
+    Positions by Newton's smallest moves, velocities by the smallest correction in the mass matrix, accelerations
+    and multipliers from [M J^T; J 0][u'; lam] = [f; gamma].
+
+    Raises
+    ------
+    AssemblyError
+        When no assembled position is found (names the joint with the largest gap) or the equations are dependent.
+    """
+    system, state = mechanics.system, mechanics.state
+    q0, u0 = system.q.copy(), system.u.copy()
+    status = mechanics.assemble(t)
+    if status < 0:
+        raise AssemblyError(_gap_sentence(mechanics, t))
+    if mechanics.correct_velocities(t) < 0:
+        raise AssemblyError(_dependent_sentence(mechanics))
+    status, acceleration = mechanics.accelerate(t)
+    if status < 0:
+        raise AssemblyError(_dependent_sentence(mechanics))
+    if not np.all(np.isfinite(acceleration)):
+        raise AssemblyError(_undefined_sentence(mechanics, t))
+    names = (("x", "y", "angle"), ("vx", "vy", "omega"))
+    changes = ((state.q - q0, names[0]), (state.u - u0, names[1]))
+    moved = tuple(
+        (system.bodies[k // 3], labels[k % 3], float(change[k]))
+        for change, labels in changes
+        for k in np.flatnonzero(np.abs(change) > WORTH_TELLING)
+    )
+    return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam[: system.n_c].copy(), moved)
+
+
+def _gap_sentence(mechanics: Mechanics, t: float) -> str:
+    system, state = mechanics.system, mechanics.state
+    state.evaluate("position", t)
+    gaps = np.abs(state.vector("position", "C"))
+    if not np.all(np.isfinite(gaps)):
+        return _undefined_sentence(mechanics, t)
+    joint, equation = system.equations[int(np.argmax(gaps))]
+    return (
+        f"the scene cannot be assembled: the largest gap is left in joint '{joint}' (equation {equation}, "
+        f"{gaps.max():.3g}, expected less than {POSITION_TOLERANCE:g})"
+    )
+
+
+def _dependent_sentence(mechanics: Mechanics) -> str:
+    state, system = mechanics.state, mechanics.system
+    jacobian = state.matrix("motion", "J")
+    joint, equation = system.equations[_most_dependent_row(jacobian)]
+    return (
+        f"the constraint equations depend on each other at the start: joint '{joint}' (equation {equation}) repeats "
+        "what other joints already hold, so its reaction has no unique value"
+    )
+
+
+def _most_dependent_row(jacobian: np.ndarray) -> int:
+    """The row that QR with pivoting of the transposed matrix leaves for last."""
+    from scipy.linalg import qr
+
+    *_, order = qr(jacobian.T, mode="economic", pivoting=True)
+    return int(order[-1])
+
+
+def _undefined_sentence(mechanics: Mechanics, t: float) -> str:
+    state, system = mechanics.state, mechanics.system
+    for term_set in ("motion", "acceleration"):
+        state.evaluate(term_set, t)
+        for name in (name for group in system.groups for name in group.names):
+            values = system.values_of(state.values[term_set], term_set, name)
+            if not all(np.all(np.isfinite(part)) for part in values.values()):
+                return f"'{name}' has no finite value at the start, expected equations that are defined there"
+    return "the accelerations at the start are not finite, expected forces and masses of ordinary size"

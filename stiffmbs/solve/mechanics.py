@@ -1,0 +1,133 @@
+"""The mechanics of one system at a state: assembly, projections, accelerations, and what is reported."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.layout import MECHANICS, packed
+from ..compile.routines import Routine
+from ..compile.system import State, System
+from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
+
+_MODULE = "stiffmbs.solve.native.mechanics"
+ASSEMBLE = Routine(_MODULE, "assemble", "int64(float64, float64, int64, int64*)")
+CORRECT_VELOCITIES = Routine(_MODULE, "correct_velocities", "int64(float64, int64*)")
+ACCELERATE = Routine(_MODULE, "accelerate", "int64(float64, float64*, int64*)")
+EULER_CROMER = Routine(_MODULE, "euler_cromer", "int64(float64, float64, int64, int64, float64, int64*)")
+OUTPUT_POINTS = Routine(
+    _MODULE,
+    "output_points",
+    "int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
+)
+
+SINGULAR, NO_CONVERGENCE, NOT_FINITE = -1, -2, -3
+"""Statuses of the compiled routines."""
+
+POSITION_TOLERANCE = 1e-12
+"""Largest violation that a projection onto the positions leaves, in the equations' own units (m, rad)."""
+
+
+@dataclass(frozen=True)
+class OutputRows:
+    """What is reported at a number of instants, one row each.
+
+    Attributes
+    ----------
+    t, q, u, acceleration, lam : ndarrays
+    values : ndarray
+        The values of the output terms (`stiffmbs.compile.terms`).
+    position_violation, velocity_violation, drift : ndarrays
+        Largest |C| and |J u + C_t|, and |C| before the projection.
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    lam: np.ndarray
+    values: np.ndarray
+    position_violation: np.ndarray
+    velocity_violation: np.ndarray
+    drift: np.ndarray
+
+
+class Mechanics:
+    """Block systems of one state, and the compiled routines that use them.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    state : State
+        The current q, u and lam.
+    table : ndarray of int
+        Addresses for compiled code.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.state: State = system.state()
+        self._positions = SaddlePoint(POSITION_STEP, self.state)
+        self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
+        self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
+        self._largest = np.zeros(1)
+        self.table = packed(
+            MECHANICS,
+            {
+                "state": self.state.table,
+                "positions": self._positions.equations_table,
+                "position_factors": self._positions.factors_table,
+                "velocities": self._velocities.equations_table,
+                "velocity_factors": self._velocities.factors_table,
+                "accelerations": self._accelerations.equations_table,
+                "acceleration_factors": self._accelerations.factors_table,
+                "largest": self._largest,
+            },
+        )
+
+    @property
+    def _at(self) -> int:
+        return self.table.ctypes.data
+
+    def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
+        """Move positions by Newton's smallest moves until |C| <= tolerance; the number of moves or a status."""
+        return ASSEMBLE.load()(t, tolerance, most, self._at)
+
+    def correct_velocities(self, t: float) -> int:
+        """The smallest correction of u in the mass matrix that satisfies J u + C_t = 0; 0 or a status."""
+        return CORRECT_VELOCITIES.load()(t, self._at)
+
+    def accelerate(self, t: float) -> tuple[int, np.ndarray]:
+        """Status and u' from the block system; the multipliers are in the state's lam."""
+        acceleration = np.empty(self.system.n_u)
+        return ACCELERATE.load()(t, acceleration.ctypes.data, self._at), acceleration
+
+    def euler_cromer(self, t: float, h: float, steps: int, project: bool) -> int:
+        """Take explicit steps from the current state; the number of steps done or a status."""
+        return EULER_CROMER.load()(t, h, steps, project, POSITION_TOLERANCE, self._at)
+
+    def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
+        """What is reported at given instants and states, up to the first that has no solution.
+
+        Parameters
+        ----------
+        t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
+        project : bool
+            Whether each state is first brought back to the constraints.
+        """
+        system, count = self.system, len(t)
+        n_output = system.size("output")
+        t, q, u = (np.array(rows, dtype=float) for rows in (t, q, u))
+        acceleration = np.empty((count, system.n_u))
+        lam, values = np.empty((count, system.n_c)), np.empty((count, n_output))
+        largest = np.empty((count, 3))
+        rows = (q, u, acceleration, lam, values, largest)
+        addresses = [array.ctypes.data for array in rows]
+        tolerance = POSITION_TOLERANCE
+        done = OUTPUT_POINTS.load()(count, t.ctypes.data, project, tolerance, n_output, *addresses, self._at)
+        q, u, acceleration, lam, values, largest = (array[:done] for array in rows)
+        return OutputRows(t[:done], q, u, acceleration, lam, values, *largest.T)

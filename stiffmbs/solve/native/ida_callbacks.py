@@ -1,0 +1,53 @@
+"""Residual and Jacobian as IDA calls them, with the history of IDA's steps seen from its calls."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.native.access import compiled, equations_view, floats, ida_view, ints, state_view
+from stiffmbs.compile.native.evaluate import add_entries, add_products, evaluate, load
+
+LAST_TIME, STEPS, REJECTED, ROOM = range(4)
+"""What the head of the history holds; the times of the steps' ends follow it."""
+HEAD = 4
+
+
+@compiled
+def _note(history, t):
+    """Count steps: IDA tries a later time after a success and an earlier one after a failure."""
+    last = history[LAST_TIME]
+    if t == last:
+        return
+    steps = int(history[STEPS])
+    if t > last:
+        steps += 1
+    else:
+        history[REJECTED] += 1.0
+    if 0 < steps <= int(history[ROOM]):
+        history[HEAD + steps - 1] = t
+    history[LAST_TIME] = t
+    history[STEPS] = steps
+
+
+@compiled
+def _data(array, header):
+    """The doubles of a numpy array given by its id: the pointer behind the object's header (PyArrayObject.data)."""
+    return floats(ints(array + header)[0])
+
+
+def residual(t, y, yp, r, ida):
+    """The residual r(t, y, y') into a numpy array; notes the time in the history."""
+    c = ida_view(ida)
+    _note(c.history, t)
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    unknowns = _data(y, c.array_header)
+    load(s, e, unknowns)
+    add_products(e, evaluate(s, e.residual_set, t), unknowns, _data(yp, c.array_header), _data(r, c.array_header))
+
+
+def jacobian(t, y, cj, a, ida):
+    """The iteration matrix dr/dy + cj dr/dy' into a numpy array."""
+    c = ida_view(ida)
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    load(s, e, _data(y, c.array_header))
+    add_entries(e, evaluate(s, e.matrix_set, t), cj, _data(a, c.array_header))

@@ -1,0 +1,172 @@
+"""Assembly, projections, accelerations and explicit steps at the state of a system."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from stiffmbs.compile.native.access import compiled, equations_view, factors_view, floats, mechanics_view, shifted, state_view
+from stiffmbs.compile.native.evaluate import ACCELERATION, MOTION, OUTPUT, POSITION, add_entries, add_products, evaluate
+from stiffmbs.compile.native.factors import DONE, factored, solve
+
+SINGULAR, NO_CONVERGENCE, NOT_FINITE = -1, -2, -3
+
+
+@compiled
+def _largest(values, count):
+    largest = 0.0
+    for k in range(count):
+        if not isfinite(values[k]):
+            return float("inf")
+        largest = max(largest, abs(values[k]))
+    return largest
+
+
+@compiled
+def _solved(s, equations, factors, values):
+    """Fill in, factor and solve one block system; the solution is in the factors' `b`."""
+    e = equations_view(equations)
+    f = factors_view(factors)
+    add_entries(e, values, 0.0, f.a)
+    if factored(f) != DONE:
+        return False
+    add_products(e, values, f.b, f.b, f.b)
+    solve(f, f.b)
+    return True
+
+
+@compiled
+def to_position_constraints(s, m, t, tolerance, most):
+    """Newton's smallest moves until |C| <= tolerance; the number of moves, or a negative status."""
+    for move in range(most):
+        values = evaluate(s, POSITION, t)
+        gap = _largest(values, s.n_c)
+        m.largest[0] = gap
+        if gap <= tolerance:
+            return move
+        if not isfinite(gap):
+            return NOT_FINITE
+        if not _solved(s, m.positions, m.position_factors, values):
+            return SINGULAR
+        step = factors_view(m.position_factors).b
+        for k in range(s.n_q):
+            s.q[k] += step[k]
+    return NO_CONVERGENCE
+
+
+@compiled
+def to_velocity_constraints(s, m, t):
+    """The smallest correction of u in the mass matrix that brings J u + C_t to zero."""
+    values = evaluate(s, MOTION, t)
+    if not _solved(s, m.velocities, m.velocity_factors, values):
+        return SINGULAR
+    step = factors_view(m.velocity_factors).b
+    for k in range(s.n_u):
+        s.u[k] += step[k]
+    return 0
+
+
+@compiled
+def to_accelerations(s, m, t):
+    """Accelerations (in the factors' `b`) and multipliers (there, and in lam) at the current state."""
+    values = evaluate(s, ACCELERATION, t)
+    if not _solved(s, m.accelerations, m.acceleration_factors, values):
+        return SINGULAR
+    solution = factors_view(m.acceleration_factors).b
+    for k in range(s.n_c):
+        s.lam[k] = solution[s.n_u + k]
+    return 0
+
+
+def assemble(t, tolerance, most, mechanics):
+    """`to_position_constraints` from Python; largest[0] is the gap left."""
+    m = mechanics_view(mechanics)
+    return to_position_constraints(state_view(m.state), m, t, tolerance, most)
+
+
+def correct_velocities(t, mechanics):
+    """`to_velocity_constraints` from Python."""
+    m = mechanics_view(mechanics)
+    return to_velocity_constraints(state_view(m.state), m, t)
+
+
+def accelerate(t, acceleration, mechanics):
+    """`to_accelerations` from Python; accelerations are copied out."""
+    m = mechanics_view(mechanics)
+    s = state_view(m.state)
+    status = to_accelerations(s, m, t)
+    for k in range(s.n_u):
+        acceleration[k] = factors_view(m.acceleration_factors).b[k]
+    return status
+
+
+def euler_cromer(t, h, steps, project, tolerance, mechanics):
+    """Semi-implicit Euler steps, each brought back to the constraints; the number of steps done or a negative status."""
+    m = mechanics_view(mechanics)
+    s = state_view(m.state)
+    for step in range(steps):
+        if to_accelerations(s, m, t + step * h) < 0:
+            return SINGULAR
+        acceleration = factors_view(m.acceleration_factors).b
+        for k in range(s.n_u):
+            s.u[k] += h * acceleration[k]
+        for k in range(s.n_q):
+            s.q[k] += h * s.u[k]
+        if not isfinite(_largest(s.q, s.n_q)):
+            return NOT_FINITE
+        if project:
+            status = to_position_constraints(s, m, t + (step + 1) * h, tolerance, 20)
+            if status < 0:
+                return status
+            if to_velocity_constraints(s, m, t + (step + 1) * h) < 0:
+                return SINGULAR
+    return steps
+
+
+@compiled
+def _output_point(s, m, t, project, tolerance, largest):
+    """Bring the state back to the constraints where asked, then accelerations, multipliers and output terms."""
+    largest[2] = 0.0
+    if project:
+        largest[2] = _largest(evaluate(s, POSITION, t), s.n_c)
+        status = to_position_constraints(s, m, t, tolerance, 20)
+        if status < 0:
+            return status
+        if to_velocity_constraints(s, m, t) < 0:
+            return SINGULAR
+    values = evaluate(s, MOTION, t)
+    largest[0] = _largest(values, s.n_c)
+    largest[1] = _largest(shifted(values, s.n_c), s.n_c)
+    if to_accelerations(s, m, t) < 0:
+        return SINGULAR
+    evaluate(s, OUTPUT, t)
+    return 0
+
+
+def output_points(count, times, project, tolerance, n_output, q, u, acceleration, lam, output, largest, mechanics):
+    """Everything that is reported at `count` instants, row by row; the number of rows done.
+
+    q and u (rows of n_q, n_u) are brought back to the constraints where `project` asks for it; written are u', lam,
+    the values of the output terms, and in `largest` three numbers a row: the violations of positions and of
+    velocities, and the violation of positions before the projection.
+    """
+    m = mechanics_view(mechanics)
+    s = state_view(m.state)
+    for row in range(count):
+        for k in range(s.n_q):
+            s.q[k] = q[row * s.n_q + k]
+        for k in range(s.n_u):
+            s.u[k] = u[row * s.n_u + k]
+        if _output_point(s, m, times[row], project, tolerance, shifted(largest, 3 * row)) < 0:
+            return row
+        solution = factors_view(m.acceleration_factors).b
+        values = floats(s.values[OUTPUT])
+        for k in range(s.n_q):
+            q[row * s.n_q + k] = s.q[k]
+        for k in range(s.n_u):
+            u[row * s.n_u + k] = s.u[k]
+            acceleration[row * s.n_u + k] = solution[k]
+        for k in range(s.n_c):
+            lam[row * s.n_c + k] = s.lam[k]
+        for k in range(n_output):
+            output[row * n_output + k] = values[k]
+    return count

@@ -1,0 +1,116 @@
+"""The block systems of rigid body mechanics: accelerations and multipliers, and both projections.
+
+All three are [D J^T; J 0] [x; w] = [a; b], solved by one sparse LU whose pattern and pivots are found once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.equations import Block, Equations, Formulation, Product
+from ..compile.layout import FACTORS, packed
+from ..compile.system import State, System
+
+_SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
+
+ACCELERATIONS = Formulation(
+    name="accelerations",
+    unknowns=("u", "lam"),
+    residual_set="acceleration",
+    matrix_set="acceleration",
+    residual=(Product("u", +1, "f"), Product("lam", +1, "gamma")),
+    matrix=(Block("u", "u", "M"), *_SADDLE),
+)
+"""[M J^T; J 0] [u'; lam] = [f; gamma]."""
+
+POSITION_STEP = Formulation(
+    name="position step",
+    unknowns=("u", "lam"),
+    residual_set="position",
+    matrix_set="position",
+    residual=(Product("lam", -1, "C"),),
+    matrix=(Block("u", "u", "I"), *_SADDLE),
+)
+"""[I J^T; J 0] [dq; w] = [0; -C]: Newton's smallest move towards the constraints."""
+
+VELOCITY_STEP = Formulation(
+    name="velocity step",
+    unknowns=("u", "lam"),
+    residual_set="motion",
+    matrix_set="motion",
+    residual=(Product("lam", -1, "V"),),
+    matrix=(Block("u", "u", "M"), *_SADDLE),
+)
+"""[M J^T; J 0] [du; w] = [0; -V]: the smallest correction in the mass matrix."""
+
+
+class SaddlePoint:
+    """One block system with its factors, ready for compiled code.
+
+    Attributes
+    ----------
+    equations_table, factors_table : ndarrays of int
+        Addresses (`stiffmbs.compile.layout`).
+    """
+
+    def __init__(self, formulation: Formulation, state: State) -> None:
+        self.equations = Equations(formulation, state.system)
+        self.equations_table, self._slots = self.equations.table()
+        n = self.equations.n
+        rows, columns = self.equations.pattern
+        order = elimination_order(state.system)
+        room = max(8 * (len(rows) + n), min(n * n, 4096)) + n
+        ints, floats = (lambda k: np.zeros(k, dtype=np.int64)), np.zeros
+        self._arrays = {
+            "n": n, "capacity": room, "ready": ints(1),
+            "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64),
+            "a_row": rows.astype(np.int64), "a": floats(len(rows)), "order": order,
+            "l_start": ints(n + 1), "l_row": ints(room), "l": floats(room),
+            "u_start": ints(n + 1), "u_row": ints(room), "u": floats(room),
+            "pivot": ints(n), "work": floats(n), "b": floats(n), "stack": ints(4 * n), "x": floats(n),
+        }  # fmt: skip
+        self.factors_table = packed(FACTORS, self._arrays)
+
+
+def elimination_order(system: System) -> np.ndarray:
+    """An order of elimination for unknowns (u, lam) with little fill: minimum degree on bodies and joints.
+
+    Bodies and joints are eliminated whole; a joint waits until one of its bodies is gone, as its own diagonal
+    block is zero before.
+    """
+    import heapq
+
+    from ..compile.system import PLANAR
+
+    n_bodies, n_u = len(system.bodies), system.n_u
+    joints = [
+        (group.first_row + e * group.record.n_equations, group.record.n_equations,
+         {int(at) // PLANAR for at in group.index[e, ::2] if at < system.n_q})
+        for group in system.groups if group.record.n_equations for e in range(group.count)
+    ]  # fmt: skip
+    neighbours: list[set[int]] = [set() for _ in range(n_bodies + len(joints))]
+    for k, (_, _, bodies) in enumerate(joints):
+        for body in bodies:
+            neighbours[n_bodies + k].add(body)
+            neighbours[body].add(n_bodies + k)
+    queue = [(len(neighbours[k]), k) for k in range(n_bodies)]
+    heapq.heapify(queue)
+    gone = [False] * len(neighbours)
+    order: list[int] = []
+    while queue:
+        degree, node = heapq.heappop(queue)
+        if gone[node] or degree != len(neighbours[node]):
+            continue
+        gone[node] = True
+        if node < n_bodies:
+            order += range(PLANAR * node, PLANAR * (node + 1))
+        else:
+            first, count, _ = joints[node - n_bodies]
+            order += range(n_u + first, n_u + first + count)
+        around = neighbours[node]
+        for other in around:
+            neighbours[other] |= around
+            neighbours[other] -= {node, other}
+        for other in around:
+            heapq.heappush(queue, (len(neighbours[other]), other))
+    return np.array(order, dtype=np.int64)

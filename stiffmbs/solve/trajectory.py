@@ -1,0 +1,83 @@
+"""What an integrator is given and what it gives back: the contract of all solvers.
+
+A solver is a function in a file of its own: `solve(mechanics, start, grid, settings, watch) -> Trajectory`.
+
+1. It starts from consistent initial values and works on the mechanics' state; it knows no kinds of element.
+2. It returns the state at every instant of `grid`, or at its own steps where the grid's `times` is None.
+3. It calls `watch(t)` often enough for a progress bar (a few times a second at the least).
+4. It never loses what it has: when it cannot go on, or is interrupted, it returns the rows up to there with the
+   outcome that says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+
+Watch = Callable[[float], None]
+
+
+class Outcome(Enum):
+    """How a run ended, as a sentence for a person."""
+
+    DONE = "the whole time was solved"
+    INTERRUPTED = "interrupted by the user; the results up to there are kept"
+    STOPPED = "the solver stopped early; the results up to there are kept"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """When to report: the ends of the run, and output times (ends included) or None for the solver's own steps."""
+
+    start: float
+    end: float
+    times: np.ndarray | None
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """States over time from one run of a solver.
+
+    Attributes
+    ----------
+    t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
+    outcome : Outcome
+    message : str
+        One sentence: what happened, and for an early stop where and why.
+    statistics : dict
+        ``steps residuals jacobians`` and what else the solver counts.
+    step_times : ndarray
+        Ends of the solver's own steps.
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    outcome: Outcome
+    message: str
+    statistics: dict[str, int | float]
+    step_times: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+
+class Rows:
+    """Growing storage for states: appended to row by row, whatever their number."""
+
+    def __init__(self, n_q: int, n_u: int, expected: int = 1024) -> None:
+        self._t = np.empty(expected)
+        self._q, self._u = np.empty((expected, n_q)), np.empty((expected, n_u))
+        self._count = 0
+
+    def append(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Store one state."""
+        if self._count == len(self._t):
+            self._t, self._q, self._u = (np.concatenate([a, np.empty_like(a)]) for a in (self._t, self._q, self._u))
+        self._t[self._count], self._q[self._count], self._u[self._count] = t, q, u
+        self._count += 1
+
+    @property
+    def stored(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Times, positions and velocities stored so far."""
+        return self._t[: self._count], self._q[: self._count], self._u[: self._count]
