@@ -1,0 +1,41 @@
+"""A stiff multibody solver: bodies, joints and forces in, motion and the force in every joint out.
+
+Examples
+--------
+>>> import stiffmbs
+>>> solution = stiffmbs.run(stiffmbs.load_scene("examples/cart_pendulum.yaml"), rtol=1e-8)
+>>> solution["rail.fy"].max()
+"""
+
+from typing import Any
+
+from .describe.body import Body
+from .describe.marker import GROUND as ground
+from .describe.marker import Marker
+from .describe.model import FORCES, JOINTS, Model
+from .describe.scene import load_scene, read_scene, scene_schema
+from .describe.settings import RunSettings
+from .errors import AssemblyError, InputError, SolverError, StiffmbsError
+
+__version__ = "0.1.0"
+
+_ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES.values())}
+
+__all__ = [
+    "AssemblyError", "Body", "InputError", "Marker", "Model", "RunSettings", "SolverError", "StiffmbsError",
+    "compile_model", "ground", "load_scene", "read_scene", "run", "scene_schema", *_ELEMENTS,
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    if name in _ELEMENTS:
+        return _ELEMENTS[name]
+    if name == "run":
+        from .show.run import run
+
+        return run
+    if name == "compile_model":
+        from .compile.system import compile_model
+
+        return compile_model
+    raise AttributeError(f"module 'stiffmbs' has no attribute '{name}'")

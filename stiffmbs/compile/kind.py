@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from ..describe.element import Element
-from ..describe.formula import evaluate
+from ..describe.formula import UNIT, evaluate
 from ..describe.formula_field import TIME, Formula
 from ..describe.marker import Marker
 from ..describe.model import ModelData
@@ -117,6 +117,8 @@ class _Shape(ast.NodeTransformer):
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         assert isinstance(node.value, ast.Name)
+        if node.value.id == UNIT:
+            return self._number(self.values[f"{UNIT}.{node.attr}"])
         return ast.Attribute(ast.Name(f"b{self.bodies.index(node.value.id)}"), node.attr)
 
     def visit_Constant(self, node: ast.Constant) -> ast.AST:

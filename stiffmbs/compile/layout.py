@@ -17,10 +17,10 @@ INTS, FLOATS, INT, FLOAT = "ints", "floats", "int", "float"
 STATE: Layout = {
     "n_q": INT, "n_u": INT, "n_c": INT,
     "q": FLOATS, "u": FLOATS, "lam": FLOATS, "mu": FLOATS,
-    "n_calls": INTS, "calls": INTS, "values": INTS, "mass": FLOATS,
+    "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS,
 }  # fmt: skip
 """A system's state and kernels: q and u with the ground's at their end; for each term set the number of its kernel
-calls, the address of their arguments (rows of `CALL`) and the address of its values; the mass matrix's entries."""
+calls, the address of their arguments (rows of `CALL`) and the address of its values; the first row of each joint."""
 
 CALL = ("kernel", "count", "index", "number", "place")
 """The arguments of one kernel call, as 64-bit numbers."""

@@ -85,6 +85,8 @@ class System:
         Elements by kind.
     equations : tuple of (str, str)
         Joint and equation name of each constraint row.
+    size : float
+        Of the mechanism at the start, m.
     """
 
     bodies: tuple[str, ...]
@@ -93,6 +95,7 @@ class System:
     mass: np.ndarray
     groups: tuple[Group, ...]
     equations: tuple[tuple[str, str], ...]
+    size: float
 
     @property
     def n_q(self) -> int:
@@ -105,6 +108,12 @@ class System:
     @property
     def n_c(self) -> int:
         return len(self.equations)
+
+    @cached_property
+    def joint_start(self) -> np.ndarray:
+        """The first row of each joint's equations, and the end of the last."""
+        starts = [row for row, (joint, _) in enumerate(self.equations) if row == 0 or joint != self.equations[row - 1][0]]
+        return np.array([*starts, self.n_c], dtype=np.int64)
 
     @cached_property
     def places(self) -> dict[str, np.ndarray]:
@@ -233,7 +242,8 @@ class State:
         return {
             "n_q": self.system.n_q, "n_u": self.system.n_u, "n_c": self.system.n_c,
             "q": self._q, "u": self._u, "lam": self.lam, "mu": self.mu,
-            "n_calls": self._n_calls, "calls": self._calls_at, "values": self._values_at, "mass": self.system.mass,
+            "n_calls": self._n_calls, "calls": self._calls_at, "values": self._values_at,
+            "n_joints": len(self.system.joint_start) - 1, "joint_start": self.system.joint_start,
         }  # fmt: skip
 
     def evaluate(self, term_set: str, t: float) -> None:
@@ -281,6 +291,7 @@ def compile_model(model: ModelData) -> System:
         mass=np.array([m for body in model.bodies.values() for m in (body.mass, body.mass, body.inertia)]),
         groups=tuple(groups),
         equations=tuple(equations),
+        size=model.size(),
     )
 
 

@@ -1,7 +1,7 @@
 """Scene text before validation: parameters, repeated entries and values set from outside.
 
-A repeated entry stands for many: ``"link{k}": {for: "k in 1..N", mass: 1, position: ["{k} - 0.5", 0]}``; in its
-name and its text, ``{...}`` is replaced by its value for each k.
+A repeated entry stands for many: ``link{k}: {for: k in 1..N, mass: 1, position: [(k - 0.5)*L, 0]}``.  For each k,
+``{...}`` in its name and its text is replaced by its value (``"link{k-1}"``), and so is k itself in its formulas.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from typing import Any
 
 from ..errors import InputError
 from .fields import NAME_PATTERN
-from .formula import FormulaError
-from .quantity import CONSTANTS, FUNCTIONS, UNITS, Quantity, in_si, quantity
+from .formula import UNIT, FormulaError
+from .formula_field import TIME
+from .quantity import CONSTANTS, FUNCTIONS, Quantity, in_si, quantity
 
 MOST_REPEATS = 1_000_000
 _LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
@@ -64,8 +65,8 @@ def read_parameters(found: Any) -> dict[str, Quantity]:
     for name, value in found.items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             raise InputError(f"parameters: found the name {name!r}, expected letters, digits and _")
-        if name in UNITS or name in CONSTANTS or name in FUNCTIONS or name == "t":
-            raise InputError(f"parameters.{name}: found the name of a unit, constant or function, expected another")
+        if name in CONSTANTS or name in FUNCTIONS or name in (TIME, UNIT):
+            raise InputError(f"parameters.{name}: found the name of a constant or function, expected another")
         try:
             parameters[name] = quantity(value, parameters) if isinstance(value, str) else Quantity(in_si(value, "number"))
         except FormulaError as error:
@@ -93,10 +94,10 @@ def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity
         variable, first, last = _loop(where, entry["for"], parameters)
         for k in range(first, last + 1):
             names = {**parameters, variable: Quantity(float(k))}
-            repeated = _filled(where, name, names)
+            repeated = _filled(where, name, names, variable)
             if repeated in expanded:
                 raise InputError(f"{where}: found the name '{repeated}' twice, expected a name with {{{variable}}}")
-            expanded[repeated] = _filled(where, copy.deepcopy(pattern), names)
+            expanded[repeated] = _filled(where, copy.deepcopy(pattern), names, variable)
     return expanded
 
 
@@ -105,7 +106,7 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
     if match is None:
         raise InputError(f"{where}.for: found {text!r}, expected a loop such as 'k in 1..N'")
     variable = match[1]
-    if variable in parameters or variable in UNITS or variable in FUNCTIONS:
+    if variable in parameters or variable in FUNCTIONS:
         raise InputError(f"{where}.for: found the loop variable '{variable}', which has a meaning already")
     try:
         first, last = (quantity(bound, parameters).value for bound in (match[2], match[3]))
@@ -116,11 +117,11 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
     return variable, round(first), round(last)
 
 
-def _filled(where: str, value: Any, names: Mapping[str, Quantity]) -> Any:
+def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str) -> Any:
     if isinstance(value, dict):
-        return {_filled(where, key, names): _filled(where, item, names) for key, item in value.items()}
+        return {key: _filled(where, item, names, variable) for key, item in value.items()}
     if isinstance(value, list):
-        return [_filled(where, item, names) for item in value]
+        return [_filled(where, item, names, variable) for item in value]
     if not isinstance(value, str):
         return value
 
@@ -131,4 +132,5 @@ def _filled(where: str, value: Any, names: Mapping[str, Quantity]) -> Any:
             raise InputError(f"{where}: {error}") from None
         return str(round(result)) if result == round(result) else repr(result)
 
-    return _BRACES.sub(number, value)
+    alone = rf"(?<![\w.]){variable}(?![\w.])"
+    return re.sub(alone, f"({round(names[variable].value)})", _BRACES.sub(number, value))

@@ -2,7 +2,8 @@
 
 Nothing in a formula can run code: the tree is made by ``ast.parse``, every node is checked against a closed list,
 and names are looked up in the tables that the caller gives.  A number followed by a unit binds tightly
-(``10 N/5 mm`` is 2 N/mm), a power belongs to the unit (``2 mm^2``).
+(``10 N/5 mm`` is 2 N/mm), a power belongs to the unit (``2 mm^2``).  A name that follows a value without an
+operator is looked up as ``unit.name``, so that a parameter N and the newton can live in one scene.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import tokenize
 from collections.abc import Callable, Mapping
 from typing import Any
 
+UNIT = "unit"
 LONGEST = 2000
 DEEPEST = 60
 LARGEST_LITERAL = 1e300
@@ -56,7 +58,7 @@ def parse(text: str) -> ast.expr:
 
 
 def _python_spelling(text: str) -> str:
-    """Rewrite ``5 N m/rad`` as ``(5*N*m)/rad`` and ``^`` as ``**``."""
+    """Rewrite ``5 N m/rad`` as ``(5*unit.N*unit.m)/rad`` and ``^`` as ``**``."""
     tokens = [
         t.string
         for t in tokenize.generate_tokens(io.StringIO(text.strip().replace("^", "**")).readline)
@@ -73,7 +75,7 @@ def _python_spelling(text: str) -> str:
             k = end
             continue
         if words and tokens[k].isidentifier() and (words[-1].isidentifier() or words[-1] == ")"):
-            words.append("*")
+            words += ["*", UNIT, "."]
         words.append(tokens[k])
         k += 1
     return " ".join(words)
@@ -95,7 +97,7 @@ def _joined(tokens: list[str]) -> list[str]:
     words: list[str] = []
     for token in tokens:
         if token.isidentifier():
-            words.append("*")
+            words += ["*", UNIT, "."]
         words.append(token)
     return words
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
-from .formula import FormulaError, parse
+from .formula import UNIT, FormulaError, parse
 from .quantity import CONSTANTS, UNITS
 
 TIME = "t"
@@ -40,6 +40,8 @@ class Formula:
         known = parameters or {}
         for node in _in_reading_order(self.tree):
             match node:
+                case ast.Attribute(ast.Name(owner), name) if owner == UNIT:
+                    self._use_unit(name)
                 case ast.Attribute(ast.Name(body), coordinate):
                     self._use_coordinate(body, coordinate)
                 case ast.Call(ast.Name(function)) if function not in FUNCTIONS:
@@ -52,6 +54,11 @@ class Formula:
             raise FormulaError(f"found '{body}.{coordinate}', expected {body}.x, {body}.y or {body}.angle")
         if body not in self.bodies:
             self.bodies += (body,)
+
+    def _use_unit(self, name: str) -> None:
+        if name not in UNITS:
+            raise FormulaError(f"found '{name}' after a number in '{self.text}', expected a unit")
+        self.values[f"{UNIT}.{name}"] = UNITS[name].value
 
     def _use_value(self, name: str, known: dict[str, float]) -> None:
         if name in known:

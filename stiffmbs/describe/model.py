@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from functools import reduce
 from operator import or_
@@ -15,11 +16,13 @@ from .body import Body, BodyHandle, check_names
 from .element import Element, Force, Joint, kinds
 from .fields import Described, pair
 from .forces.weight import Weight
+from .formula import UNIT
+from .formula_field import TIME
 from .marker import GROUND, Marker, Placement
 
 JOINTS = kinds(joints, Joint)
 FORCES = kinds(forces, Force)
-RESERVED = (GROUND, "energy", "constraint", "time", "t")
+RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
 AnyJoint = Annotated[reduce(or_, JOINTS.values()), Field(discriminator="type")]
 AnyForce = Annotated[reduce(or_, FORCES.values()), Field(discriminator="type")]
@@ -76,6 +79,21 @@ class ModelData(Described):
         if self.gravity != (0.0, 0.0):
             for name, body in self.bodies.items():
                 yield name, Weight(i=name, mass=body.mass, gravity=self.gravity)
+
+    def size(self) -> float:
+        """Diagonal of the box around all bodies and markers at the start, m; 1 where it is a single point."""
+        points = [body.position for body in self.bodies.values()]
+        for _, element in (*self.joints.items(), *self.forces.items()):
+            points += [self._point(marker) for _, marker in element.markers()]
+        width, height = (max(p[k] for p in points) - min(p[k] for p in points) for k in (0, 1))
+        return math.hypot(width, height) or 1.0
+
+    def _point(self, marker: Marker) -> tuple[float, float]:
+        xi, eta = self.place(marker).point
+        if marker.body == GROUND:
+            return xi, eta
+        (x, y), phi = self.bodies[marker.body].position, self.bodies[marker.body].angle
+        return x + math.cos(phi) * xi - math.sin(phi) * eta, y + math.sin(phi) * xi + math.cos(phi) * eta
 
     def place(self, marker: Marker) -> Placement:
         """Where a marker sits on its body."""

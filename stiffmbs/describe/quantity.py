@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from .formula import FormulaError, evaluate, parse
+from .formula import UNIT, FormulaError, evaluate, parse
 
 Dimension = tuple[float, float, float]  # exponents of kg, m, s; angles have none
 
@@ -151,15 +152,22 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
         For an unknown name or function, mixed units, or a value that is not finite.
     """
     known = parameters or {}
+    tree = parse(text)
+    with_units = any(isinstance(node, ast.Attribute) for node in ast.walk(tree))
 
     def names(name: str) -> Quantity:
+        owner, _, unit = name.rpartition(".")
+        if owner == UNIT and unit in UNITS:
+            return UNITS[unit]
+        name = unit if owner == UNIT else name
+        if name in known and name in UNITS and with_units:
+            raise FormulaError(f"found '{name}' in '{text}', which is a unit and a parameter of the scene, expected one or the other")
         for table in (known, UNITS, CONSTANTS):
             if name in table:
                 return table[name]
         listed = ", ".join(known) if known else "none"
         raise FormulaError(f"found the unknown name '{name}', expected a unit, pi or a parameter of the scene ({listed})")
 
-    tree = parse(text)
     try:
         result: Quantity = evaluate(tree, names, FUNCTIONS, lambda value: Quantity(float(value)))
     except (ZeroDivisionError, OverflowError, ArithmeticError):

@@ -13,7 +13,8 @@ from pydantic import ValidationError as PydanticError
 from ..errors import InputError
 from .expand import read_parameters, repeat_entries, set_value
 from .fields import sentence
-from .model import ModelData
+from .body import Body
+from .model import FORCES, JOINTS, ModelData
 from .settings import RunSettings
 
 SECTIONS = ("bodies", "joints", "forces")
@@ -132,4 +133,8 @@ def _line(text: str, path: tuple[Any, ...]) -> int | None:
 
 def scene_schema() -> dict[str, Any]:
     """The JSON schema of scene files."""
-    return Scene.model_json_schema()
+    schema = Scene.model_json_schema()
+    loop = {"type": "string", "description": "repeat this entry: 'k in 1..N'; k and {k} are replaced in it"}
+    for part in (Body, *JOINTS.values(), *FORCES.values()):
+        schema["$defs"][part.__name__]["properties"]["for"] = loop
+    return schema

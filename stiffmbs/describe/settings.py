@@ -27,7 +27,8 @@ class RunSettings(Described):
     formulation : str
         Of the residual that ``bdf`` integrates.
     rtol, atol : floats
-        Error tolerances of ``bdf``; atol (m, rad, m/s, rad/s) is rtol unless given.
+        Error tolerances of ``bdf``; atol (m, rad, m/s, rad/s) is rtol unless given, times the size of a mechanism
+        that is smaller than 1 m.
     step : float
         Step of ``projected``, s.
     projection : bool

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -51,10 +53,12 @@ class _Ida:
         )  # fmt: skip
         linear: dict[str, Any] = {"linsolver": "dense"} if dense else {"linsolver": "sparse", "sparsity": self._sparsity()}
         rtol, atol = self._tolerances(settings)
-        self._ida = SundialsIda(
-            self._residual(), jacfn=self._jacobian(), rtol=rtol, atol=atol,
-            max_num_steps=MOST_STEPS_BETWEEN_OUTPUTS, max_step=settings.max_step, **linear,
-        )  # fmt: skip
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
+            self._ida = SundialsIda(
+                self._residual(), jacfn=self._jacobian(), rtol=rtol, atol=atol,
+                max_num_steps=MOST_STEPS_BETWEEN_OUTPUTS, max_step=settings.max_step, **linear,
+            )  # fmt: skip
 
     def _sparsity(self) -> Any:
         from scipy.sparse import csc_matrix
@@ -63,13 +67,16 @@ class _Ida:
         return csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.equations.n,) * 2)
 
     def _tolerances(self, settings: RunSettings) -> tuple[float, np.ndarray]:
-        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts positions and velocities."""
-        at = self.equations.at
-        differential = np.concatenate([at["q"], at["u"]])
-        correction = np.sqrt(self.equations.n / len(differential))
+        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts positions and velocities.
+
+        The absolute tolerance is rtol for angles and for mechanisms of 1 m and more, and shrinks with smaller ones.
+        """
+        at, system = self.equations.at, self.equations.system
+        correction = np.sqrt(self.equations.n / (system.n_q + system.n_u))
+        scale = np.tile([min(1.0, system.size), min(1.0, system.size), 1.0], len(system.bodies))
         atol = np.full(self.equations.n, OUT_OF_THE_ERROR_TEST)
-        atol[differential] = (settings.atol if settings.atol is not None else settings.rtol) * correction
-        return settings.rtol * correction, atol
+        atol[at["q"]] = atol[at["u"]] = settings.rtol * scale if settings.atol is None else settings.atol
+        return settings.rtol * correction, atol * correction
 
     def _residual(self) -> Any:
         call, ida = RESIDUAL.load(), self._callback_table.ctypes.data
@@ -118,6 +125,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     rows.append(grid.start, start.q, start.u)
     at_q, at_u = ida.equations.at["q"], ida.equations.at["u"]
     outcome, message, result = Outcome.DONE, Outcome.DONE.value, ida.begin(start, grid.start)
+    begun = time.perf_counter()
     try:
         for result in ida.results(grid):
             if result.status < 0:
@@ -128,7 +136,10 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     steps = int(ida.history[1])
-    statistics = {"steps": steps, "residuals": result.nfev, "jacobians": result.njev, "rejected": int(ida.history[2])}
+    statistics = {
+        "steps": steps, "residuals": result.nfev, "jacobians": result.njev, "rejected": int(ida.history[2]),
+        "seconds": time.perf_counter() - begun,
+    }  # fmt: skip
     step_times = ida.history[HISTORY_HEAD : HISTORY_HEAD + min(steps, HISTORY_ROOM)].copy()
     return Trajectory(*rows.stored, outcome, message, statistics, step_times)
 

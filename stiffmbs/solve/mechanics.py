@@ -39,7 +39,7 @@ class OutputRows:
     values : ndarray
         The values of the output terms (`stiffmbs.compile.terms`).
     position_violation, velocity_violation, drift : ndarrays
-        Largest |C| and |J u + C_t|, and |C| before the projection.
+        Largest violation of a joint, the norm over its equations, in C and in J u + C_t, and in C before projection.
     """
 
     t: np.ndarray

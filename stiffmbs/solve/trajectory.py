@@ -48,7 +48,7 @@ class Trajectory:
     message : str
         One sentence: what happened, and for an early stop where and why.
     statistics : dict
-        ``steps residuals jacobians`` and what else the solver counts.
+        ``steps``, ``seconds`` and what else the solver counts.
     step_times : ndarray
         Ends of the solver's own steps.
     """

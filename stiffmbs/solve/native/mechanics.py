@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, sqrt
 
 from stiffmbs.compile.native.access import compiled, equations_view, factors_view, floats, mechanics_view, shifted, state_view
 from stiffmbs.compile.native.evaluate import ACCELERATION, MOTION, OUTPUT, POSITION, add_entries, add_products, evaluate
@@ -19,6 +19,18 @@ def _largest(values, count):
             return float("inf")
         largest = max(largest, abs(values[k]))
     return largest
+
+
+@compiled
+def _largest_gap(s, violation):
+    """The largest violation of a joint: the norm over its equations (for a pin the distance of its two points)."""
+    largest = 0.0
+    for joint in range(s.n_joints):
+        total = 0.0
+        for row in range(s.joint_start[joint], s.joint_start[joint + 1]):
+            total += violation[row] * violation[row]
+        largest = max(largest, total)
+    return sqrt(largest)
 
 
 @compiled
@@ -127,15 +139,15 @@ def _output_point(s, m, t, project, tolerance, largest):
     """Bring the state back to the constraints where asked, then accelerations, multipliers and output terms."""
     largest[2] = 0.0
     if project:
-        largest[2] = _largest(evaluate(s, POSITION, t), s.n_c)
+        largest[2] = _largest_gap(s, evaluate(s, POSITION, t))
         status = to_position_constraints(s, m, t, tolerance, 20)
         if status < 0:
             return status
         if to_velocity_constraints(s, m, t) < 0:
             return SINGULAR
     values = evaluate(s, MOTION, t)
-    largest[0] = _largest(values, s.n_c)
-    largest[1] = _largest(shifted(values, s.n_c), s.n_c)
+    largest[0] = _largest_gap(s, values)
+    largest[1] = _largest_gap(s, shifted(values, s.n_c))
     if to_accelerations(s, m, t) < 0:
         return SINGULAR
     evaluate(s, OUTPUT, t)
@@ -147,7 +159,7 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
 
     q and u (rows of n_q, n_u) are brought back to the constraints where `project` asks for it; written are u', lam,
     the values of the output terms, and in `largest` three numbers a row: the violations of positions and of
-    velocities, and the violation of positions before the projection.
+    velocities (largest of a joint), and of positions before the projection.
     """
     m = mechanics_view(mechanics)
     s = state_view(m.state)

@@ -1,0 +1,1 @@
+"""What a motion means: energies and reactions."""

@@ -1,0 +1,1 @@
+"""Describing a mechanism: bodies, markers, joints, forces and scenes.  Knows no numerics."""

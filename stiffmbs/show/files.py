@@ -1,0 +1,76 @@
+"""Writing every channel over time to a file: .csv, .npz, .nc."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from .solution import Solution
+
+
+def _write_csv(path: Path, solution: Solution) -> None:
+    columns = np.column_stack([solution.time, *solution.channels.values()])
+    header = ",".join(["time", *solution.channels])
+    np.savetxt(path, columns, delimiter=",", header=header, comments="", fmt="%.17g")
+
+
+def _write_npz(path: Path, solution: Solution) -> None:
+    with path.open("wb") as file:
+        np.savez(file, time=solution.time, **solution.channels)  # type: ignore[arg-type]
+
+
+def _write_netcdf(path: Path, solution: Solution) -> None:
+    import xarray
+
+    variables = {name.replace(".", "_"): ("time", values, {"channel": name}) for name, values in solution.channels.items()}
+    xarray.Dataset(variables, coords={"time": solution.time}).to_netcdf(path, engine="scipy")
+
+
+WRITERS: dict[str, Callable[[Path, Solution], None]] = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_netcdf}
+
+
+def check_output(path: Path) -> None:
+    """Refuse, before anything is solved, a file that could not be written.
+
+    Raises
+    ------
+    InputError
+        For an unknown ending, a missing folder, or a missing package.
+    """
+    if path.suffix not in WRITERS:
+        raise InputError(f"-o {path}: found the ending '{path.suffix}', expected one of {', '.join(WRITERS)}")
+    if not path.parent.is_dir():
+        raise InputError(f"-o {path}: found no folder '{path.parent}', expected one that exists")
+    if path.is_dir() or not os.access(path.parent, os.W_OK):
+        raise InputError(f"-o {path}: found a place that cannot be written to, expected a file in a writable folder")
+    if path.suffix == ".nc":
+        from importlib.util import find_spec
+
+        if find_spec("xarray") is None:
+            raise InputError(f"-o {path}: found no xarray, expected it installed: pip install 'stiffmbs[netcdf]'")
+
+
+def write(path: Path, solution: Solution) -> None:
+    """Write all channels; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in .csv (a header line, time first), .npz (arrays by channel name, and ``time``) or .nc.
+    """
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".part-", suffix=path.suffix)
+    os.close(handle)
+    try:
+        WRITERS[path.suffix](Path(name), solution)
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(name, 0o666 & ~umask)  # as an ordinary new file; mkstemp's are private
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise

@@ -1,0 +1,88 @@
+"""The result of a run: channels over time by name, statistics, and what there is to say about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..solve.trajectory import Outcome
+
+
+@dataclass(frozen=True, repr=False)
+class Solution(Mapping[str, np.ndarray]):
+    """Channels over time: ``solution["rail.fy"]``, and ``solution.time`` (or ``solution.t``).
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    time : ndarray, shape (n,)
+        Output instants, s.
+    channels : dict of str to ndarray
+        Every channel over time, SI units, radians.
+    outcome : Outcome
+    message : str
+        One sentence on how the run ended.
+    notes : tuple of str
+        What the user should know besides: moves at the assembly, warnings.
+    solver : dict
+        Name, steps, residuals, jacobians, seconds.
+    step_times : ndarray
+        Ends of the solver's own steps, where it tells them.
+    """
+
+    name: str
+    time: np.ndarray
+    channels: dict[str, np.ndarray]
+    outcome: Outcome
+    message: str
+    notes: tuple[str, ...]
+    solver: dict[str, Any]
+    step_times: np.ndarray
+
+    @property
+    def t(self) -> np.ndarray:
+        """The same as `time`."""
+        return self.time
+
+    def __getitem__(self, channel: str) -> np.ndarray:
+        try:
+            return self.channels[channel]
+        except KeyError:
+            owner = channel.partition(".")[0]
+            near = [name for name in self.channels if name.partition(".")[0] == owner] or list(self.channels)[:12]
+            raise InputError(f"found no channel '{channel}', expected one such as {', '.join(near)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.channels)
+
+    def __len__(self) -> int:
+        return len(self.channels)
+
+    def __contains__(self, channel: object) -> bool:
+        return channel in self.channels
+
+    def __repr__(self) -> str:
+        return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} instants, {self.message}>"
+
+    def energy_drift(self) -> float:
+        """Largest change of the total energy since the start, J."""
+        total = self.channels["energy.total"]
+        return float(np.max(np.abs(total - total[0])))
+
+
+def channel_ranges(solution: Solution) -> dict[str, dict[str, float]]:
+    """First, last, least and largest value of every channel, and when the latter two occur."""
+    ranges = {}
+    for name, values in solution.channels.items():
+        low, high = int(np.argmin(values)), int(np.argmax(values))
+        ranges[name] = {
+            "first": float(values[0]), "last": float(values[-1]),
+            "min": float(values[low]), "max": float(values[high]),
+            "t_min": float(solution.time[low]), "t_max": float(solution.time[high]),
+        }  # fmt: skip
+    return ranges
