@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from .layout import EQUATIONS, packed
-from .system import State, System
+from .system import System
 from .terms import TERM_SETS
 
 
@@ -96,7 +96,7 @@ class Equations:
         """Source, row and column of a block's entries."""
         system = self.system
         base = name.removesuffix(".T")
-        first_mass = system.size(term_set)
+        first_mass = system.n_values(term_set)
         if base in ("I", "Z"):  # planar: q' = u
             diagonal = np.arange(len(self.at[rows]))
             return np.full(len(diagonal), first_mass + system.n_u), diagonal, diagonal
@@ -119,7 +119,9 @@ class Equations:
             parts[part].append((self.at[line.rows][row], source, operand, factor))
         ends = np.cumsum([sum(len(lines[0]) for lines in part) for part in parts.values()])
         self._n_plain, self._n_with_y, self._n_with_yp = (int(end) for end in ends)
-        columns = [np.concatenate([lines[k] for part in parts.values() for lines in part] or [[]]) for k in range(4)]
+        columns = [
+            np.concatenate([lines[k] for part in parts.values() for lines in part] or [np.empty(0)]) for k in range(4)
+        ]
         self._r_row, self._r_source, self._r_operand = (np.ascontiguousarray(c, dtype=np.int64) for c in columns[:3])
         self._r_factor = np.ascontiguousarray(columns[3], dtype=float)
 
@@ -128,7 +130,9 @@ class Equations:
         for line in self.formulation.matrix:
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
             ones = np.ones(len(source))
-            lines.append((self.at[line.rows][row], self.at[line.columns][column], source, line.constant * ones, line.cj * ones))
+            lines.append(
+                (self.at[line.rows][row], self.at[line.columns][column], source, line.constant * ones, line.cj * ones)
+            )
         row, column, source, constant, cj = (np.concatenate([line[k] for line in lines]) for k in range(5))
         places, slot = np.unique(column * self.n + row, return_inverse=True)
         self.pattern = (places % self.n, places // self.n)

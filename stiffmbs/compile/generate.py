@@ -7,8 +7,8 @@ from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
 from .derive import Derived
-from .terms import KERNEL_ARGUMENTS, TERM_SETS
 from .kind import Kind
+from .terms import KERNEL_ARGUMENTS, TERM_SETS
 
 HEADER = "from math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
 
@@ -37,7 +37,9 @@ def kernel_source(kind: Kind, term_set: str, derived: Derived, name: str) -> str
     outputs = [(k, len(terms.get(term, ())), n, entry.expression)
                for k, term in enumerate(TERM_SETS[term_set])
                for n, entry in enumerate(terms.get(term, ()))]  # fmt: skip
-    shared, results = sp.cse([expression for *_, expression in outputs], symbols=sp.numbered_symbols("s_"), order="none")
+    shared, results = sp.cse(
+        [expression for *_, expression in outputs], symbols=sp.numbered_symbols("s_"), order="none"
+    )
     needed = {symbol for expression in [*results, *(part for _, part in shared)] for symbol in expression.free_symbols}
     printer = _Printer({"fully_qualified_modules": False, "precision": 17})
 

@@ -7,6 +7,7 @@ a view with the same names (`stiffmbs.compile.native.access`).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -52,7 +53,7 @@ IDA: Layout = {"state": INTS, "equations": INTS, "history": FLOATS, "array_heade
 """What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array."""
 
 
-def packed(layout: Layout, values: Mapping[str, np.ndarray | int | float]) -> np.ndarray:
+def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     """The table for a layout: addresses of arrays, and numbers as they are.
 
     The arrays must be contiguous, of the layout's type, and live as long as the table is used.

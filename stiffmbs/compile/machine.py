@@ -16,7 +16,7 @@ from typing import Any
 
 from . import cache as store
 
-_CTYPES = {"int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
+_CTYPES: dict[str, Any] = {"int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 SYMBOL = "stiffmbs_compiled"
 
@@ -102,7 +102,7 @@ def _object_code(function: Callable[..., Any], signature: str) -> bytes:
     import llvmlite.binding as llvm
     import numba
 
-    built = numba.cfunc(re.sub(r"(\w+)\*", r"CPointer(\1)", signature), error_model="numpy")(function)
+    built: Any = numba.cfunc(re.sub(r"(\w+)\*", r"CPointer(\1)", signature), error_model="numpy")(function)
     module = llvm.parse_assembly(built.inspect_llvm())
     module.get_function(built._wrapper_name).name = SYMBOL
     _close(module)
@@ -146,5 +146,5 @@ def _prototype(signature: str) -> Any:
     match = _SIGNATURE.match(signature)
     assert match is not None, signature
     result, arguments = match.groups()
-    types = [ctypes.c_void_p if "*" in a else _CTYPES[a.strip()] for a in arguments.split(",") if a.strip()]
+    types: list[Any] = [ctypes.c_void_p if "*" in a else _CTYPES[a.strip()] for a in arguments.split(",") if a.strip()]
     return ctypes.CFUNCTYPE(_CTYPES[result], *types)

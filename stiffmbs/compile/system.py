@@ -112,7 +112,9 @@ class System:
     @cached_property
     def joint_start(self) -> np.ndarray:
         """The first row of each joint's equations, and the end of the last."""
-        starts = [row for row, (joint, _) in enumerate(self.equations) if row == 0 or joint != self.equations[row - 1][0]]
+        starts = [
+            row for row, (joint, _) in enumerate(self.equations) if row == 0 or joint != self.equations[row - 1][0]
+        ]
         return np.array([*starts, self.n_c], dtype=np.int64)
 
     @cached_property
@@ -131,10 +133,12 @@ class System:
                 end += group.count * len(group.record.patterns.get(term, ()))
         return places
 
-    def size(self, term_set: str) -> int:
+    def n_values(self, term_set: str) -> int:
         """Number of values that the kernels of a set write; the mass entries and a one stand behind them."""
         return sum(
-            group.count * len(group.record.patterns.get(term, ())) for group in self.groups for term in TERM_SETS[term_set]
+            group.count * len(group.record.patterns.get(term, ()))
+            for group in self.groups
+            for term in TERM_SETS[term_set]
         )
 
     def values_of(self, values: np.ndarray, term_set: str, element: str) -> dict[str, np.ndarray]:
@@ -218,7 +222,7 @@ class State:
         self._u = np.concatenate([system.u, np.zeros(PLANAR)])
         self.q, self.u = self._q[: system.n_q], self._u[: system.n_u]
         self.lam, self.mu = np.zeros(max(system.n_c, 1)), np.zeros(max(system.n_c, 1))
-        self.values = {s: np.concatenate([np.zeros(system.size(s)), system.mass, [1.0]]) for s in TERM_SETS}
+        self.values = {s: np.concatenate([np.zeros(system.n_values(s)), system.mass, [1.0]]) for s in TERM_SETS}
         self._calls = {s: self._kernel_calls(s) for s in TERM_SETS}
         self.table = packed(STATE, self._fields())
         self._terms = routines.TERMS.load()

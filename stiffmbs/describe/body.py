@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
+
 from pydantic import Field, field_validator
 
-from .fields import NAME_PATTERN, Described, measured, pair, positive
+from . import si
+from .fields import NAME_PATTERN, Described
 from .marker import Marker, Placement
 
 
@@ -25,12 +29,14 @@ class Body(Described):
         Named points and directions on the body.
     """
 
-    mass: positive("mass") = Field(description="mass, kg")
-    inertia: positive("moment of inertia") = Field(description="moment of inertia about the centre of mass, kg m^2")
-    position: pair("length") = Field((0.0, 0.0), description="centre of mass at the start, m")
-    angle: measured("angle") = Field(0.0, description="angle at the start, rad")
-    velocity: pair("velocity") = Field((0.0, 0.0), description="velocity of the centre of mass at the start, m/s")
-    omega: measured("angular velocity") = Field(0.0, description="angular velocity at the start, rad/s")
+    mass: si.PositiveMass = Field(description="mass, kg")
+    inertia: si.PositiveInertia = Field(description="moment of inertia about the centre of mass, kg m^2")
+    position: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="centre of mass at the start, m")
+    angle: si.Angle = Field(0.0, description="angle at the start, rad")
+    velocity: tuple[si.Velocity, si.Velocity] = Field(
+        (0.0, 0.0), description="velocity of the centre of mass at the start, m/s"
+    )
+    omega: si.AngularVelocity = Field(0.0, description="angular velocity at the start, rad/s")
     markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
 
     @field_validator("markers")
@@ -59,10 +65,8 @@ class BodyHandle:
         return sympy.Symbol(f"{self.name}.{coordinate}", real=True)
 
 
-def check_names(names: dict[str, object], what: str) -> None:
+def check_names(names: Mapping[str, object], what: str) -> None:
     """Refuse names that could not stand in a formula or a channel."""
-    import re
-
     for name in names:
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             shown = "no name" if name in (None, "") else f"the name {name!r}"

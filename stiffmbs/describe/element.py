@@ -110,7 +110,7 @@ def kinds(package: ModuleType, base: type[Element]) -> dict[str, type[Any]]:
     for module in pkgutil.iter_modules(package.__path__):
         members = vars(importlib.import_module(f"{package.__name__}.{module.name}")).values()
         for member in members:
-            if isinstance(member, type) and issubclass(member, base) and member.kind:
-                if found.setdefault(member.kind, member) is not member:
-                    raise InputError(f"two classes of elements have the kind '{member.kind}'")
+            named = isinstance(member, type) and issubclass(member, base) and member.kind
+            if named and found.setdefault(member.kind, member) is not member:
+                raise InputError(f"two classes of elements have the kind '{member.kind}'")
     return found

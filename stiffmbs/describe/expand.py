@@ -68,7 +68,9 @@ def read_parameters(found: Any) -> dict[str, Quantity]:
         if name in CONSTANTS or name in FUNCTIONS or name in (TIME, UNIT):
             raise InputError(f"parameters.{name}: found the name of a constant or function, expected another")
         try:
-            parameters[name] = quantity(value, parameters) if isinstance(value, str) else Quantity(in_si(value, "number"))
+            parameters[name] = (
+                quantity(value, parameters) if isinstance(value, str) else Quantity(in_si(value, "number"))
+            )
         except FormulaError as error:
             raise InputError(f"parameters.{name}: {error}") from None
     return parameters
@@ -113,7 +115,9 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
     except FormulaError as error:
         raise InputError(f"{where}.for: {error}") from None
     if first != round(first) or last != round(last) or last - first > MOST_REPEATS:
-        raise InputError(f"{where}.for: found {first:g}..{last:g}, expected whole numbers, at most {MOST_REPEATS} apart")
+        raise InputError(
+            f"{where}.for: found {first:g}..{last:g}, expected whole numbers, at most {MOST_REPEATS} apart"
+        )
     return variable, round(first), round(last)
 
 

@@ -6,12 +6,23 @@ messages all come from the one place where an element names its fields.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+import operator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic import ValidationError as PydanticError
+from pydantic_core import core_schema
 
 from ..errors import InputError
+from .formula import FormulaError
 from .quantity import DIMENSIONS, in_si
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
@@ -27,7 +38,15 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
             raise InputError(f"{cls.__name__}: {sentence(error)}") from None
 
 
-class Described(BaseModel, metaclass=_OneSentence):
+if TYPE_CHECKING:
+    _Base = BaseModel
+else:
+
+    class _Base(BaseModel, metaclass=_OneSentence):
+        """A model whose construction fails in one sentence."""
+
+
+class Described(_Base):
     """Base of all descriptions: frozen, no unknown keys, and errors of one sentence.
 
     Raises
@@ -38,53 +57,70 @@ class Described(BaseModel, metaclass=_OneSentence):
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
-
-def _numeric(dimension: str) -> BeforeValidator:
-    def read(found: object, info: ValidationInfo) -> float:
-        return in_si(found, dimension, (info.context or {}).get("parameters"))
-
-    return BeforeValidator(read)
-
-
-def _schema(dimension: str, **bounds: float) -> WithJsonSchema:
-    unit = DIMENSIONS[dimension][1]
-    text = {"type": "string", "description": f"a formula with units that converts to {unit}"}
-    return WithJsonSchema({"anyOf": [{"type": "number", **bounds}, text], "description": f"{dimension}, {unit}"})
+    @model_validator(mode="before")
+    @classmethod
+    def _no_unknown_key(cls, found: Any) -> Any:
+        if isinstance(found, dict):
+            for key in found:
+                if key not in cls.model_fields:
+                    raise ValueError(f"found the unknown key '{key}', expected one of {', '.join(cls.model_fields)}")
+        return found
 
 
-def measured(dimension: str) -> Any:
-    """A finite number of the given dimension in SI units, or text with units that converts to it."""
-    return Annotated[float, _numeric(dimension), _schema(dimension)]
+@dataclass(frozen=True)
+class Measured:
+    """Marks a field as a finite number of a dimension: ``mass: Annotated[float, Measured("mass", above=0)]``.
 
+    Written in SI units, or as text with units that converts to them.
 
-def positive(dimension: str) -> Any:
-    """As `measured`, greater than zero."""
-    return Annotated[float, _numeric(dimension), Field(gt=0), _schema(dimension, exclusiveMinimum=0)]
+    Parameters
+    ----------
+    dimension : str
+        One of `stiffmbs.describe.quantity.DIMENSIONS`.
+    above, at_least, at_most : float, optional
+        Bounds in SI units.
+    """
 
+    dimension: str
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
 
-def not_negative(dimension: str) -> Any:
-    """As `measured`, zero or more."""
-    return Annotated[float, _numeric(dimension), Field(ge=0), _schema(dimension, minimum=0)]
+    def read(self, found: object, info: ValidationInfo) -> float:
+        """The SI value of what stands in the scene."""
+        value = in_si(found, self.dimension, (info.context or {}).get("parameters"))
+        unit = DIMENSIONS[self.dimension][1].removeprefix("1")
+        for bound, holds, words in (
+            (self.above, operator.gt, "greater than {}"),
+            (self.at_least, operator.ge, "of {} or more"),
+            (self.at_most, operator.le, "of {} or less"),
+        ):
+            if bound is not None and not holds(value, bound):
+                limit = f"{bound:g} {unit}".strip()
+                raise FormulaError(f"found {found}, expected a {self.dimension} {words.format(limit)}")
+        return value
 
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        return core_schema.with_info_plain_validator_function(
+            self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
+        )
 
-def pair(dimension: str) -> Any:
-    """Two numbers of one dimension, x and y."""
-    return Annotated[tuple[measured(dimension), measured(dimension)], Field()]
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        bounds = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
+        number = {"type": "number", **{name: bound for name, bound in bounds.items() if bound is not None}}
+        unit = DIMENSIONS[self.dimension][1]
+        text = {"type": "string", "description": f"a formula with units that converts to {unit}"}
+        return {"anyOf": [number, text], "description": f"{self.dimension}, {unit}"}
 
 
 def sentence(error: PydanticError) -> str:
     """The first fault of a validation as one sentence: where, what was found, what was expected."""
     faults = error.errors(include_url=False)
-    fault = min(faults, key=_rank)
+    fault = faults[0]
     where = location(fault["loc"])
     others = {location(other["loc"]) for other in faults} - {where}
     more = f" (and {len(others)} more)" if others else ""
     return f"{where}{': ' if where else ''}{_reason(fault)}{more}"
-
-
-def _rank(fault: Any) -> int:
-    """Unknown keys first: a misspelt field is also a missing one."""
-    return 0 if fault["type"] == "extra_forbidden" else 1
 
 
 def location(parts: tuple[Any, ...]) -> str:
@@ -102,16 +138,8 @@ def _reason(fault: Any) -> str:
     match fault["type"]:
         case "value_error":
             return str(context["error"])
-        case "extra_forbidden":
-            return f"found the unknown key '{fault['loc'][-1]}', expected one that the schema lists (stiffmbs schema)"
         case "missing":
             return "found nothing, expected a value (the key is required)"
-        case "greater_than":
-            return f"found {found}, expected a value greater than {context['gt']:g}"
-        case "greater_than_equal":
-            return f"found {found}, expected {context['ge']:g} or more"
-        case "less_than_equal":
-            return f"found {found}, expected {context['le']:g} or less"
         case "too_short" | "too_long":
             limit = context.get("min_length", context.get("max_length"))
             return f"found {context['actual_length']} values, expected {limit}"

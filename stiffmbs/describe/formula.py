@@ -147,9 +147,7 @@ def evaluate(
     """
     match tree:
         case ast.BinOp(left, op, right):
-            return BINARY[type(op)](
-                evaluate(left, names, functions, number), evaluate(right, names, functions, number)
-            )
+            return BINARY[type(op)](evaluate(left, names, functions, number), evaluate(right, names, functions, number))
         case ast.UnaryOp(op, operand):
             return UNARY[type(op)](evaluate(operand, names, functions, number))
         case ast.Constant(int() | float() as value):

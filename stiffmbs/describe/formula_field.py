@@ -45,7 +45,9 @@ class Formula:
                 case ast.Attribute(ast.Name(body), coordinate):
                     self._use_coordinate(body, coordinate)
                 case ast.Call(ast.Name(function)) if function not in FUNCTIONS:
-                    raise FormulaError(f"found the unknown function '{function}', expected one of {', '.join(FUNCTIONS)}")
+                    raise FormulaError(
+                        f"found the unknown function '{function}', expected one of {', '.join(FUNCTIONS)}"
+                    )
                 case ast.Name(name) if name not in FUNCTIONS and name != TIME:
                     self._use_value(name, known)
 
@@ -121,5 +123,7 @@ def _read(found: Any, info: ValidationInfo) -> Formula:
 FormulaField = Annotated[
     Formula,
     BeforeValidator(_read),
-    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "number"}], "description": "a formula of coordinates and t"}),
+    WithJsonSchema(
+        {"anyOf": [{"type": "string"}, {"type": "number"}], "description": "a formula of coordinates and t"}
+    ),
 ]

@@ -6,7 +6,8 @@ from typing import Any
 
 from pydantic import Field, GetJsonSchemaHandler, model_validator
 
-from .fields import NAME_PATTERN, Described, measured, pair
+from . import si
+from .fields import NAME_PATTERN, Described
 
 GROUND = "ground"
 
@@ -16,8 +17,10 @@ _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a b
 class Placement(Described):
     """Where a named marker sits on its body."""
 
-    point: pair("length") = Field((0.0, 0.0), description="position in the body's own axes, from its centre of mass, m")
-    angle: measured("angle") = Field(0.0, description="direction of the marker's axis against the body's, rad")
+    point: tuple[si.Length, si.Length] = Field(
+        (0.0, 0.0), description="position in the body's own axes, from its centre of mass, m"
+    )
+    angle: si.Angle = Field(0.0, description="direction of the marker's axis against the body's, rad")
 
 
 class Marker(Described):
@@ -40,8 +43,8 @@ class Marker(Described):
 
     body: str = Field(description="a body of the scene, or ground")
     marker: str | None = Field(None, pattern=NAME_PATTERN, description="a marker that the body names")
-    point: pair("length") = Field((0.0, 0.0), description="position in the body's own axes, m")
-    angle: measured("angle") = Field(0.0, description="direction of the axis against the body's, rad")
+    point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
+    angle: si.Angle = Field(0.0, description="direction of the axis against the body's, rad")
 
     @model_validator(mode="before")
     @classmethod
@@ -62,4 +65,3 @@ class Marker(Described):
     @property
     def label(self) -> str:
         return f"{self.body}.{self.marker}" if self.marker else self.body
-

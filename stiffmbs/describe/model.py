@@ -6,15 +6,15 @@ import math
 from collections.abc import Iterator
 from functools import reduce
 from operator import or_
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 from pydantic import Field, field_validator, model_validator
 
 from ..errors import InputError
-from . import forces, joints
+from . import forces, joints, si
 from .body import Body, BodyHandle, check_names
 from .element import Element, Force, Joint, kinds
-from .fields import Described, pair
+from .fields import Described
 from .forces.weight import Weight
 from .formula import UNIT
 from .formula_field import TIME
@@ -24,8 +24,8 @@ JOINTS = kinds(joints, Joint)
 FORCES = kinds(forces, Force)
 RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
-AnyJoint = Annotated[reduce(or_, JOINTS.values()), Field(discriminator="type")]
-AnyForce = Annotated[reduce(or_, FORCES.values()), Field(discriminator="type")]
+AnyJoint: Any = Annotated[reduce(or_, JOINTS.values()), Field(discriminator="type")]
+AnyForce: Any = Annotated[reduce(or_, FORCES.values()), Field(discriminator="type")]
 
 
 class ModelData(Described):
@@ -42,7 +42,9 @@ class ModelData(Described):
     """
 
     name: str = Field("", description="shown in summaries")
-    gravity: pair("acceleration") = Field((0.0, 0.0), description="along the ground's x and y, m/s^2")
+    gravity: tuple[si.Acceleration, si.Acceleration] = Field(
+        (0.0, 0.0), description="along the ground's x and y, m/s^2"
+    )
     bodies: dict[str, Body] = Field(description="bodies by name")
     joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
     forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
@@ -110,7 +112,9 @@ def check_element(where: str, element: Element, bodies: dict[str, Body]) -> None
         if marker.marker is not None:
             own = {} if marker.body == GROUND else bodies[marker.body].markers
             if marker.marker not in own:
-                raise ValueError(f"{where}.{field}: found '{marker.label}', expected one of its markers ({', '.join(own) or 'none'})")
+                raise ValueError(
+                    f"{where}.{field}: found '{marker.label}', expected one of its markers ({', '.join(own) or 'none'})"
+                )
     for field, formula in element.formulas():
         for body in formula.bodies:
             if body not in bodies:
@@ -156,11 +160,11 @@ class Model:
         section: dict[str, Any]
         match part:
             case Body():
-                section = self.bodies
+                section = cast(dict[str, Any], self.bodies)
             case Joint():
-                section = self.joints
+                section = cast(dict[str, Any], self.joints)
             case Force():
-                section = self.forces
+                section = cast(dict[str, Any], self.forces)
             case _:
                 raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force")
         taken = {*self.bodies, *self.joints, *self.forces, *RESERVED}

@@ -101,7 +101,9 @@ CONSTANTS = {"pi": Quantity(math.pi)}
 def _of_number(function: Callable[..., float]) -> Callable[..., Quantity]:
     def call(*arguments: Quantity) -> Quantity:
         if any(a.dimension not in (None, NUMBER) for a in arguments):
-            raise FormulaError(f"found {function.__name__} of a quantity with a unit, expected a plain number or an angle")
+            raise FormulaError(
+                f"found {function.__name__} of a quantity with a unit, expected a plain number or an angle"
+            )
         return Quantity(function(*(a.value for a in arguments)))
 
     return call
@@ -125,7 +127,19 @@ def _atan2(y: Quantity, x: Quantity) -> Quantity:
     return Quantity(math.atan2(y.value, x.value), (y - x).dimension and NUMBER)
 
 
-_PLAIN = (math.sin, math.cos, math.tan, math.asin, math.acos, math.atan, math.sinh, math.cosh, math.tanh, math.exp, math.log)
+_PLAIN = (
+    math.sin,
+    math.cos,
+    math.tan,
+    math.asin,
+    math.acos,
+    math.atan,
+    math.sinh,
+    math.cosh,
+    math.tanh,
+    math.exp,
+    math.log,
+)
 FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     **{f.__name__: _of_number(f) for f in _PLAIN},
     "sqrt": _sqrt,
@@ -161,12 +175,16 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
             return UNITS[unit]
         name = unit if owner == UNIT else name
         if name in known and name in UNITS and with_units:
-            raise FormulaError(f"found '{name}' in '{text}', which is a unit and a parameter of the scene, expected one or the other")
+            raise FormulaError(
+                f"found '{name}' in '{text}', which is a unit and a parameter of the scene, expected one or the other"
+            )
         for table in (known, UNITS, CONSTANTS):
             if name in table:
                 return table[name]
         listed = ", ".join(known) if known else "none"
-        raise FormulaError(f"found the unknown name '{name}', expected a unit, pi or a parameter of the scene ({listed})")
+        raise FormulaError(
+            f"found the unknown name '{name}', expected a unit, pi or a parameter of the scene ({listed})"
+        )
 
     try:
         result: Quantity = evaluate(tree, names, FUNCTIONS, lambda value: Quantity(float(value)))
@@ -187,7 +205,9 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
     if isinstance(found, str):
         result = quantity(found, parameters)
         if result.dimension is not None and result.dimension != expected:
-            raise FormulaError(f"found '{found}', which is in {_unit(result.dimension)}, expected a {dimension} in {unit}")
+            raise FormulaError(
+                f"found '{found}', which is in {_unit(result.dimension)}, expected a {dimension} in {unit}"
+            )
         return result.value
     if isinstance(found, bool) or not hasattr(found, "__float__"):
         raise FormulaError(f"found {_shown(found)}, expected a {dimension} in {unit}")
@@ -207,5 +227,6 @@ def _shown(found: object) -> str:
         return "nothing"
     if isinstance(found, bool):
         return "yes or no (a truth value)"
-    kind = {dict: "a mapping", list: "a list", tuple: "a list"}.get(type(found))
-    return kind or repr(found)
+    if isinstance(found, dict):
+        return "a mapping"
+    return "a list" if isinstance(found, list | tuple) else repr(found)

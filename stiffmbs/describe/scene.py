@@ -13,7 +13,6 @@ from pydantic import ValidationError as PydanticError
 from ..errors import InputError
 from .expand import read_parameters, repeat_entries, set_value
 from .fields import sentence
-from .body import Body
 from .model import FORCES, JOINTS, ModelData
 from .settings import RunSettings
 
@@ -80,7 +79,9 @@ class _Located(Exception):
 def _validated(found: dict[str, Any]) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"))
-        raw = {key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()}
+        raw = {
+            key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
+        }
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
@@ -120,11 +121,12 @@ def _line(text: str, path: tuple[Any, ...]) -> int | None:
     place: Any = YAML().load(StringIO(text))
     line = None
     for key in path:
-        if isinstance(place, dict) and key in place:
-            line = place.lc.key(key)[0] + 1
+        marks = getattr(place, "lc", None)
+        if isinstance(place, dict) and key in place and marks:
+            line = marks.key(key)[0] + 1
             place = place[key]
-        elif isinstance(place, list) and key.isdigit() and int(key) < len(place):
-            line = place.lc.item(int(key))[0] + 1
+        elif isinstance(place, list) and key.isdigit() and int(key) < len(place) and marks:
+            line = marks.item(int(key))[0] + 1
             place = place[int(key)]
         else:
             break
@@ -135,6 +137,6 @@ def scene_schema() -> dict[str, Any]:
     """The JSON schema of scene files."""
     schema = Scene.model_json_schema()
     loop = {"type": "string", "description": "repeat this entry: 'k in 1..N'; k and {k} are replaced in it"}
-    for part in (Body, *JOINTS.values(), *FORCES.values()):
-        schema["$defs"][part.__name__]["properties"]["for"] = loop
+    for part in ("Body", *(element.__name__ for element in (*JOINTS.values(), *FORCES.values()))):
+        schema["$defs"][part]["properties"]["for"] = loop
     return schema

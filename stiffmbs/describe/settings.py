@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from .fields import Described, measured, not_negative, positive
+from . import si
+from .fields import Described, Measured
 
 
 class RunSettings(Described):
@@ -37,17 +38,21 @@ class RunSettings(Described):
         Largest step of ``bdf``, s; 0 for none.
     """
 
-    duration: positive("time") = Field(10.0, description="s")
-    start: measured("time") = Field(0.0, description="time at the start, s")
-    output: positive("time") | None = Field(None, description="spacing of the output points, s")
-    points: int | Literal["steps"] | None = Field(None, description="number of output points, or the solver's own steps")
+    duration: si.PositiveTime = Field(10.0, description="s")
+    start: si.Time = Field(0.0, description="time at the start, s")
+    output: si.PositiveTime | None = Field(None, description="spacing of the output points, s")
+    points: int | Literal["steps"] | None = Field(
+        None, description="number of output points, or the solver's own steps"
+    )
     solver: Literal["bdf", "projected"] = Field("bdf", description="bdf (SUNDIALS IDA) or projected (explicit)")
     formulation: Literal["SI2"] = Field("SI2", description="of the residual that bdf integrates")
-    rtol: measured("number") = Field(1e-6, ge=1e-14, le=0.1, description="relative error tolerance of bdf")
-    atol: positive("number") | None = Field(None, description="absolute error tolerance of bdf; rtol unless given")
-    step: positive("time") = Field(1e-3, description="step of projected, s")
+    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
+        1e-6, description="relative error tolerance of bdf"
+    )
+    atol: si.PositiveNumber | None = Field(None, description="absolute error tolerance of bdf; rtol unless given")
+    step: si.PositiveTime = Field(1e-3, description="step of projected, s")
     projection: bool = Field(True, description="whether projected returns to the constraints after each step")
-    max_step: not_negative("time") = Field(0.0, description="largest step of bdf, s; 0 for none")
+    max_step: si.TimeOrZero = Field(0.0, description="largest step of bdf, s; 0 for none")
 
     @model_validator(mode="after")
     def _one_grid(self) -> RunSettings:

@@ -33,12 +33,16 @@ def _settings(_: click.Context, __: click.Parameter, values: tuple[str, ...]) ->
 
 @main.command()
 @click.argument("scene")
-@click.option("-o", "--output", "output", type=click.Path(path_type=Path), help="Write every channel: .csv, .npz or .nc.")
+@click.option(
+    "-o", "--output", "output", type=click.Path(path_type=Path), help="Write every channel: .csv, .npz or .nc."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
 @click.option("--rtol", help="Relative tolerance of bdf.")
 @click.option("--duration", help="Time to solve, s.")
 @click.option("--solver", help="bdf or projected.")
-@click.option("--set", "changes", multiple=True, callback=_settings, metavar="PATH=VALUE", help="Change a value of the scene.")
+@click.option(
+    "--set", "changes", multiple=True, callback=_settings, metavar="PATH=VALUE", help="Change a value of the scene."
+)
 def run(
     scene: str, output: Path | None, as_json: bool, rtol: str | None, duration: str | None, solver: str | None,
     changes: list[tuple[str, str]],
@@ -119,5 +123,3 @@ def _refuse(scene: str, error: StiffmbsError, as_json: bool) -> NoReturn:
 def schema() -> None:
     """Print the JSON schema of scene files."""
     click.echo(json.dumps(scene_schema(), indent=2))
-
-

@@ -27,7 +27,9 @@ def _write_npz(path: Path, solution: Solution) -> None:
 def _write_netcdf(path: Path, solution: Solution) -> None:
     import xarray
 
-    variables = {name.replace(".", "_"): ("time", values, {"channel": name}) for name, values in solution.channels.items()}
+    variables = {
+        name.replace(".", "_"): ("time", values, {"channel": name}) for name, values in solution.channels.items()
+    }
     xarray.Dataset(variables, coords={"time": solution.time}).to_netcdf(path, engine="scipy")
 
 

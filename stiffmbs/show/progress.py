@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from types import TracebackType
+from typing import Any
 
 PATIENCE = 2.0
 BETWEEN_UPDATES = 0.1
@@ -23,8 +24,8 @@ class ProgressBar:
         self._start, self._end = start, end
         self._begun = self._shown = time.monotonic()
         self._seen = sys.stderr.isatty()
-        self._bar = None
-        self._task = None
+        self._bar: Any = None
+        self._task: Any = None
 
     def __call__(self, t: float) -> None:
         if not self._seen:

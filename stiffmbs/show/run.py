@@ -12,17 +12,19 @@ from ..compile.system import System, compile_model
 from ..describe.model import Model, ModelData
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
-from .solution import Solution
 from ..solve import SOLVERS
 from ..solve.initial import initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.trajectory import Grid, Trajectory, Watch
+from .solution import Solution
 
 DEFAULT_POINTS = 1001
 BODY_CHANNELS = (("x", "y", "angle"), ("vx", "vy", "omega"), ("ax", "ay", "alpha"))
 
 
-def run(model: Model | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any) -> Solution:
+def run(
+    model: Model | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any
+) -> Solution:
     """Solve a model.
 
     Parameters
@@ -114,5 +116,6 @@ def _report_notes(rows: OutputRows, trajectory: Trajectory) -> list[str]:
     if len(rows.t) == len(trajectory.t):
         return []
     t = trajectory.t[len(rows.t)]
-    return [f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"]
-
+    return [
+        f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"
+    ]

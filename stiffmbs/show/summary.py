@@ -84,7 +84,9 @@ def _force_table(solution: Solution) -> Any:
     ranges = channel_ranges(solution)
     elements = dict.fromkeys(name.partition(".")[0] for name in ranges if name.endswith(".torque"))
     rows = {element: [ranges[f"{element}.{component}"] for component in COMPONENTS] for element in elements}
-    noise = ROUNDING * max((abs(cell[end]) for cells in rows.values() for cell in cells for end in ("min", "max")), default=0)
+    noise = ROUNDING * max(
+        (abs(cell[end]) for cells in rows.values() for cell in cells for end in ("min", "max")), default=0
+    )
     for element, cells in rows.items():
         table.add_row(element, *(" .. ".join(_shown(cell[end], noise) for end in ("min", "max")) for cell in cells))
     return table

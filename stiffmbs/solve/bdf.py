@@ -51,7 +51,9 @@ class _Ida:
                 "array_header": object.__basicsize__,
             },
         )  # fmt: skip
-        linear: dict[str, Any] = {"linsolver": "dense"} if dense else {"linsolver": "sparse", "sparsity": self._sparsity()}
+        linear: dict[str, Any] = (
+            {"linsolver": "dense"} if dense else {"linsolver": "sparse", "sparsity": self._sparsity()}
+        )
         rtol, atol = self._tolerances(settings)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet

@@ -120,7 +120,7 @@ class Mechanics:
             Whether each state is first brought back to the constraints.
         """
         system, count = self.system, len(t)
-        n_output = system.size("output")
+        n_output = system.n_values("output")
         t, q, u = (np.array(rows, dtype=float) for rows in (t, q, u))
         acceleration = np.empty((count, system.n_u))
         lam, values = np.empty((count, system.n_c)), np.empty((count, n_output))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 
@@ -37,7 +38,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     EULER_CROMER.load()  # compiled before the clock runs, should it not be in the cache
     begun = time.perf_counter()
     try:
-        for t, end in zip(times, times[1:], strict=False):
+        for t, end in itertools.pairwise(times):
             count = max(1, math.ceil((end - t) / settings.step - ROUNDING))
             status = mechanics.euler_cromer(t, (end - t) / count, count, settings.projection)
             if status < 0:

@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
+from .. import si
 from ..element import Force, Symbolic
-from ..fields import measured, pair
 from ..marker import Marker
 
 
@@ -18,7 +18,7 @@ class AppliedForce(Force):
 
     type: Literal["force"] = "force"
     i: Marker = Field(description="marker at which the force acts")
-    force: pair("force") = Field(description="components along the ground's x and y, N")
+    force: tuple[si.Force, si.Force] = Field(description="components along the ground's x and y, N")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
@@ -36,7 +36,7 @@ class AppliedTorque(Force):
 
     type: Literal["torque"] = "torque"
     i: Marker = Field(description="marker of the body on which the torque acts")
-    torque: measured("torque") = Field(description="about the ground's z, N m")
+    torque: si.Torque = Field(description="about the ground's z, N m")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:

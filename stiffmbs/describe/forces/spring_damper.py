@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
+from .. import si
 from ..element import Force, Symbolic
-from ..fields import measured, not_negative
 from ..marker import Marker
 
 
@@ -23,10 +23,10 @@ class SpringDamper(Force):
     type: Literal["spring_damper"] = "spring_damper"
     i: Marker = Field(description="marker of the first body, on which the force is reported")
     j: Marker = Field(description="marker of the second body")
-    stiffness: measured("stiffness") = Field(0.0, description="k, N/m")
-    damping: measured("damping") = Field(0.0, description="c, N s/m")
-    free_length: not_negative("length") = Field(0.0, description="L0, the length without tension of the spring, m")
-    preload: measured("force") = Field(0.0, description="tension added at every length, N")
+    stiffness: si.Stiffness = Field(0.0, description="k, N/m")
+    damping: si.Damping = Field(0.0, description="c, N s/m")
+    free_length: si.LengthOrZero = Field(0.0, description="L0, the length without tension of the spring, m")
+    preload: si.Force = Field(0.0, description="tension added at every length, N")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:

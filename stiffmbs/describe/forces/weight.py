@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+from .. import si
 from ..element import Force, Symbolic
-from ..fields import measured, pair
 from ..marker import Marker
 
 
@@ -15,8 +15,8 @@ class Weight(Force):
     kind: ClassVar[str] = ""
 
     i: Marker
-    mass: measured("mass")
-    gravity: pair("acceleration")
+    mass: si.Mass
+    gravity: tuple[si.Acceleration, si.Acceleration]
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:

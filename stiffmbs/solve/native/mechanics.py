@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from math import isfinite, sqrt
 
-from stiffmbs.compile.native.access import compiled, equations_view, factors_view, floats, mechanics_view, shifted, state_view
+from stiffmbs.compile.native.access import (
+    compiled,
+    equations_view,
+    factors_view,
+    floats,
+    mechanics_view,
+    shifted,
+    state_view,
+)
 from stiffmbs.compile.native.evaluate import ACCELERATION, MOTION, OUTPUT, POSITION, add_entries, add_products, evaluate
 from stiffmbs.compile.native.factors import DONE, factored, solve
 
