@@ -12,7 +12,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-FORMAT = "2"
+FORMAT = "3"
 """Changed whenever the meaning of an entry's content changes."""
 DIRECTORY_VARIABLE = "STIFFMBS_CACHE"
 

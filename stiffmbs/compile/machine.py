@@ -18,7 +18,6 @@ from . import cache as store
 
 _CTYPES: dict[str, Any] = {"int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
-SYMBOL = "stiffmbs_compiled"
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,6 @@ class Compiled:
 
     address: int
     call: Callable[..., Any]
-    engine: Any
 
 
 @cache
@@ -75,15 +73,15 @@ def _native_text() -> str:
 
 
 def _loaded(key: str, define: Callable[[], Callable[..., Any]], signature: str) -> Compiled:
+    symbol = f"stiffmbs_{key}"
     code = store.read(key)
     if code is None:
-        code = _object_code(define(), signature)
+        code = _object_code(define(), symbol, signature)
         store.write(key, code)
-    return _linked(code, signature)
+    return _linked(code, symbol, signature)
 
 
-@cache
-def _target() -> Any:
+def _new_target() -> Any:
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
@@ -97,19 +95,36 @@ def _target() -> Any:
     )
 
 
-def _object_code(function: Callable[..., Any], signature: str) -> bytes:
-    """Object code with one C function called `SYMBOL`."""
+@cache
+def _engine() -> Any:
+    """The one engine that holds all compiled code of this process (it owns its target machine)."""
+    import llvmlite.binding as llvm
+
+    target = _new_target()
+    module = llvm.parse_assembly("")
+    module.triple = llvm.get_process_triple()
+    return llvm.create_mcjit_compiler(module, target)
+
+
+@cache
+def _emitter() -> Any:
+    return _new_target()
+
+
+def _object_code(function: Callable[..., Any], symbol: str, signature: str) -> bytes:
+    """Object code with one C function of the given name."""
     import llvmlite.binding as llvm
     import numba
 
-    built: Any = numba.cfunc(re.sub(r"(\w+)\*", r"CPointer(\1)", signature), error_model="numpy")(function)
+    in_numbas_words = re.sub(r"(\w+)\*", r"CPointer(\1)", signature)
+    built: Any = numba.cfunc(in_numbas_words, error_model="numpy")(function)
     module = llvm.parse_assembly(built.inspect_llvm())
-    module.get_function(built._wrapper_name).name = SYMBOL
-    _close(module)
-    return _target().emit_object(module)
+    module.get_function(built._wrapper_name).name = symbol
+    _close(module, symbol)
+    return _emitter().emit_object(module)
 
 
-def _close(module: Any) -> None:
+def _close(module: Any, symbol: str) -> None:
     """Leave one function that needs nothing but the mathematical library, so that it can be loaded without numba.
 
     Once everything else is private, the optimiser sees that nothing raises and drops numba's error paths.
@@ -117,29 +132,27 @@ def _close(module: Any) -> None:
     import llvmlite.binding as llvm
 
     for function in module.functions:
-        if not function.is_declaration and function.name != SYMBOL:
+        if not function.is_declaration and function.name != symbol:
             function.linkage = llvm.Linkage.internal
     for variable in module.global_variables:
         if not variable.is_declaration:
             variable.linkage = llvm.Linkage.internal
-    builder = llvm.create_pass_builder(_target(), llvm.create_pipeline_tuning_options(speed_level=3))
+    builder = llvm.create_pass_builder(_emitter(), llvm.create_pipeline_tuning_options(speed_level=3))
     builder.getModulePassManager().run(module, builder)
     missing = [f.name for f in module.functions if f.is_declaration and f.name.startswith(("numba", "Py", "NRT"))]
     if missing:
         raise RuntimeError(f"compiled code would need {', '.join(missing)}, expected code that cannot raise")
 
 
-def _linked(code: bytes, signature: str) -> Compiled:
+def _linked(code: bytes, symbol: str, signature: str) -> Compiled:
     import llvmlite.binding as llvm
 
-    target = _target()
-    module = llvm.parse_assembly("")
-    module.triple = llvm.get_process_triple()
-    engine = llvm.create_mcjit_compiler(module, target)
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-    engine.finalize_object()
-    address = engine.get_function_address(SYMBOL)
-    return Compiled(address, _prototype(signature)(address), engine)
+    engine = _engine()
+    if not engine.get_function_address(symbol):
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+    address = engine.get_function_address(symbol)
+    return Compiled(address, _prototype(signature)(address))
 
 
 def _prototype(signature: str) -> Any:

@@ -12,6 +12,7 @@ import numpy as np
 from ..compile.equations import Equations
 from ..compile.layout import IDA, packed
 from ..compile.routines import Routine
+from ..compile.system import State
 from ..describe.settings import RunSettings
 from .formulations import FORMULATIONS
 from .initial import InitialValues
@@ -31,6 +32,69 @@ HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
 MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
 
 
+class Callbacks:
+    """Residual and Jacobian of one formulation as IDA calls them, and the history of IDA's steps.
+
+    Parameters
+    ----------
+    equations : Equations
+    state : State
+    dense : bool
+        Whether the Jacobian is a full matrix, or the values of the pattern's entries by columns.
+    """
+
+    def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
+        rows, columns = equations.pattern
+        slots = rows * equations.n + columns if dense else None
+        self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
+        self._history[3] = HISTORY_ROOM
+        self._equations_table, slot_of_entry = equations.table(slots)
+        fields = {
+            "state": state.table, "equations": self._equations_table, "history": self._history,
+            "array_header": object.__basicsize__,
+        }  # fmt: skip
+        table = packed(IDA, fields)
+        self._kept = (state, equations, slot_of_entry, table)
+        self.residual, self.jacobian = self._residual(table.ctypes.data), self._jacobian(table.ctypes.data)
+
+    @staticmethod
+    def _residual(table: int) -> Any:
+        call = RESIDUAL.load()
+
+        def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
+            call(t, id(y), id(yp), id(r), table)  # asking an array for .ctypes.data costs more than the residual
+
+        return residual
+
+    @staticmethod
+    def _jacobian(table: int) -> Any:
+        call = JACOBIAN.load()
+
+        def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
+            call(t, id(y), cj, id(a), table)
+
+        return jacobian
+
+    def begin(self, t: float) -> None:
+        """Start a new history."""
+        self._history[:3] = t, 0, 0
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps so far."""
+        return int(self._history[1])
+
+    @property
+    def rejected(self) -> int:
+        """Steps tried in vain so far."""
+        return int(self._history[2])
+
+    @property
+    def step_times(self) -> np.ndarray:
+        """Ends of the accepted steps, the first `HISTORY_ROOM` of them."""
+        return self._history[HISTORY_HEAD : HISTORY_HEAD + min(self.steps, HISTORY_ROOM)].copy()
+
+
 class _Ida:
     """IDA set up for one system and formulation."""
 
@@ -38,19 +102,8 @@ class _Ida:
         from sksundae.ida import IDA as SundialsIda
 
         self.equations = Equations(FORMULATIONS[settings.formulation], mechanics.system)
-        n = self.equations.n
-        self.history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
-        self.history[3] = HISTORY_ROOM
-        dense = n <= DENSE_UP_TO
-        rows, columns = self.equations.pattern
-        self._table, self._kept = self.equations.table(rows * n + columns if dense else None)
-        self._callback_table = packed(
-            IDA,
-            {
-                "state": mechanics.state.table, "equations": self._table, "history": self.history,
-                "array_header": object.__basicsize__,
-            },
-        )  # fmt: skip
+        dense = self.equations.n <= DENSE_UP_TO
+        self.callbacks = Callbacks(self.equations, mechanics.state, dense)
         linear: dict[str, Any] = (
             {"linsolver": "dense"} if dense else {"linsolver": "sparse", "sparsity": self._sparsity()}
         )
@@ -58,7 +111,7 @@ class _Ida:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
             self._ida = SundialsIda(
-                self._residual(), jacfn=self._jacobian(), rtol=rtol, atol=atol,
+                self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
                 max_num_steps=MOST_STEPS_BETWEEN_OUTPUTS, max_step=settings.max_step, **linear,
             )  # fmt: skip
 
@@ -80,22 +133,6 @@ class _Ida:
         atol[at["q"]] = atol[at["u"]] = settings.rtol * scale if settings.atol is None else settings.atol
         return settings.rtol * correction, atol * correction
 
-    def _residual(self) -> Any:
-        call, ida = RESIDUAL.load(), self._callback_table.ctypes.data
-
-        def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
-            call(t, id(y), id(yp), id(r), ida)  # an array's attribute .ctypes.data costs more than the residual
-
-        return residual
-
-    def _jacobian(self) -> Any:
-        call, ida = JACOBIAN.load(), self._callback_table.ctypes.data
-
-        def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
-            call(t, id(y), cj, id(a), ida)
-
-        return jacobian
-
     def begin(self, start: InitialValues, t: float) -> Any:
         """Start at consistent values."""
         at = self.equations.at
@@ -103,7 +140,7 @@ class _Ida:
         y[at["q"]], y[at["u"]] = start.q, start.u
         y[at["lam"]] = start.lam
         yp[at["q"]], yp[at["u"]] = start.u, start.acceleration
-        self.history[0] = t
+        self.callbacks.begin(t)
         return self._ida.init_step(t, y, yp)
 
     def results(self, grid: Grid) -> Iterator[Any]:
@@ -137,13 +174,11 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
             watch(result.t)
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-    steps = int(ida.history[1])
     statistics = {
-        "steps": steps, "residuals": result.nfev, "jacobians": result.njev, "rejected": int(ida.history[2]),
-        "seconds": time.perf_counter() - begun,
+        "steps": ida.callbacks.steps, "rejected": ida.callbacks.rejected, "residuals": result.nfev,
+        "jacobians": result.njev, "seconds": time.perf_counter() - begun,
     }  # fmt: skip
-    step_times = ida.history[HISTORY_HEAD : HISTORY_HEAD + min(steps, HISTORY_ROOM)].copy()
-    return Trajectory(*rows.stored, outcome, message, statistics, step_times)
+    return Trajectory(*rows.stored, outcome, message, statistics, ida.callbacks.step_times)
 
 
 def _stopped_sentence(result: Any) -> str:

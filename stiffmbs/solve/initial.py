@@ -9,6 +9,7 @@ import numpy as np
 from ..errors import AssemblyError
 from .mechanics import POSITION_TOLERANCE, Mechanics
 
+POSITIONS, VELOCITIES = ("x", "y", "angle"), ("vx", "vy", "omega")
 WORTH_TELLING = 1e-9
 """Moves of a coordinate (m, rad, m/s, rad/s) below this are not mentioned."""
 
@@ -33,11 +34,18 @@ class InitialValues:
 
     def sentence(self) -> str:
         """What was moved, in words; empty where nothing was."""
-        if not self.moved:
-            return ""
-        body, coordinate, change = max(self.moved, key=lambda move: abs(move[2]))
-        bodies = len({name for name, _, _ in self.moved})
-        return f"assembly changed {bodies} of the bodies at the start, most {body}.{coordinate} by {change:.3g}"
+        parts = [_largest(self.moved, POSITIONS), _largest(self.moved, VELOCITIES)]
+        told = " and ".join(part for part in parts if part)
+        return f"to satisfy the joints at the start, assembly changed {told}" if told else ""
+
+
+def _largest(moved: tuple[tuple[str, str, float], ...], coordinates: tuple[str, ...]) -> str:
+    changes = [move for move in moved if move[1] in coordinates]
+    if not changes:
+        return ""
+    body, coordinate, change = max(changes, key=lambda move: abs(move[2]))
+    others = len({name for name, _, _ in changes}) - 1
+    return f"{body}.{coordinate} by {change:.3g}" + (f" ({others} other bodies by less)" if others else "")
 
 
 def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
@@ -63,8 +71,7 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
         raise AssemblyError(_dependent_sentence(mechanics))
     if not np.all(np.isfinite(acceleration)):
         raise AssemblyError(_undefined_sentence(mechanics, t))
-    names = (("x", "y", "angle"), ("vx", "vy", "omega"))
-    changes = ((state.q - q0, names[0]), (state.u - u0, names[1]))
+    changes = ((state.q - q0, POSITIONS), (state.u - u0, VELOCITIES))
     moved = tuple(
         (system.bodies[k // 3], labels[k % 3], float(change[k]))
         for change, labels in changes

@@ -1,0 +1,32 @@
+"""What many tests share: the example scenes and the converged cart-pendulum."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
+
+
+@pytest.fixture(scope="session")
+def examples() -> Path:
+    return EXAMPLES
+
+
+@pytest.fixture(scope="session")
+def cart_pendulum_reference():
+    """x and theta (from hanging) of the cart-pendulum at given times, from its two Euler-Lagrange equations."""
+
+    def rates(t, y):
+        x, theta, v, w = y
+        inertia = BAR * HALF**2 + BAR * (2 * HALF) ** 2 / 12
+        mass = np.array([[CART + BAR, BAR * HALF * np.cos(theta)], [BAR * HALF * np.cos(theta), inertia]])
+        force = [-STIFFNESS * x + BAR * HALF * np.sin(theta) * w**2, -BAR * G * HALF * np.sin(theta)]
+        return [v, w, *np.linalg.solve(mass, force)]
+
+    dense = solve_ivp(
+        rates, (0, 10), [0, np.radians(20), 0, 0], "DOP853", rtol=3e-14, atol=1e-15, dense_output=True
+    ).sol
+    return lambda t: dense(t)[:2]

@@ -1,0 +1,93 @@
+"""Random elements of any kind and random scenes, for property tests."""
+
+from __future__ import annotations
+
+import typing
+
+import numpy as np
+
+from stiffmbs import Body, Marker, Model
+from stiffmbs.describe.element import Element
+from stiffmbs.describe.fields import Measured
+from stiffmbs.describe.formula_field import Formula
+from stiffmbs.describe.model import FORCES, JOINTS
+
+FORMULA = "b0.x*b1.y - 0.3*sin(b1.angle + 2*t) + 0.7*b0.angle^2 + b1.x - t^3"
+ALL_KINDS = [*JOINTS.values(), *FORCES.values()]
+
+
+def random_element(kind: type[Element], rng: np.random.Generator) -> Element:
+    """An element with random numbers, its markers on b0, b1, ... in order."""
+    fields: dict[str, object] = {}
+    bodies = iter(("b0", "b1", "b2"))
+    for name, field in kind.model_fields.items():
+        if typing.get_origin(field.annotation) is typing.Literal:
+            continue
+        if field.annotation is Marker:
+            fields[name] = Marker(body=next(bodies), point=tuple(rng.uniform(-1, 1, 2)), angle=rng.uniform(-3, 3))
+        elif any(isinstance(mark, Measured) for mark in field.metadata):
+            fields[name] = rng.uniform(0.5, 1.5)
+        elif Formula in typing.get_args(field.annotation) or "Formula" in str(field.annotation):
+            fields[name] = FORMULA
+        elif typing.get_origin(field.annotation) is tuple:
+            fields[name] = tuple(rng.uniform(0.5, 1.5, len(typing.get_args(field.annotation))))
+    return kind(**fields)
+
+
+def three_bodies(rng: np.random.Generator, gravity: bool = True) -> Model:
+    """Bodies b0, b1, b2 of random mass and motion."""
+    model = Model(gravity=(0.3, -9.81) if gravity else (0, 0))
+    for k in range(3):
+        model.add(
+            f"b{k}",
+            Body(
+                mass=rng.uniform(0.5, 2),
+                inertia=rng.uniform(0.1, 1),
+                position=(2.0 * k + rng.uniform(-0.5, 0.5), rng.uniform(-1, 1)),
+                angle=rng.uniform(-3, 3),
+                velocity=tuple(rng.uniform(-1, 1, 2)),
+                omega=rng.uniform(-1, 1),
+            ),
+        )
+    return model
+
+
+def random_tree(rng: np.random.Generator, count: int, gravity: bool, grounded: bool, springs: int) -> Model:
+    """Bodies joined in a tree by random joints, assembled as described, with undamped springs between them."""
+    model = Model(gravity=(0.5, -9.81) if gravity else (0, 0))
+    poses = [(0.0, 0.0, 0.0)]
+    names = ["ground"]
+    for k in range(count):
+        name = f"b{k}"
+        parent = int(rng.integers(0 if grounded else min(1, k), len(names))) if k or grounded else 0
+        x, y, angle = poses[parent]
+        here, there = rng.uniform(-0.5, 0.5, 2), rng.uniform(-0.5, 0.5, 2)
+        turn = rng.uniform(-2, 2)
+        kind = ("revolute", "prismatic", "fixed")[int(rng.integers(0, 3))] if (k or grounded) else "free"
+        slide = rng.uniform(-0.3, 0.3) if kind == "prismatic" else 0.0
+        axis = rng.uniform(-3, 3)
+        point = np.array([x, y]) + _rotated(angle, here) + slide * _rotated(angle + axis, np.array([1.0, 0.0]))
+        position = point - _rotated(angle + turn, there)
+        poses.append((*position, angle + turn))
+        model.add(
+            name,
+            Body(
+                mass=rng.uniform(0.5, 2), inertia=rng.uniform(0.1, 1), position=tuple(position), angle=angle + turn,
+                velocity=tuple(rng.uniform(-1, 1, 2)), omega=rng.uniform(-1, 1),
+            ),
+        )  # fmt: skip
+        if kind != "free":
+            i = Marker(body=name, point=tuple(there), angle=axis - turn)
+            j = Marker(body=names[parent], point=tuple(here), angle=axis)
+            model.add(f"joint{k}", JOINTS[kind](i=i, j=j))
+        names.append(name)
+    for k in range(springs):
+        a, b = rng.choice(names[0 if grounded else 1 :], 2, replace=False)
+        i, j = (Marker(body=str(n), point=tuple(rng.uniform(-0.5, 0.5, 2))) for n in (a, b))
+        model.add(f"spring{k}", FORCES["spring_damper"](i=i, j=j, stiffness=rng.uniform(5, 50), free_length=0.1))
+    return model
+
+
+def _rotated(angle: float, vector: np.ndarray) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])

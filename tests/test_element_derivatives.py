@@ -1,0 +1,131 @@
+"""Every derivative that SymPy and the kernels give, against high-order differences: any element, found by existing."""
+
+import numpy as np
+import pytest
+
+from stiffmbs import compile_model
+from stiffmbs.compile.equations import Equations
+from stiffmbs.describe.element import Joint
+from stiffmbs.solve.formulations import FORMULATIONS
+
+from .random_parts import ALL_KINDS, random_element, three_bodies
+
+T = 0.37
+STEP = 1e-2
+WEIGHTS = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}  # eighth order, centred
+TOLERANCE = 1e-8
+
+
+def derivative(function, vector):
+    """The Jacobian of a function of a vector, column by column, changing the vector in place."""
+    columns = []
+    for k in range(len(vector)):
+        kept, column = vector[k], 0.0
+        for offset, weight in WEIGHTS.items():
+            for sign in (1, -1):
+                vector[k] = kept + sign * offset * STEP
+                column = column + sign * weight * function() / STEP
+        vector[k] = kept
+        columns.append(column)
+    return np.stack(columns, axis=-1)
+
+
+def time_derivative(function):
+    return sum(
+        sign * weight * function(T + sign * offset * STEP) / STEP
+        for offset, weight in WEIGHTS.items()
+        for sign in (1, -1)
+    )
+
+
+def assert_close(found, expected):
+    assert np.max(np.abs(found - expected), initial=0) <= TOLERANCE * max(1, np.max(np.abs(expected), initial=0))
+
+
+@pytest.fixture(params=ALL_KINDS, ids=lambda kind: kind.kind)
+def state(request):
+    rng = np.random.default_rng(7)
+    model = three_bodies(rng)
+    model.add("element", random_element(request.param, rng))
+    state = compile_model(model.data()).state()
+    state.lam[:] = rng.uniform(-1, 1, len(state.lam))
+    state.mu[:] = rng.uniform(-1, 1, len(state.mu))
+    state.is_joint = issubclass(request.param, Joint)
+    return state
+
+
+def term(state, term_set, name, t=T):
+    state.evaluate(term_set, t)
+    two = name in ("J", "V_q", "G_lam", "G_mu", "f_q", "f_u")
+    return (state.matrix if two else state.vector)(term_set, name)
+
+
+def test_constraints_and_their_jacobian(state):
+    assert_close(term(state, "motion", "J"), derivative(lambda: term(state, "motion", "C"), state.q))
+    assert_close(term(state, "position", "J"), term(state, "motion", "J"))
+    assert_close(term(state, "position", "C"), term(state, "motion", "C"))
+
+
+def test_velocity_level_is_the_rate_of_the_position_level(state):
+    partial = time_derivative(lambda t: term(state, "motion", "C", t))
+    assert_close(term(state, "motion", "V"), term(state, "motion", "J") @ state.u + partial)
+    assert_close(term(state, "tangent", "V_q"), derivative(lambda: term(state, "motion", "V"), state.q))
+
+
+def test_gamma_is_minus_the_rate_of_the_velocity_level_without_accelerations(state):
+    along = derivative(lambda: term(state, "motion", "V"), state.q) @ state.u
+    partial = time_derivative(lambda t: term(state, "motion", "V", t))
+    assert_close(term(state, "acceleration", "gamma"), -(along + partial))
+
+
+@pytest.mark.parametrize("name", ["lam", "mu"])
+def test_change_of_constraint_forces_with_position(state, name):
+    n_c = state.system.n_c
+    weights = getattr(state, name)[:n_c]
+    expected = derivative(lambda: term(state, "motion", "J").T @ weights, state.q)
+    assert_close(term(state, "tangent", f"G_{name}"), expected)
+
+
+def test_applied_forces_and_their_derivatives(state):
+    assert_close(term(state, "tangent", "f_q"), derivative(lambda: term(state, "motion", "f"), state.q))
+    assert_close(term(state, "tangent", "f_u"), derivative(lambda: term(state, "motion", "f"), state.u))
+    assert_close(term(state, "acceleration", "f"), term(state, "motion", "f"))
+
+
+def test_a_potential_gives_the_force_at_rest(state):
+    if state.is_joint:
+        return
+    state.u[:] = 0
+    state.evaluate("output", T)
+    system = state.system
+    source = system.term("output", "potential").source
+
+    def potential():
+        state.evaluate("output", T)
+        return np.array([state.values["output"][source].sum()])
+
+    if len(source) == len(system.bodies):
+        pytest.skip("this force has no potential")
+    assert_close(term(state, "motion", "f"), -derivative(potential, state.q)[0])
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS.values(), ids=lambda f: f.name)
+def test_iteration_matrix_of_every_formulation(state, formulation):
+    """dr/dy + cj dr/dy' of the whole residual, slot by slot."""
+    from stiffmbs.solve.bdf import Callbacks
+
+    rng = np.random.default_rng(3)
+    equations = Equations(formulation, state.system)
+    y, yp = rng.uniform(-1, 1, equations.n), rng.uniform(-1, 1, equations.n)
+    callbacks = Callbacks(equations, state)
+    cj = 3.7
+
+    def residual():
+        r = np.empty(equations.n)
+        callbacks.residual(T, y, yp, r)
+        return r
+
+    expected = derivative(residual, y) + cj * derivative(residual, yp)
+    matrix = np.zeros((equations.n, equations.n))
+    callbacks.jacobian(T, y, yp, None, cj, matrix)
+    assert_close(matrix, expected)
