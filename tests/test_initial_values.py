@@ -28,7 +28,7 @@ def test_velocities_are_corrected_by_least_kinetic_energy():
     solution = stiffmbs.run(pendulum(position=(1, 0), velocity=(0.7, 2.0)), duration=1e-6, points=2)
     assert solution["constraint.velocity"][0] < 1e-14
     assert solution["bar.omega"][0] == pytest.approx(2.0 * 1 * 1 / (0.1 + 1), rel=1e-6)
-    assert any("velocit" in note or "bar.v" in note for note in solution.notes)
+    assert any("bar.omega" in note for note in solution.notes)
 
 
 def test_what_cannot_be_assembled_names_the_joint_with_the_gap():

@@ -112,7 +112,7 @@ def test_dense_and_sparse_solvers_agree_on_a_chain(count, monkeypatch):
     np.testing.assert_allclose(other[f"link{count}.x"], chosen[f"link{count}.x"], atol=1e-6)
 
 
-ROOMS = ("describe", "compile", "solve", "analyse", "show")
+ROOMS = ("describe", "compile", "solve", "analyse", "show", "bench")
 PACKAGE = Path(stiffmbs.__file__).parent
 
 

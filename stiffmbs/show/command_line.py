@@ -123,3 +123,24 @@ def _refuse(scene: str, error: StiffmbsError, as_json: bool) -> NoReturn:
 def schema() -> None:
     """Print the JSON schema of scene files."""
     click.echo(json.dumps(scene_schema(), indent=2))
+
+
+@main.command()
+@click.argument("names", metavar="[PROBLEM]...", nargs=-1)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each problem.")
+def bench(names: tuple[str, ...], as_json: bool) -> None:
+    """Measure run time against error, with yardsticks beside it in the same process."""
+    from ..bench.measure import measure, problems, report
+
+    known = problems()
+    for name in names or known:
+        if name not in known:
+            click.echo(f"stiffmbs: found the problem '{name}', expected one of {', '.join(known)}", err=True)
+            sys.exit(WRONG_INPUT)
+        rows = measure(known[name]())
+        if as_json:
+            click.echo(json.dumps(report(name, rows)))
+            continue
+        click.echo(f"{name}: medians; error in the coordinates at the end")
+        for row in rows:
+            click.echo(f"  {row.solver:24} {row.setting:12} error {row.error:8.1e}  {row.seconds * 1e3:9.2f} ms")

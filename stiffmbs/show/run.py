@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,13 +15,38 @@ from ..describe.model import Model, ModelData
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..solve import SOLVERS
-from ..solve.initial import initial_values
+from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.trajectory import Grid, Trajectory, Watch
 from .solution import Solution
 
 DEFAULT_POINTS = 1001
 BODY_CHANNELS = (("x", "y", "angle"), ("vx", "vy", "omega"), ("ax", "ay", "alpha"))
+
+
+@dataclass(frozen=True)
+class Job:
+    """A model compiled and assembled, ready to be integrated any number of times."""
+
+    data: ModelData
+    settings: RunSettings
+    grid: Grid
+    mechanics: Mechanics
+    start: InitialValues
+
+    def integrate(self, watch: Watch | None = None) -> Trajectory:
+        """Integrate from the start; see `stiffmbs.solve.trajectory`."""
+        solve = SOLVERS[self.settings.solver]
+        return solve(self.mechanics, self.start, self.grid, self.settings, watch or (lambda t: None))
+
+
+def prepare(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
+    """Compile and assemble a model; parameters and errors as for `run`."""
+    data = model.data() if isinstance(model, Model) else model
+    chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
+    grid = output_grid(chosen)
+    mechanics = Mechanics(compile_model(data))
+    return Job(data, chosen, grid, mechanics, initial_values(mechanics, grid.start))
 
 
 def run(
@@ -50,22 +77,17 @@ def run(
     AssemblyError
         When no consistent start is found.
     """
-    data = model.data() if isinstance(model, Model) else model
-    chosen = settings or (data.run if isinstance(data, Scene) else RunSettings())
-    chosen = changed(chosen, changes)
-    grid = output_grid(chosen)
-    mechanics = Mechanics(compile_model(data))
-    start = initial_values(mechanics, grid.start)
-    trajectory = SOLVERS[chosen.solver](mechanics, start, grid, chosen, watch or (lambda t: None))
-    projected = chosen.solver == "bdf"  # the explicit solver's states are shown as they are
-    rows = mechanics.report(trajectory.t, trajectory.q, trajectory.u, projected)
-    notes = tuple(note for note in (start.sentence(), *_report_notes(rows, trajectory)) if note)
-    statistics = {"name": chosen.solver, **trajectory.statistics}
-    if projected:
+    job = prepare(model, settings, **changes)
+    trajectory = job.integrate(watch)
+    implicit = job.settings.solver == "bdf"  # the explicit solver's states are shown as they are
+    rows = job.mechanics.report(trajectory.t, trajectory.q, trajectory.u, project=implicit)
+    statistics = {"name": job.settings.solver, **trajectory.statistics}
+    if implicit:
         statistics["drift"] = float(rows.drift.max())
     return Solution(
-        name=data.name, time=rows.t, channels=channels_of(mechanics.system, rows), outcome=trajectory.outcome,
-        message=trajectory.message, notes=notes, solver=statistics, step_times=trajectory.step_times,
+        name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=trajectory.outcome,
+        message=trajectory.message, notes=tuple(_notes(job.start, rows, trajectory)), solver=statistics,
+        step_times=trajectory.step_times,
     )  # fmt: skip
 
 
@@ -112,10 +134,9 @@ def channels_of(system: System, rows: OutputRows) -> dict[str, np.ndarray]:
     return channels
 
 
-def _report_notes(rows: OutputRows, trajectory: Trajectory) -> list[str]:
-    if len(rows.t) == len(trajectory.t):
-        return []
-    t = trajectory.t[len(rows.t)]
-    return [
-        f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"
-    ]
+def _notes(start: InitialValues, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
+    if start.moved:
+        yield start.sentence()
+    if len(rows.t) < len(trajectory.t):
+        t = trajectory.t[len(rows.t)]
+        yield f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"

@@ -1,0 +1,1 @@
+"""Benchmarks: run time against error, side by side in one process.  One problem per file."""

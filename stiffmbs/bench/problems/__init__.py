@@ -1,0 +1,1 @@
+"""Benchmark problems, one per file; `contestants` gives the ways to solve it."""
