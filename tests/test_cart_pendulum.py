@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
-from stiffmbs.show.command_line import main
+from stiffmbs.command_line import main
 
 RAIL_FORCE = {0.0: 106.9941992390, 5.0: 107.1068184413, 10.0: 107.3999119123}
 LARGEST_RAIL_FORCE, AT = 108.8457634070, 4.6508

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from stiffmbs.show.command_line import main
+from stiffmbs.command_line import main
 
 SCENE = """
 name: Cart on a rail

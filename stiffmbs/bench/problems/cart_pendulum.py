@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import cos, pi, radians, sin
 from typing import Any
 
@@ -114,6 +115,6 @@ def contestants() -> list[Contestant]:
     scene = read_scene(SCENE)
     found = []
     for rtol in (1e-6, 1e-8, 1e-10):
-        found.append(Contestant("scikit-sundae by hand", f"rtol {rtol:g}", True, lambda rtol=rtol: by_hand(rtol)))
+        found.append(Contestant("scikit-sundae by hand", f"rtol {rtol:g}", True, partial(by_hand, rtol)))
         found.append(compiled(scene, rtol=rtol))
     return found

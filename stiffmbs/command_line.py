@@ -9,8 +9,8 @@ from typing import Any, NoReturn
 
 import click
 
-from ..describe.scene import Scene, load_scene, scene_schema
-from ..errors import StiffmbsError
+from .describe.scene import Scene, load_scene, scene_schema
+from .errors import StiffmbsError
 
 WRONG_INPUT, STOPPED_EARLY = 2, 1
 
@@ -66,15 +66,15 @@ def run(
 
 
 def _files() -> Any:
-    from . import files
+    from .show import files
 
     return files
 
 
 def _solved(path: str, scene: Scene) -> Any:
-    from ..errors import AssemblyError
-    from .progress import ProgressBar
-    from .run import run as solve
+    from .errors import AssemblyError
+    from .show.progress import ProgressBar
+    from .show.run import run as solve
 
     start = scene.run.start
     try:
@@ -100,7 +100,7 @@ def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> str
 
 
 def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
-    from . import summary
+    from .show import summary
 
     if as_json:
         click.echo(summary.as_json(scene, solution))
@@ -111,7 +111,7 @@ def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
 
 
 def _refuse(scene: str, error: StiffmbsError, as_json: bool) -> NoReturn:
-    from .summary import error_as_json
+    from .show.summary import error_as_json
 
     if as_json:
         click.echo(error_as_json(scene, str(error)))
@@ -130,7 +130,7 @@ def schema() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each problem.")
 def bench(names: tuple[str, ...], as_json: bool) -> None:
     """Measure run time against error, with yardsticks beside it in the same process."""
-    from ..bench.measure import measure, problems, report
+    from .bench.measure import measure, problems, report
 
     known = problems()
     for name in names or known:

@@ -1,0 +1,5 @@
+"""``python -m stiffmbs``."""
+
+from .command_line import main
+
+main()
