@@ -1,0 +1,58 @@
+"""Whole processes: interrupted by the user, started at once on an empty cache, run for long."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import stiffmbs
+
+COMMAND = [sys.executable, "-m", "stiffmbs", "run"]
+
+
+def environment(cache):
+    return {**os.environ, "STIFFMBS_CACHE": str(cache)}
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_interruption_keeps_what_was_computed(examples, tmp_path, solver):
+    scene, results = examples / "cart_pendulum.yaml", tmp_path / "out.npz"
+    stiffmbs.run(stiffmbs.load_scene(scene), duration=0.01, solver=solver)  # compiled before
+    options = ["--duration", "100000", "--solver", solver, "--set", "run.output=0.1", "--json", "-o", str(results)]
+    process = subprocess.Popen([*COMMAND, str(scene), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    report = json.loads(out)
+    assert (process.returncode, report["status"]) == (1, "interrupted"), err
+    with np.load(results) as kept:
+        assert len(kept["time"]) > 2
+        assert report["time"]["end"] == kept["time"][-1] < 100_000
+    assert b"Traceback" not in err
+
+
+@pytest.mark.long
+def test_two_first_runs_at_once_share_an_empty_cache(examples, tmp_path):
+    command = [*COMMAND, str(examples / "cart_pendulum.yaml"), "--json"]
+    together = [
+        subprocess.Popen(command, stdout=subprocess.PIPE, cwd=tmp_path, env=environment(tmp_path / "cache"))
+        for _ in range(2)
+    ]
+    reports = [json.loads(process.communicate(timeout=120)[0]) for process in together]
+    again = json.loads(subprocess.run(command, capture_output=True, env=environment(tmp_path / "cache")).stdout)
+    for report in reports:
+        assert report["channels"] == again["channels"]
+    assert not [path for path in (tmp_path / "cache").iterdir() if path.name.startswith(".")]
+
+
+@pytest.mark.long
+def test_a_thousand_seconds_of_the_pendulum_keep_to_the_constraints(examples):
+    scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
+    solution = stiffmbs.run(scene, duration=1000, points=2001, rtol=1e-8)
+    assert solution["constraint.position"].max() < 1e-10
+    assert solution.energy_drift() < 1e-2
