@@ -7,12 +7,13 @@ import typing
 import numpy as np
 
 from stiffmbs import Body, Marker, Model
-from stiffmbs.describe.element import Element
+from stiffmbs.describe.element import Element, JointName
 from stiffmbs.describe.fields import Measured
-from stiffmbs.describe.formula_field import Formula
+from stiffmbs.describe.formula_field import FormulaOf
 from stiffmbs.describe.model import FORCES, JOINTS
 
-FORMULA = "b0.x*b1.y - 0.3*sin(b1.angle + 2*t) + 0.7*b0.angle^2 + b1.x - t^3"
+OF_COORDINATES = "b0.x*b1.y - 0.3*sin(b1.angle + 2*t) + 0.7*b0.angle^2 + b1.x - t^3 + dm(b0, b1)*az(b1)"
+OF_VELOCITIES = "0.2*b0.vx*b1.omega + vr(b0, b1) - 0.1*wz(b1, b0)^2"
 ALL_KINDS = [*JOINTS.values(), *FORCES.values()]
 
 
@@ -23,15 +24,36 @@ def random_element(kind: type[Element], rng: np.random.Generator) -> Element:
     for name, field in kind.model_fields.items():
         if typing.get_origin(field.annotation) is typing.Literal:
             continue
-        if field.annotation is Marker:
+        if field.annotation is JointName:
+            fields[name] = "pin"
+        elif field.annotation is Marker or Marker in typing.get_args(field.annotation):
             fields[name] = Marker(body=next(bodies), point=tuple(rng.uniform(-1, 1, 2)), angle=rng.uniform(-3, 3))
         elif any(isinstance(mark, Measured) for mark in field.metadata):
             fields[name] = rng.uniform(0.5, 1.5)
-        elif Formula in typing.get_args(field.annotation) or "Formula" in str(field.annotation):
-            fields[name] = FORMULA
+        elif marks := [mark for mark in _marks(field) if isinstance(mark, FormulaOf)]:
+            fields[name] = _formulas(marks[0], field)
         elif typing.get_origin(field.annotation) is tuple:
             fields[name] = tuple(rng.uniform(0.5, 1.5, len(typing.get_args(field.annotation))))
     return kind(**fields)
+
+
+def _marks(field: object) -> list[object]:
+    """The marks of a field, wherever in its type they stand."""
+
+    def inside(annotation: object) -> list[object]:
+        marks = list(getattr(annotation, "__metadata__", ()))
+        return marks + [mark for part in typing.get_args(annotation) for mark in inside(part)]
+
+    return [*field.metadata, *inside(field.annotation)]
+
+
+def _formulas(mark: FormulaOf, field: object) -> object:
+    """A formula of all that a field may hold, as often as it wants it."""
+    parts = ["1.3"] + ["sin(2*t)"] * mark.time + [f"0.5*{v}^3 + {v}" for v in mark.variables]
+    parts += [OF_COORDINATES] * mark.coordinates + [OF_VELOCITIES] * mark.velocities
+    count = len([part for part in typing.get_args(field.annotation) if part is not Ellipsis and part is not type(None)])
+    formula = " + ".join(parts)
+    return (formula,) * count if typing.get_origin(field.annotation) is tuple else formula
 
 
 def three_bodies(rng: np.random.Generator, gravity: bool = True) -> Model:

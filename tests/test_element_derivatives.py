@@ -5,6 +5,7 @@ import pytest
 
 from stiffmbs import compile_model
 from stiffmbs.compile.equations import Equations
+from stiffmbs.compile.terms import TERM_AXES
 from stiffmbs.describe.element import Joint
 from stiffmbs.solve.formulations import FORMULATIONS
 
@@ -27,7 +28,7 @@ def derivative(function, vector):
                 column = column + sign * weight * function() / STEP
         vector[k] = kept
         columns.append(column)
-    return np.stack(columns, axis=-1)
+    return np.stack(columns, axis=-1) if columns else np.zeros((len(function()), 0))
 
 
 def time_derivative(function):
@@ -56,19 +57,21 @@ def state(request):
 
 def term(state, term_set, name, t=T):
     state.evaluate(term_set, t)
-    two = name in ("J", "V_q", "G_lam", "G_mu", "f_q", "f_u")
+    two = len(TERM_AXES[name]) == 2
     return (state.matrix if two else state.vector)(term_set, name)
 
 
 def test_constraints_and_their_jacobian(state):
-    assert_close(term(state, "motion", "J"), derivative(lambda: term(state, "motion", "C"), state.q))
-    assert_close(term(state, "position", "J"), term(state, "motion", "J"))
+    assert_close(term(state, "motion", "C_q"), derivative(lambda: term(state, "motion", "C"), state.q))
+    assert_close(term(state, "position", "C_q"), term(state, "motion", "C_q"))
     assert_close(term(state, "position", "C"), term(state, "motion", "C"))
 
 
 def test_velocity_level_is_the_rate_of_the_position_level(state):
     partial = time_derivative(lambda t: term(state, "motion", "C", t))
-    assert_close(term(state, "motion", "V"), term(state, "motion", "J") @ state.u + partial)
+    holonomic = state.system.holonomic
+    assert_close(term(state, "motion", "V")[holonomic], (term(state, "motion", "C_q") @ state.u + partial)[holonomic])
+    assert_close(term(state, "motion", "J"), derivative(lambda: term(state, "motion", "V"), state.u))
     assert_close(term(state, "tangent", "V_q"), derivative(lambda: term(state, "motion", "V"), state.q))
 
 
@@ -82,13 +85,15 @@ def test_gamma_is_minus_the_rate_of_the_velocity_level_without_accelerations(sta
 def test_change_of_constraint_forces_with_position(state, name):
     n_c = state.system.n_c
     weights = getattr(state, name)[:n_c]
-    expected = derivative(lambda: term(state, "motion", "J").T @ weights, state.q)
+    block = {"lam": "J", "mu": "C_q"}[name]
+    expected = derivative(lambda: term(state, "motion", block).T @ weights, state.q)
     assert_close(term(state, "tangent", f"G_{name}"), expected)
 
 
 def test_applied_forces_and_their_derivatives(state):
     assert_close(term(state, "tangent", "f_q"), derivative(lambda: term(state, "motion", "f"), state.q))
     assert_close(term(state, "tangent", "f_u"), derivative(lambda: term(state, "motion", "f"), state.u))
+    assert_close(term(state, "tangent", "f_lam"), derivative(lambda: term(state, "motion", "f"), state.lam))
     assert_close(term(state, "acceleration", "f"), term(state, "motion", "f"))
 
 

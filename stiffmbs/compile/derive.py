@@ -13,7 +13,9 @@ import sympy as sp
 
 from ..describe.element import Force, Joint
 from ..errors import InputError
+from .frames import SymbolicElement
 from .kind import Kind
+from .symbols import Symbols, symbols_of
 
 
 @dataclass(frozen=True)
@@ -34,13 +36,17 @@ class Derived:
 
     Attributes
     ----------
-    n_equations : int
-        Constraint equations of one element; none for a force.
+    n_equations, n_holonomic : int
+        Constraint equations of one element, and how many of them, the first, have a position form.
+    symbols : Symbols
+        What the expressions are written in.
     terms : dict
         By the names of `stiffmbs.compile.terms.TERM_AXES`.
     """
 
     n_equations: int
+    n_holonomic: int
+    symbols: Symbols
     terms: dict[str, list[Entry]]
 
 
@@ -52,33 +58,52 @@ def derive(kind: Kind) -> Derived:
     InputError
         When an equation does not depend on any coordinate.
     """
-    e, _ = kind.symbolic
-    n_equations = 0
+    symbols = symbols_of(kind)
     if issubclass(kind.element, Joint):
-        C = sp.Matrix([sp.sympify(equation) for equation in kind.element.position(e)])
-        n_equations = C.rows
-        lam, mu = multipliers("lam", C.rows), multipliers("mu", C.rows)
-        J = C.jacobian(e.q)
-        for row in range(C.rows):
-            if J[row, :].is_zero_matrix:
-                raise InputError(f"found the equation {C[row]} = 0, which depends on no coordinate of a body")
-        V = J * e.u + C.diff(e.t)
-        gamma = -(V.jacobian(e.q) * e.u + V.diff(e.t))
-        terms = {
-            "C": C, "V": V, "gamma": gamma, "J": J, "V_q": V.jacobian(e.q),
-            "G_lam": (J.T * lam).jacobian(e.q), "G_mu": (J.T * mu).jacobian(e.q),
-            "reaction": _reaction(kind, -J.T * lam),
-        }  # fmt: skip
-    else:
-        assert issubclass(kind.element, Force)
-        f = sp.zeros(e.q.rows, 1)
-        for effort, coordinate in kind.element.efforts(e):
-            f += sp.Matrix([coordinate]).jacobian(e.q).T * effort
-        terms = {
-            "f": f, "f_q": f.jacobian(e.q), "f_u": f.jacobian(e.u),
-            "reaction": _reaction(kind, f), "potential": sp.Matrix([kind.element.potential(e)]),
-        }  # fmt: skip
-    return Derived(n_equations, {name: _entries(matrix) for name, matrix in terms.items()})
+        return _derived_joint(kind, symbols)
+    assert issubclass(kind.element, Force)
+    return _derived_force(kind, symbols)
+
+
+def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
+    e = symbols.element
+    C = sp.Matrix([sp.sympify(equation) for equation in kind.element.position(e)])  # type: ignore[attr-defined]
+    rates = sp.Matrix([sp.sympify(equation) for equation in kind.element.velocity(e)])  # type: ignore[attr-defined]
+    C_q = C.jacobian(e.q) if C else sp.zeros(0, e.q.rows)
+    V = sp.Matrix([*(C_q * e.u + C.diff(e.t) if C else ()), *rates])
+    J = V.jacobian(e.u)
+    for row in range(J.rows):
+        if J[row, :].is_zero_matrix:
+            raise InputError(f"found the equation {[*C, *rates][row]} = 0, which depends on no coordinate of a body")
+        if J[row, :].free_symbols & set(e.u):
+            raise InputError(f"found the equation {[*C, *rates][row]} = 0, expected one that is linear in velocities")
+    lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
+    V_q = V.jacobian(e.q)
+    terms = {
+        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": V_q,
+        "gamma": -(V_q * e.u + V.diff(e.t)),
+        "G_lam": (J.T * lam).jacobian(e.q), "G_mu": (C_q.T * mu[: C.rows, :]).jacobian(e.q),
+        "reaction": _reaction(kind, e, -J.T * lam),
+    }  # fmt: skip
+    entries = {name: _entries(matrix) for name, matrix in terms.items()}
+    for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row
+        entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
+    return Derived(V.rows, C.rows, symbols, entries)
+
+
+def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
+    e = symbols.element
+    f = sp.zeros(e.q.rows, 1)
+    for effort, coordinate in kind.element.efforts(e):  # type: ignore[attr-defined]
+        f += sp.Matrix([coordinate]).jacobian(e.q).T * effort
+    joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
+    terms = {
+        "f": f, "f_q": f.jacobian(e.q), "f_u": f.jacobian(e.u),
+        "f_lam": f.jacobian(joint_lam) if joint_lam else sp.zeros(0, 0),
+        "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
+        "switch": sp.Matrix([sp.sympify(part) for part in kind.element.switches(e)]),  # type: ignore[attr-defined]
+    }  # fmt: skip
+    return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()})
 
 
 def multipliers(name: str, count: int) -> sp.Matrix:
@@ -86,9 +111,8 @@ def multipliers(name: str, count: int) -> sp.Matrix:
     return sp.Matrix([sp.Symbol(f"{name}{k}", real=True) for k in range(count)])
 
 
-def _reaction(kind: Kind, force: sp.Matrix) -> sp.Matrix:
+def _reaction(kind: Kind, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
     """Force and torque about the element's point, of the generalised force on its first body."""
-    e, _ = kind.symbolic
     fx, fy, moment = force[0], force[1], force[2]
     arm = sp.Matrix(kind.element.point(e)) - e.frames[0].origin  # type: ignore[attr-defined]
     return sp.Matrix([fx, fy, moment - arm[0] * fy + arm[1] * fx])

@@ -17,6 +17,8 @@ from .layout import EQUATIONS, packed
 from .system import System
 from .terms import TERM_SETS
 
+ABSENT = -1
+
 
 @dataclass(frozen=True)
 class Product:
@@ -78,17 +80,24 @@ class Equations:
     n : int
         Number of unknowns.
     at : dict of str to ndarray
-        Where each kind of unknown stands in the vector of unknowns.
+        Where each kind of unknown stands in the vector of unknowns, `ABSENT` where it does not: multipliers of
+        redundant equations, and mu of equations that have no position form.
     pattern : tuple of ndarrays
         Row and column of each slot of the matrix, by columns.
     """
 
     def __init__(self, formulation: Formulation, system: System) -> None:
         self.formulation, self.system = formulation, system
-        extent = {"q": system.n_q, "u": system.n_u, "mu": system.n_c, "lam": system.n_c}
-        starts = np.cumsum([0, *(extent[name] for name in formulation.unknowns)])
-        self.n = int(starts[-1])
-        self.at = {name: np.arange(a, b) for name, a, b in zip(formulation.unknowns, starts, starts[1:], strict=False)}
+        everything = np.ones
+        present = {
+            "q": everything(system.n_q, dtype=bool), "u": everything(system.n_u, dtype=bool),
+            "mu": system.holonomic & system.active, "lam": system.active,
+        }  # fmt: skip
+        self.at: dict[str, np.ndarray] = {}
+        self.n = 0
+        for name in formulation.unknowns:
+            self.at[name] = np.where(present[name], self.n + np.cumsum(present[name]) - 1, ABSENT)
+            self.n += int(present[name].sum())
         self._compile_residual()
         self._compile_matrix()
 
@@ -116,7 +125,9 @@ class Equations:
             else:
                 part = "yp" if line.operand.endswith("'") else "y"
                 operand = self.at[line.operand.rstrip("'")][column]
-            parts[part].append((self.at[line.rows][row], source, operand, factor))
+            line_row = self.at[line.rows][row]
+            kept = (line_row != ABSENT) & (operand != ABSENT)
+            parts[part].append(tuple(column[kept] for column in (line_row, source, operand, factor)))
         ends = np.cumsum([sum(len(lines[0]) for lines in part) for part in parts.values()])
         self._n_plain, self._n_with_y, self._n_with_yp = (int(end) for end in ends)
         columns = [
@@ -130,9 +141,9 @@ class Equations:
         for line in self.formulation.matrix:
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
             ones = np.ones(len(source))
-            lines.append(
-                (self.at[line.rows][row], self.at[line.columns][column], source, line.constant * ones, line.cj * ones)
-            )
+            place = (self.at[line.rows][row], self.at[line.columns][column])
+            kept = (place[0] != ABSENT) & (place[1] != ABSENT)
+            lines.append(tuple(part[kept] for part in (*place, source, line.constant * ones, line.cj * ones)))
         row, column, source, constant, cj = (np.concatenate([line[k] for line in lines]) for k in range(5))
         places, slot = np.unique(column * self.n + row, return_inverse=True)
         self.pattern = (places % self.n, places // self.n)

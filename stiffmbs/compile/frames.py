@@ -34,8 +34,8 @@ class BodyFrame:
         return self.q[2]
 
     def coordinate(self, name: str) -> sp.Symbol:
-        """The coordinate that a formula calls ``x``, ``y`` or ``angle``."""
-        return dict(zip(("x", "y", "angle"), self.q, strict=True))[name]
+        """The coordinate or velocity that a formula calls ``x``, ``angle``, ``omega`` ..."""
+        return dict(zip(("x", "y", "angle", "vx", "vy", "omega"), (*self.q, *self.u), strict=True))[name]
 
     def rotated(self, along: sp.Expr, across: sp.Expr) -> sp.Matrix:
         """A vector of the body's own axes in ground axes, A(phi) s'."""
@@ -103,6 +103,10 @@ class SymbolicElement:
         """Total time derivative, with q' = u."""
         partial = sum((sp.diff(expression, q) * u for q, u in zip(self.q, self.u, strict=True)), sp.Integer(0))
         return partial + sp.diff(expression, self.t)
+
+    def is_constant(self, expression: sp.Expr) -> bool:
+        """Whether an expression depends on neither time nor the state."""
+        return not ({self.t, *self.q, *self.u} & sp.sympify(expression).free_symbols)
 
     @staticmethod
     def distance(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:

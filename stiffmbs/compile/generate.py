@@ -7,10 +7,10 @@ from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
 from .derive import Derived
-from .kind import Kind
+from .symbols import Spline
 from .terms import KERNEL_ARGUMENTS, TERM_SETS
 
-HEADER = "from math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
+HEADER = "from stiffmbs.compile.native.spline import spline\nfrom math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
 
 
 class _Printer(PythonCodePrinter):
@@ -26,36 +26,49 @@ class _Printer(PythonCodePrinter):
         product = "*".join([factor] * whole + [f"sqrt({self._print(base)})"] * half)
         return f"({product})" if power > 0 else f"(1.0/({product}))"
 
+    def _print_Spline(self, expr: Spline) -> str:
+        x, table, order = expr.args
+        return f"spline(number, {self._print(table)}, {self._print(x)}, {int(order)})"
 
-def kernel_source(kind: Kind, term_set: str, derived: Derived, name: str) -> str:
+
+def kernel_source(term_set: str, derived: Derived, name: str) -> str:
     """Python source of one kernel, to be compiled by numba.
 
     Every entry of term k of element e goes to ``value[place[1 + k] + entries_k*e + entry]``.
     """
-    e, numbers = kind.symbolic
-    terms, equations = derived.terms, derived.n_equations
-    outputs = [(k, len(terms.get(term, ())), n, entry.expression)
-               for k, term in enumerate(TERM_SETS[term_set])
-               for n, entry in enumerate(terms.get(term, ()))]  # fmt: skip
+    e, terms, equations = derived.symbols.element, derived.terms, derived.n_equations
+    outputs = [
+        (k, len(terms.get(term, ())), n, entry.expression)
+        for k, term in enumerate(TERM_SETS[term_set])
+        for n, entry in enumerate(terms.get(term, ()))
+    ]
+    results: list[sp.Expr]
     shared, results = sp.cse(
         [expression for *_, expression in outputs], symbols=sp.numbered_symbols("s_"), order="none"
     )
     needed = {symbol for expression in [*results, *(part for _, part in shared)] for symbol in expression.free_symbols}
     printer = _Printer({"fully_qualified_modules": False, "precision": 17})
+    width = 2 * len(e.frames) + 1 + len(derived.symbols.joint_lam)
 
-    body: list[str] = []
+    body = [f"own = index[{width}*e + {2 * len(e.frames)}]"]
     for slot, frame in enumerate(e.frames):
         for offset, state, symbols in ((2 * slot, "q", frame.q), (2 * slot + 1, "u", frame.u)):
             if needed & set(symbols):
-                body.append(f"at = index[{2 * len(e.frames)}*e + {offset}]")
+                body.append(f"at = index[{width}*e + {offset}]")
                 body += [f"{s.name} = {state}[at + {k}]" for k, s in enumerate(symbols) if s in needed]
-    body += [f"{s.name} = number[{len(numbers)}*e + {k}]" for k, s in enumerate(numbers) if s in needed]
+    for k, symbol in enumerate(derived.symbols.numbers):
+        if symbol in needed:
+            value = f"own + int(number[own + {k}])" if symbol.is_integer else f"number[own + {k}]"
+            body.append(f"{symbol.name} = {value}")
     for vector in ("lam", "mu"):
         body += [
             f"{vector}{k} = {vector}[place[0] + {equations}*e + {k}]"
             for k in range(equations)
             if sp.Symbol(f"{vector}{k}", real=True) in needed
         ]
+    for joint, lam in enumerate(derived.symbols.joint_lam):
+        row = f"index[{width}*e + {2 * len(e.frames) + 1 + joint}]"
+        body += [f"{symbol.name} = lam[{row} + {k}]" for k, symbol in enumerate(lam) if symbol in needed]
     body += [f"{symbol.name} = {printer.doprint(part)}" for symbol, part in shared]
     body += [
         f"value[place[{1 + k}] + {entries}*e + {n}] = {printer.doprint(result)}"

@@ -1,28 +1,28 @@
 """Kinds: elements with the same equations, apart from their numbers, share one kind and so one kernel.
 
-Here an element's fields are sorted into structure (which equations) and numbers (kernel parameters), both ways
-from one walk over the fields, so that a change of a number never changes a kernel.
+An element's fields are sorted into shapes (which equations) and data (bodies, numbers, tables, rows of joints that it
+refers to), so that a change of a number never changes a kernel.
 """
 
 from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
 
-from ..describe.element import Element
+import numpy as np
+
+from ..describe.element import Element, Joint, JointName
 from ..describe.formula import UNIT, evaluate
-from ..describe.formula_field import TIME, Formula
+from ..describe.formula_field import TIME, Formula, is_measure, measured_markers
 from ..describe.marker import Marker
 from ..describe.model import ModelData
+from ..describe.quantity import FUNCTIONS, Quantity
+from ..describe.table import Table
 
-if TYPE_CHECKING:
-    import sympy as sp
-
-    from .frames import BodyFrame, SymbolicElement
+Shape = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
@@ -35,130 +35,197 @@ class Kind:
         The class that holds the equations.
     n_bodies : int
         Bodies that one element acts on.
-    structure : tuple
-        Its fields that decide about equations: names, lengths, and formulas with their numbers taken out.
+    n_joints : int
+        Joints that it refers to.
+    fields : tuple of (str, Shape)
+        Its fields by name; a shape says of what form a field is, never its numbers.
     """
 
     element: type[Element]
     n_bodies: int
-    structure: tuple[Any, ...]
-
-    @property
-    def label(self) -> str:
-        return f"{self.element.__module__.rpartition('.')[2]}_{self.element.__name__}"
-
-    @cached_property
-    def symbolic(self) -> tuple[SymbolicElement, list[sp.Symbol]]:
-        """The element for its equations, and the symbols of its numbers in the order of `numbers`."""
-        import sympy as sp
-
-        from .frames import MARKER_NUMBERS, BodyFrame, Frame, SymbolicElement
-
-        frames = [BodyFrame(slot) for slot in range(self.n_bodies)]
-        symbols: list[sp.Symbol] = []
-
-        def fresh(name: str) -> sp.Symbol:
-            symbols.append(sp.Symbol(name, real=True))
-            return symbols[-1]
-
-        fields: dict[str, object] = {}
-        slot = 0
-        for name, shape in self.structure:
-            match shape:
-                case "number":
-                    fields[name] = fresh(name)
-                case ("numbers", length):
-                    fields[name] = tuple(fresh(f"{name}_{k}") for k in range(length))
-                case "marker":
-                    fields[name] = Frame(frames[slot], tuple(fresh(f"{name}_{part}") for part in MARKER_NUMBERS))
-                    slot += 1
-                case ("formulas", shapes):
-                    fields[name] = [_formula(shape, frames, fresh, f"{name}_{k}") for k, shape in enumerate(shapes)]
-        return SymbolicElement(frames, fields), symbols
+    n_joints: int
+    fields: tuple[tuple[str, Shape], ...]
 
 
-def _formula(shape: tuple[str, int], frames: list[BodyFrame], fresh: Any, label: str) -> sp.Expr:
-    """A formula's shape (see `_formula_shape`) as a SymPy expression with fresh symbols for its numbers."""
-    import sympy as sp
+@dataclass
+class ElementData:
+    """What distinguishes an element from others of its kind.
 
-    from .frames import SymbolicElement
+    Attributes
+    ----------
+    bodies : list of str
+        By slot; the first is the one on which the reaction is reported.
+    numbers : list of float
+        Kernel parameters, in the order in which the kind's equations meet them.
+    tables : list of ndarray
+        Spline data; the number that stands for a table is its offset behind the numbers.
+    joints : list of str
+        Joints whose multipliers the equations use.
+    """
 
-    text, count = shape
-    numbers = [fresh(f"{label}_p{k}") for k in range(count)]
+    bodies: list[str] = field(default_factory=list)
+    numbers: list[float] = field(default_factory=list)
+    tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
+    joints: list[str] = field(default_factory=list)
 
-    def names(name: str) -> sp.Expr:
-        if name == TIME:
-            return SymbolicElement.t
-        owner, _, rest = name.partition(".")
-        return frames[int(owner[1:])].coordinate(rest) if rest else numbers[int(owner[1:])]
+    def slot(self, body: str) -> int:
+        """The slot of a body, a new one where it is new."""
+        if body not in self.bodies:
+            self.bodies.append(body)
+        return self.bodies.index(body)
 
-    functions = {name: getattr(sp, name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")}
-    functions |= {name: getattr(sp, name) for name in ("sinh", "cosh", "tanh", "exp", "log", "sqrt")}
-    functions["abs"] = sp.Abs
-    return sp.sympify(evaluate(ast.parse(text, mode="eval").body, names, functions, sp.sympify))
+    def flat(self) -> np.ndarray:
+        """Numbers and tables in one row, each table's number being its offset from the start of the row."""
+        numbers = np.array(self.numbers, dtype=float)
+        end = len(numbers)
+        parts = [numbers]
+        for at, table in self.tables:
+            numbers[at] = end
+            parts.append(table)
+            end += len(table)
+        return np.concatenate(parts)
 
 
-class _Shape(ast.NodeTransformer):
-    """Takes the numbers out of a formula: bodies become b0, b1, ...; values and fractions p0, p1, ..."""
+def sorted_out(element: Element, model: ModelData) -> tuple[Kind, ElementData]:
+    """An element's kind, and what is its own."""
+    data = ElementData()
+    fields = _fields(element, model, data)
+    return Kind(type(element), len(data.bodies), len(data.joints), fields), data
 
-    def __init__(self, formula: Formula, bodies: tuple[str, ...]) -> None:
-        self.values, self.bodies = formula.values, bodies
+
+def _fields(element: Element, model: ModelData, data: ElementData) -> tuple[tuple[str, Shape], ...]:
+    return tuple((name, _shape(getattr(element, name), model, data)) for name in type(element).model_fields)
+
+
+def _shape(value: Any, model: ModelData, data: ElementData) -> Shape:
+    """The shape of a field's value; its data are appended to `data`."""
+    match value:
+        case Marker():
+            return _marker_shape(value, model, data)
+        case JointName():
+            joint: Joint = model.joints[value]
+            fields = _fields(joint, model, data)
+            data.joints.append(str(value))
+            return ("joint", type(joint), fields, len(data.joints) - 1)
+        case None | bool() | str():
+            return ("choice", value)
+        case int() | float():
+            data.numbers.append(float(value))
+            return ("number",)
+        case Formula():
+            return _FormulaShape(value, model, data).shape()
+        case Table():
+            data.tables.append((len(data.numbers), spline_data(value)))
+            data.numbers.append(0.0)
+            return ("table",)
+        case tuple():
+            return ("several", tuple(_shape(item, model, data) for item in value))
+        case _:
+            raise TypeError(f"a field of an element cannot hold {type(value).__name__}")
+
+
+def _marker_shape(marker: Marker, model: ModelData, data: ElementData) -> Shape:
+    placed = model.place(marker)
+    slot = data.slot(marker.body)
+    data.numbers += [*placed.point, placed.angle, math.cos(placed.angle), math.sin(placed.angle)]
+    return ("marker", slot)
+
+
+class _FormulaShape(ast.NodeTransformer):
+    """Takes numbers, bodies and measures out of a formula.
+
+    Bodies become ``b0.x``, variables ``v0``, measures ``measure0``, and every part that is constant one number
+    ``p0``; whole exponents stay, as they decide about the derivatives.
+    """
+
+    def __init__(self, formula: Formula, model: ModelData, data: ElementData) -> None:
+        self.formula, self.model, self.data = formula, model, data
         self.numbers: list[float] = []
+        self.measures: list[tuple[str, tuple[Marker, ...]]] = []
 
-    def _number(self, value: float) -> ast.Name:
-        self.numbers.append(value)
-        return ast.Name(f"p{len(self.numbers) - 1}")
+    def shape(self) -> Shape:
+        tree = self.visit(ast.parse(ast.unparse(self.formula.tree), mode="eval").body)
+        self.data.numbers += self.numbers
+        measures = tuple(
+            (name, tuple(_marker_shape(marker, self.model, self.data) for marker in markers))
+            for name, markers in self.measures
+        )
+        return ("formula", ast.unparse(tree), len(self.formula.variables), len(self.numbers), measures)
+
+    def visit(self, node: ast.AST) -> Any:
+        constant = _constant_value(node, self.formula)
+        if constant is not None:
+            self.numbers.append(constant)
+            return ast.Name(f"p{len(self.numbers) - 1}")
+        return super().visit(node)
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        match node:
+            case ast.BinOp(
+                base, ast.Pow(), ast.Constant(int()) | ast.UnaryOp(ast.USub(), ast.Constant(int())) as power
+            ):
+                return ast.BinOp(self.visit(base), ast.Pow(), power)
+        return ast.BinOp(self.visit(node.left), node.op, self.visit(node.right))
+
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.AST:
+        return ast.UnaryOp(node.op, self.visit(node.operand))
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
+        if is_measure(node):
+            self.measures.append((node.func.id, measured_markers(node)))  # type: ignore[attr-defined]
+            return ast.Name(f"measure{len(self.measures) - 1}")
         return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
-        return node if node.id == TIME else self._number(self.values[node.id])
+        return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         assert isinstance(node.value, ast.Name)
-        if node.value.id == UNIT:
-            return self._number(self.values[f"{UNIT}.{node.attr}"])
-        return ast.Attribute(ast.Name(f"b{self.bodies.index(node.value.id)}"), node.attr)
-
-    def visit_Constant(self, node: ast.Constant) -> ast.AST:
-        return self._number(node.value) if isinstance(node.value, float) else node
+        return ast.Attribute(ast.Name(f"b{self.data.slot(node.value.id)}"), node.attr)
 
 
-def _formula_shape(formula: Formula, bodies: tuple[str, ...]) -> tuple[tuple[str, int], list[float]]:
-    shape = _Shape(formula, bodies)
-    tree = shape.visit(ast.parse(ast.unparse(formula.tree), mode="eval").body)
-    return (ast.unparse(tree), len(shape.numbers)), shape.numbers
+def _constant_value(node: ast.AST, formula: Formula) -> float | None:
+    """The value of a part of a formula that holds neither time, coordinates, measures nor variables."""
+    if not isinstance(node, ast.expr):
+        return None
+    for part in ast.walk(node):
+        if is_measure(part) or (isinstance(part, ast.Name) and part.id in (TIME, *formula.variables)):
+            return None
+        if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
+            return None
+    functions = {**FUNCTIONS, **_NUMERIC_FUNCTIONS}
+    return evaluate(node, lambda name: Quantity(formula.values[name]), functions, lambda n: Quantity(float(n))).value
 
 
-def _fields(element: Element, model: ModelData) -> Iterator[tuple[str, Any, list[float]]]:
-    """Every field that equations may use: its name, its shape, and its numbers."""
-    bodies = element.bodies()
-    for name in type(element).model_fields:
-        match getattr(element, name):
-            case Marker() as marker:
-                placed = model.place(marker)
-                yield name, "marker", [*placed.point, placed.angle, math.cos(placed.angle), math.sin(placed.angle)]
-            case bool() | str() | None:
-                continue
-            case int() | float() as value:
-                yield name, "number", [float(value)]
-            case Formula() as formula:
-                shape, numbers = _formula_shape(formula, bodies)
-                yield name, ("formulas", (shape,)), numbers
-            case (Formula(), *_) as formulas:
-                parts = [_formula_shape(formula, bodies) for formula in formulas]
-                yield name, ("formulas", tuple(shape for shape, _ in parts)), [n for _, ns in parts for n in ns]
-            case tuple() as values:
-                yield name, ("numbers", len(values)), [float(value) for value in values]
+def step_value(x: float, x0: float, h0: float, x1: float, h1: float, quintic: bool = False) -> float:
+    """Adams' STEP and STEP5: from h0 at x0 to h1 at x1 by a polynomial that is flat at both ends."""
+    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
+    return h0 + (h1 - h0) * (z**3 * (10 - 15 * z + 6 * z * z) if quintic else z * z * (3 - 2 * z))
 
 
-def kind_of(element: Element, model: ModelData) -> Kind:
-    """The kind that an element of the model belongs to."""
-    structure = tuple((name, shape) for name, shape, _ in _fields(element, model))
-    return Kind(type(element), len(element.bodies()), structure)
+_NUMERIC_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
+    "step": lambda *a: Quantity(step_value(*(q.value for q in a))),
+    "step5": lambda *a: Quantity(step_value(*(q.value for q in a), quintic=True)),
+    "sign": lambda a: Quantity(math.copysign(1.0, a.value)),
+}
+
+NATURAL, PERIODIC = 0.0, 1.0
 
 
-def numbers_of(element: Element, model: ModelData) -> list[float]:
-    """The element's kernel parameters, in the order of `Kind.symbolic`."""
-    return [number for _, _, numbers in _fields(element, model) for number in numbers]
+def spline_data(table: Table) -> np.ndarray:
+    """What a kernel needs of a table: count, ends, knots, and the coefficients of each piece (highest first).
+
+    Cubic spline interpolation by SciPy; straight lines are pieces without curvature.
+    """
+    x, y = np.array(table.table, dtype=float).T
+    if table.lines:
+        slope = np.diff(y) / np.diff(x)
+        pieces = np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
+    else:
+        from scipy.interpolate import CubicSpline
+
+        if table.ends == "periodic":
+            y = np.append(y[:-1], y[0])
+        pieces = CubicSpline(x, y, bc_type=table.ends).c
+    ends = PERIODIC if table.ends == "periodic" else NATURAL
+    return np.concatenate([[len(x), ends], x, pieces.T.ravel()])

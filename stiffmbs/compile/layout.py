@@ -37,7 +37,7 @@ EQUATIONS: Layout = {
 FACTORS: Layout = {
     "n": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "order": INTS,
     "l_start": INTS, "l_row": INTS, "l": FLOATS, "u_start": INTS, "u_row": INTS, "u": FLOATS,
-    "pivot": INTS, "work": FLOATS, "b": FLOATS, "stack": INTS, "x": FLOATS,
+    "pivot": INTS, "work": FLOATS, "b": FLOATS, "previous": FLOATS, "stack": INTS, "x": FLOATS,
 }  # fmt: skip
 """A sparse matrix by columns, its factors and work space (`stiffmbs.compile.native.factors`)."""
 

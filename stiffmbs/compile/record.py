@@ -23,8 +23,10 @@ class KindRecord:
 
     Attributes
     ----------
-    n_equations : int
-        Constraint equations of one element.
+    n_equations, n_holonomic : int
+        Constraint equations of one element, and how many of them, the first, have a position form.
+    joint_equations : list of int
+        Equations of each joint that it refers to.
     patterns : dict
         For each term the (row, column) of its entries in the element's own block.
     sources : dict
@@ -32,6 +34,8 @@ class KindRecord:
     """
 
     n_equations: int
+    n_holonomic: int
+    joint_equations: list[int]
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
 
@@ -56,21 +60,27 @@ def _derived(kind: Kind) -> KindRecord:
     derived = derive(kind)
     patterns = {term: [(entry.row, entry.column) for entry in entries] for term, entries in derived.terms.items()}
     sources = {
-        term_set: kernel_source(kind, term_set, derived, "kernel")
+        term_set: kernel_source(term_set, derived, "kernel")
         for term_set, terms in TERM_SETS.items()
         if any(derived.terms.get(term) for term in terms)
     }
-    return KindRecord(derived.n_equations, patterns, sources)
+    return KindRecord(
+        derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam], patterns, sources
+    )
 
 
 def _key(kind: Kind) -> str | None:
     """A key of everything that the record follows from; None where the element's source cannot be read."""
     try:
-        own = [Path(inspect.getfile(base)) for base in kind.element.__mro__ if issubclass(base, Element)]
+        classes = [kind.element, *(shape[1] for _, shape in kind.fields if shape[0] == "joint")]
+        bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element)]
+        own = [Path(inspect.getfile(base)) for base in bases]
         texts = [path.read_text(encoding="utf-8") for path in own]
     except (OSError, TypeError):
         return None
-    return store.key_of(_compile_text(), *texts, kind.element.__qualname__, repr((kind.n_bodies, kind.structure)))
+    return store.key_of(
+        _compile_text(), *texts, kind.element.__qualname__, repr((kind.n_bodies, kind.n_joints, kind.fields))
+    )
 
 
 @cache

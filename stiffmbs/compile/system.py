@@ -18,7 +18,7 @@ from ..describe.marker import GROUND
 from ..describe.model import ModelData
 from ..errors import InputError
 from . import routines
-from .kind import Kind, kind_of, numbers_of
+from .kind import ElementData, Kind, sorted_out
 from .layout import STATE, packed
 from .machine import Compiled, compiled_source
 from .record import KindRecord, record_of
@@ -36,10 +36,11 @@ class Group:
     ----------
     names : tuple of str
         Element by element.
-    index : ndarray of int, shape (count, 2 * bodies)
-        Offsets of each body in q and u; the ground's are past the end.
-    numbers : ndarray, shape (count, parameters)
-        Kernel parameters; may be changed in place.
+    index : ndarray of int, shape (count, 2 * bodies + 1 + joints)
+        Offsets of each body in q and u (the ground's are past the end), of the element's first number, and of the
+        first row of each joint that it refers to.
+    numbers : ndarray
+        Kernel parameters and tables, element after element; may be changed in place.
     first_row : int
         Of the first element's equations.
     """
@@ -85,6 +86,8 @@ class System:
         Elements by kind.
     equations : tuple of (str, str)
         Joint and equation name of each constraint row.
+    holonomic, active : ndarrays of bool, shape (n_c,)
+        Which rows have a position form, and which are not redundant and so are solved for.
     size : float
         Of the mechanism at the start, m.
     """
@@ -95,6 +98,8 @@ class System:
     mass: np.ndarray
     groups: tuple[Group, ...]
     equations: tuple[tuple[str, str], ...]
+    holonomic: np.ndarray
+    active: np.ndarray
     size: float
 
     @property
@@ -166,7 +171,7 @@ class System:
         return Term(source[inside], row[inside], column[inside])
 
     def _extent(self, axis: str) -> int:
-        return {"q": self.n_q, "u": self.n_u, "c": self.n_c}.get(axis, np.iinfo(np.int64).max)
+        return {"q": self.n_q, "u": self.n_u, "c": self.n_c, "l": self.n_c}.get(axis, np.iinfo(np.int64).max)
 
     def _group_entries(self, g: int, group: Group, first: int, name: str, axes: str) -> tuple[np.ndarray, ...]:
         pattern = np.array(group.record.patterns.get(name, ()), dtype=np.int64).reshape(-1, 2)
@@ -185,8 +190,18 @@ class System:
             case "q" | "u":
                 body, offset = own // PLANAR, own % PLANAR
                 return group.index[:, 2 * body + (axis == "u")] + offset[None, :]
+            case "l":
+                joint, offset = self._joint_of_column(group, own)
+                return group.index[:, 2 * group.kind.n_bodies + 1 + joint] + offset[None, :]
             case _:
                 return np.broadcast_to(own[None, :], (group.count, len(own)))
+
+    @staticmethod
+    def _joint_of_column(group: Group, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """For columns that count the equations of all joints referred to: which joint, and which of its equations."""
+        starts = np.cumsum([0, *group.record.joint_equations])
+        joint = np.searchsorted(starts, own, side="right") - 1
+        return joint, own - starts[joint]
 
     @cached_property
     def kernels(self) -> dict[str, dict[int, Compiled]]:
@@ -221,7 +236,7 @@ class State:
         self._q = np.concatenate([system.q, np.zeros(PLANAR)])
         self._u = np.concatenate([system.u, np.zeros(PLANAR)])
         self.q, self.u = self._q[: system.n_q], self._u[: system.n_u]
-        self.lam, self.mu = np.zeros(max(system.n_c, 1)), np.zeros(max(system.n_c, 1))
+        self.lam, self.mu = np.zeros(system.n_c), np.zeros(system.n_c)
         self.values = {s: np.concatenate([np.zeros(system.n_values(s)), system.mass, [1.0]]) for s in TERM_SETS}
         self._calls = {s: self._kernel_calls(s) for s in TERM_SETS}
         self.table = packed(STATE, self._fields())
@@ -264,7 +279,7 @@ class State:
     def matrix(self, term_set: str, name: str) -> np.ndarray:
         """A matrix term from the last evaluation of its set, dense."""
         term = self.system.term(term_set, name)
-        shape = tuple(self.system.n_c if axis == "c" else self.system.n_u for axis in TERM_AXES[name])
+        shape = tuple(self.system.n_c if axis in "cl" else self.system.n_u for axis in TERM_AXES[name])
         result = np.zeros(shape)
         np.add.at(result, (term.row, term.column), self.values[term_set][term.source])
         return result
@@ -280,14 +295,16 @@ def compile_model(model: ModelData) -> System:
     """
     bodies = tuple(model.bodies)
     offset = {name: PLANAR * k for k, name in enumerate(bodies)} | {GROUND: PLANAR * len(bodies)}
-    sorted_elements: dict[Kind, list[tuple[str, Element]]] = {}
+    sorted_elements: dict[Kind, list[_Member]] = {}
     for name, element in model.elements():
-        sorted_elements.setdefault(kind_of(element, model), []).append((name, element))
-    groups: list[Group] = []
-    equations: list[tuple[str, str]] = []
-    for kind, members in sorted_elements.items():
-        groups.append(_group(kind, members, model, offset, len(equations)))
-        equations += [(name, label) for name, element in members for label in type(element).equation_names(element)]
+        kind, data = sorted_out(element, model)
+        sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
+    records = {kind: _record(kind, members[0].name) for kind, members in sorted_elements.items()}
+    rows, equations, holonomic = _rows(sorted_elements, records)
+    groups = [
+        _group(kind, records[kind], members, offset, rows, rows[members[0].name] if records[kind].n_equations else 0)
+        for kind, members in sorted_elements.items()
+    ]
     return System(
         bodies=bodies,
         q=np.array([c for body in model.bodies.values() for c in (*body.position, body.angle)]),
@@ -295,20 +312,56 @@ def compile_model(model: ModelData) -> System:
         mass=np.array([m for body in model.bodies.values() for m in (body.mass, body.mass, body.inertia)]),
         groups=tuple(groups),
         equations=tuple(equations),
+        holonomic=np.array(holonomic, dtype=bool),
+        active=np.ones(len(equations), dtype=bool),
         size=model.size(),
     )
 
 
-def _group(
-    kind: Kind, members: list[tuple[str, Element]], model: ModelData, offset: dict[str, int], first_row: int
-) -> Group:
+@dataclass(frozen=True)
+class _Member:
+    name: str
+    element: Element
+    data: ElementData
+
+
+def _record(kind: Kind, name: str) -> KindRecord:
     try:
-        record = record_of(kind)
+        return record_of(kind)
     except InputError as error:
-        raise InputError(f"{members[0][0]}: {error}") from None
-    names, elements = zip(*members, strict=True)
-    index = [[offset[body] for body in element.bodies() for _ in ("q", "u")] for element in elements]
-    numbers = [numbers_of(element, model) for element in elements]
+        raise InputError(f"{name}: {error}") from None
+
+
+def _rows(
+    sorted_elements: Mapping[Kind, list[_Member]], records: Mapping[Kind, KindRecord]
+) -> tuple[dict[str, int], list[tuple[str, str]], list[bool]]:
+    """The first row of each joint, and for each row its joint and equation and whether it has a position form."""
+    first: dict[str, int] = {}
+    equations: list[tuple[str, str]] = []
+    holonomic: list[bool] = []
+    for kind, members in sorted_elements.items():
+        record = records[kind]
+        for member in members if record.n_equations else ():
+            first[member.name] = len(equations)
+            equations += [(member.name, label) for label in member.element.equation_names()]
+            holonomic += [k < record.n_holonomic for k in range(record.n_equations)]
+    return first, equations, holonomic
+
+
+def _group(
+    kind: Kind, record: KindRecord, members: list[_Member], offset: dict[str, int], rows: dict[str, int], first_row: int
+) -> Group:
+    numbers = [member.data.flat() for member in members]
+    starts = np.cumsum([0, *(len(own) for own in numbers)])
+    index = [
+        [
+            *(offset[body] for body in member.data.bodies for _ in ("q", "u")),
+            start,
+            *(rows[j] for j in member.data.joints),
+        ]
+        for member, start in zip(members, starts, strict=False)
+    ]
     return Group(
-        kind, record, names, elements, np.array(index, dtype=np.int64), np.array(numbers, dtype=float), first_row
-    )
+        kind, record, tuple(m.name for m in members), tuple(m.element for m in members),
+        np.array(index, dtype=np.int64), np.concatenate([*numbers, [0.0]]), first_row,
+    )  # fmt: skip

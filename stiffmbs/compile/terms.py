@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 TERM_SETS: dict[str, tuple[str, ...]] = {
-    "position": ("C", "J"),
-    "motion": ("C", "V", "J", "f"),
-    "tangent": ("J", "V_q", "G_lam", "G_mu", "f_q", "f_u"),
-    "acceleration": ("J", "gamma", "f"),
+    "position": ("C", "C_q"),
+    "motion": ("C", "V", "C_q", "J", "f"),
+    "tangent": ("C_q", "J", "V_q", "G_lam", "G_mu", "f_q", "f_u", "f_lam"),
+    "acceleration": ("J", "gamma", "f", "f_lam"),
     "output": ("reaction", "potential"),
+    "switch": ("switch",),
 }
 """What a solver asks for at one time, so that common subexpressions are computed once.
 
-C constraints, V = J u + C_t, J = dC/dq, f applied forces, V_q = dV/dq, G_w = d(J^T w)/dq, f_q, f_u derivatives of f,
-gamma = J u' on the constraints, reaction = force and torque on the first body, potential = energy.
+C constraints, C_q = dC/dq, V the velocity level (C_q u + C_t, and equations that have no position form), J = dV/du,
+f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q, f_u, f_lam derivatives of f (forces
+of friction hang on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
+potential = energy, switch = what changes its sign at corners of a force.
 """
 
 TERM_AXES: dict[str, str] = {
-    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e",
-    "J": "cu", "V_q": "cq", "G_lam": "uq", "G_mu": "qq", "f_q": "uq", "f_u": "uu",
+    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "switch": "s",
+    "C_q": "cq", "J": "cu", "V_q": "cq", "G_lam": "uq", "G_mu": "qq", "f_q": "uq", "f_u": "uu", "f_lam": "ul",
 }  # fmt: skip
-"""What a term's row and column count: c equations, u velocities, q coordinates, r the parts of a reaction, e elements."""
+"""What a term's row and column count: c own equations, u velocities, q coordinates, l equations of the joints that are
+referred to, r parts of a reaction, s switches, e elements."""
 
 KERNEL_ARGUMENTS = "count, index, number, t, q, u, lam, mu, place, value"
 KERNEL_SIGNATURE = "void(int64, int64*, float64*, float64, float64*, float64*, float64*, float64*, int64*, float64*)"

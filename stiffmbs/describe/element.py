@@ -11,7 +11,9 @@ import importlib
 import pkgutil
 from collections.abc import Iterator
 from types import ModuleType
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
+
+from pydantic import WithJsonSchema
 
 from ..errors import InputError
 from .fields import Described
@@ -19,8 +21,22 @@ from .formula_field import Formula
 from .marker import Marker
 
 Symbolic = Any
-"""The element as its equations see it: `Frame` for a marker, a symbol for a number, ``e.t`` for time,
-``e.rate(expression)`` for a total time derivative."""
+"""The element as its equations see it: a `Frame` for a marker, a symbol for a number, an expression for a formula, a
+function for a formula or table of a variable, a symbolic element for a joint that is referred to; ``e.t`` for time,
+``e.rate(expression)`` for a total time derivative, ``e.frames`` for the bodies."""
+
+
+class JointName(str):
+    """The name of a joint of the model, in a field of another element."""
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_after_validator_function(cls, core_schema.str_schema())
+
+
+JointReference = Annotated[JointName, WithJsonSchema({"type": "string", "description": "the name of a joint"})]
 
 
 class Element(Described):
@@ -28,29 +44,22 @@ class Element(Described):
 
     kind: ClassVar[str] = ""
 
-    def markers(self) -> Iterator[tuple[str, Marker]]:
-        """The element's markers by field name, the first body's first."""
-        for name in type(self).model_fields:
-            if isinstance(value := getattr(self, name), Marker):
-                yield name, value
-
-    def formulas(self) -> Iterator[tuple[str, Formula]]:
-        """The element's formulas, labelled by field name and place."""
+    def parts(self, part: type) -> Iterator[tuple[str, Any]]:
+        """The element's markers, formulas, or joint names: every value of a type, by field name, in order."""
         for name in type(self).model_fields:
             value = getattr(self, name)
-            for k, item in enumerate(value if isinstance(value, tuple) else (value,)):
-                if isinstance(item, Formula):
-                    yield f"{name}[{k}]", item
+            for item in value if isinstance(value, tuple) else (value,):
+                if isinstance(item, part):
+                    yield name, item
 
-    def bodies(self) -> tuple[str, ...]:
-        """The bodies (or ground) that the element acts on, in the order of its markers, then of its formulas."""
-        named = [marker.body for _, marker in self.markers()]
-        for _, formula in self.formulas():
-            named += [body for body in formula.bodies if body not in named]
-        return tuple(named)
+    def markers(self) -> Iterator[tuple[str, Marker]]:
+        """The element's markers by field name, the first body's first; those in its formulas after its own."""
+        yield from self.parts(Marker)
+        for name, formula in self.parts(Formula):
+            for _, markers in formula.measures():
+                yield from ((name, marker) for marker in markers)
 
-    @classmethod
-    def equation_names(cls, element: Element) -> tuple[str, ...]:
+    def equation_names(self) -> tuple[str, ...]:
         """The names of the element's constraint equations; none for a force."""
         return ()
 
@@ -61,24 +70,33 @@ class Joint(Element):
     Attributes
     ----------
     equations : tuple of str
-        The names of the equations that `position` returns, used in reports.
+        The names of the equations that `position`, then `velocity`, return; used in reports.
     """
 
     equations: ClassVar[tuple[str, ...]] = ()
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        """The constraint equations C(q, t), one expression for each name in `equations`."""
-        raise NotImplementedError
+        """The constraint equations C(q, t) = 0, one expression for each name in `equations`."""
+        return ()
+
+    @staticmethod
+    def velocity(e: Symbolic) -> Any:
+        """Equations linear in u that have no position form, such as a prescribed rate."""
+        return ()
+
+    @staticmethod
+    def coordinate(e: Symbolic) -> Any:
+        """The joint's coordinate, for drives and couplers; None where it has none."""
+        return None
 
     @staticmethod
     def point(e: Symbolic) -> Any:
         """The joint's point, about which its torque is reported."""
         return e.i.point
 
-    @classmethod
-    def equation_names(cls, element: Element) -> tuple[str, ...]:
-        return cls.equations
+    def equation_names(self) -> tuple[str, ...]:
+        return self.equations
 
 
 class Force(Element):
@@ -97,6 +115,11 @@ class Force(Element):
     def potential(e: Symbolic) -> Any:
         """Potential energy, J; zero for a force that has none."""
         return 0
+
+    @staticmethod
+    def switches(e: Symbolic) -> Any:
+        """Expressions that change their sign where the force has a corner in the state, such as a gap."""
+        return ()
 
     @staticmethod
     def point(e: Symbolic) -> Any:

@@ -13,11 +13,11 @@ from pydantic import Field, field_validator, model_validator
 from ..errors import InputError
 from . import forces, joints, si
 from .body import Body, BodyHandle, check_names
-from .element import Element, Force, Joint, kinds
+from .element import Element, Force, Joint, JointName, kinds
 from .fields import Described
 from .forces.weight import Weight
 from .formula import UNIT
-from .formula_field import TIME
+from .formula_field import TIME, Formula
 from .marker import GROUND, Marker, Placement
 
 JOINTS = kinds(joints, Joint)
@@ -71,7 +71,7 @@ class ModelData(Described):
                 seen[name] = f"{section}.{name}"
         for section in ("joints", "forces"):
             for name, element in getattr(self, section).items():
-                check_element(f"{section}.{name}", element, self.bodies)
+                check_element(f"{section}.{name}", element, self.bodies, self.joints)
         return self
 
     def elements(self) -> Iterator[tuple[str, Element]]:
@@ -104,8 +104,8 @@ class ModelData(Described):
         return self.bodies[marker.body].markers[marker.marker]
 
 
-def check_element(where: str, element: Element, bodies: dict[str, Body]) -> None:
-    """Refuse an element that names an unknown body or marker, or that joins a body to itself."""
+def check_element(where: str, element: Element, bodies: dict[str, Body], joints: dict[str, Joint]) -> None:
+    """Refuse an element that names an unknown body, marker or joint, or that joins a body to itself."""
     for field, marker in element.markers():
         if marker.body != GROUND and marker.body not in bodies:
             raise ValueError(f"{where}.{field}: found the unknown body '{marker.body}', expected {_listed(bodies)}")
@@ -115,11 +115,20 @@ def check_element(where: str, element: Element, bodies: dict[str, Body]) -> None
                 raise ValueError(
                     f"{where}.{field}: found '{marker.label}', expected one of its markers ({', '.join(own) or 'none'})"
                 )
-    for field, formula in element.formulas():
-        for body in formula.bodies:
-            if body not in bodies:
+    for field, joint in element.parts(JointName):
+        if joint not in joints:
+            raise ValueError(
+                f"{where}.{field}: found the unknown joint '{joint}', expected one of {', '.join(joints) or 'none'}"
+            )
+        if next(joints[joint].parts(JointName), None):
+            raise ValueError(
+                f"{where}.{field}: found '{joint}', which refers to a joint itself, expected one between markers"
+            )
+    for field, formula in element.parts(Formula):
+        for body in formula.bodies():
+            if body not in (*bodies, GROUND):
                 raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {_listed(bodies)}")
-    placed = [marker.body for _, marker in element.markers()]
+    placed = [marker.body for _, marker in element.parts(Marker)]
     if len(placed) > 1 and len(set(placed)) == 1:
         raise ValueError(f"{where}: found '{placed[0]}' on both sides, expected two different bodies")
 
@@ -173,7 +182,7 @@ class Model:
         try:
             check_names({name: part}, "part")
             if isinstance(part, Element):
-                check_element(name, part, self.bodies)
+                check_element(name, part, self.bodies, self.joints)
         except ValueError as error:
             raise InputError(str(error)) from None
         section[name] = part

@@ -12,7 +12,9 @@ from .formula import UNIT, FormulaError, evaluate, parse
 Dimension = tuple[float, float, float]  # exponents of kg, m, s; angles have none
 
 NUMBER: Dimension = (0, 0, 0)
+ANY = "any"
 DIMENSIONS: dict[str, tuple[Dimension, str]] = {
+    ANY: (NUMBER, "SI units"),
     "number": (NUMBER, "1"),
     "angle": (NUMBER, "rad"),
     "length": ((0, 1, 0), "m"),
@@ -204,7 +206,7 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
     expected, unit = DIMENSIONS[dimension]
     if isinstance(found, str):
         result = quantity(found, parameters)
-        if result.dimension is not None and result.dimension != expected:
+        if dimension != ANY and result.dimension is not None and result.dimension != expected:
             raise FormulaError(
                 f"found '{found}', which is in {_unit(result.dimension)}, expected a {dimension} in {unit}"
             )

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from .fields import Measured
 
+Anything = Annotated[float, Measured("any")]
 Number = Annotated[float, Measured("number")]
 Angle = Annotated[float, Measured("angle")]
 Length = Annotated[float, Measured("length")]

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.equations import Block, Equations, Formulation, Product
+from ..compile.equations import ABSENT, Block, Equations, Formulation, Product
 from ..compile.layout import FACTORS, packed
-from ..compile.system import State, System
+from ..compile.system import State
 
 _SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
 
@@ -18,20 +18,20 @@ ACCELERATIONS = Formulation(
     unknowns=("u", "lam"),
     residual_set="acceleration",
     matrix_set="acceleration",
-    residual=(Product("u", +1, "f"), Product("lam", +1, "gamma")),
-    matrix=(Block("u", "u", "M"), *_SADDLE),
+    residual=(Product("u", +1, "f"), Product("u", -1, "f_lam", "lam"), Product("lam", +1, "gamma")),
+    matrix=(Block("u", "u", "M"), Block("u", "lam", "f_lam", -1), *_SADDLE),
 )
-"""[M J^T; J 0] [u'; lam] = [f; gamma]."""
+"""[M J^T; J 0] [u'; lam] = [f; gamma]; one Newton step of it where friction makes f hang on lam."""
 
 POSITION_STEP = Formulation(
     name="position step",
-    unknowns=("u", "lam"),
+    unknowns=("u", "mu"),
     residual_set="position",
     matrix_set="position",
-    residual=(Product("lam", -1, "C"),),
-    matrix=(Block("u", "u", "I"), *_SADDLE),
+    residual=(Product("mu", -1, "C"),),
+    matrix=(Block("u", "u", "I"), Block("u", "mu", "C_q.T"), Block("mu", "u", "C_q")),
 )
-"""[I J^T; J 0] [dq; w] = [0; -C]: Newton's smallest move towards the constraints."""
+"""[I C_q^T; C_q 0] [dq; w] = [0; -C]: Newton's smallest move towards the constraints."""
 
 VELOCITY_STEP = Formulation(
     name="velocity step",
@@ -58,7 +58,7 @@ class SaddlePoint:
         self.equations_table, self._slots = self.equations.table()
         n = self.equations.n
         rows, columns = self.equations.pattern
-        order = elimination_order(state.system)
+        order = elimination_order(self.equations)
         room = max(8 * (len(rows) + n), min(n * n, 4096)) + n
         ints, floats = (lambda k: np.zeros(k, dtype=np.int64)), np.zeros
         self._arrays = {
@@ -67,13 +67,13 @@ class SaddlePoint:
             "a_row": rows.astype(np.int64), "a": floats(len(rows)), "order": order,
             "l_start": ints(n + 1), "l_row": ints(room), "l": floats(room),
             "u_start": ints(n + 1), "u_row": ints(room), "u": floats(room),
-            "pivot": ints(n), "work": floats(n), "b": floats(n), "stack": ints(4 * n), "x": floats(n),
+            "pivot": ints(n), "work": floats(n), "b": floats(n), "previous": floats(n), "stack": ints(4 * n), "x": floats(n),
         }  # fmt: skip
         self.factors_table = packed(FACTORS, self._arrays)
 
 
-def elimination_order(system: System) -> np.ndarray:
-    """An order of elimination for unknowns (u, lam) with little fill: minimum degree on bodies and joints.
+def elimination_order(equations: Equations) -> np.ndarray:
+    """An order of elimination of a block system's unknowns with little fill: minimum degree on bodies and joints.
 
     Bodies and joints are eliminated whole; a joint waits until one of its bodies is gone, as its own diagonal
     block is zero before.
@@ -82,10 +82,12 @@ def elimination_order(system: System) -> np.ndarray:
 
     from ..compile.system import PLANAR
 
-    n_bodies, n_u = len(system.bodies), system.n_u
+    system = equations.system
+    at_u, at_multiplier = (equations.at[name] for name in equations.formulation.unknowns)
+    n_bodies = len(system.bodies)
     joints = [
         (group.first_row + e * group.record.n_equations, group.record.n_equations,
-         {int(at) // PLANAR for at in group.index[e, ::2] if at < system.n_q})
+         {int(at) // PLANAR for at in group.index[e, : 2 * group.kind.n_bodies : 2] if at < system.n_q})
         for group in system.groups if group.record.n_equations for e in range(group.count)
     ]  # fmt: skip
     neighbours: list[set[int]] = [set() for _ in range(n_bodies + len(joints))]
@@ -103,10 +105,10 @@ def elimination_order(system: System) -> np.ndarray:
             continue
         gone[node] = True
         if node < n_bodies:
-            order += range(PLANAR * node, PLANAR * (node + 1))
+            order += [*at_u[PLANAR * node : PLANAR * (node + 1)]]
         else:
             first, count, _ = joints[node - n_bodies]
-            order += range(n_u + first, n_u + first + count)
+            order += [at for at in at_multiplier[first : first + count] if at != ABSENT]
         around = neighbours[node]
         for other in around:
             neighbours[other] |= around

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .access import call_kernel, compiled, floats, ints, state_view
 
-POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT = range(5)
+POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH = range(6)
 CALL_WIDTH = 5
 
 
@@ -33,10 +33,10 @@ def load(s, e, y):
             s.u[k] = y[e.at_u[k]]
     if e.has_mu:
         for k in range(s.n_c):
-            s.mu[k] = y[e.at_mu[k]]
+            s.mu[k] = y[e.at_mu[k]] if e.at_mu[k] >= 0 else 0.0
     if e.has_lam:
         for k in range(s.n_c):
-            s.lam[k] = y[e.at_lam[k]]
+            s.lam[k] = y[e.at_lam[k]] if e.at_lam[k] >= 0 else 0.0
 
 
 @compiled

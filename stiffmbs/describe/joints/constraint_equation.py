@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field, field_validator
 
-from ..element import Element, Joint, Symbolic
-from ..formula_field import FormulaField
+from ..element import Joint, Symbolic
+from ..formula_field import OfPosition
 
 
 class ConstraintEquation(Joint):
@@ -19,7 +19,7 @@ class ConstraintEquation(Joint):
     kind: ClassVar[str] = "equation"
 
     type: Literal["equation"] = "equation"
-    zero: tuple[FormulaField, ...] = Field(min_length=1, description="formulas that the joint keeps at zero")
+    zero: tuple[OfPosition, ...] = Field(min_length=1, description="formulas that the joint keeps at zero")
 
     @field_validator("zero", mode="before")
     @classmethod
@@ -28,9 +28,9 @@ class ConstraintEquation(Joint):
 
     @field_validator("zero")
     @classmethod
-    def _names_a_body(cls, zero: Any) -> Any:
+    def _names_a_body(cls, zero: tuple[OfPosition, ...]) -> tuple[OfPosition, ...]:
         for formula in zero:
-            if not formula.bodies:
+            if not any(True for _ in formula.bodies()):
                 raise ValueError(f"found '{formula.text}', expected a formula with a body's coordinate such as cart.x")
         return zero
 
@@ -42,6 +42,5 @@ class ConstraintEquation(Joint):
     def point(e: Symbolic) -> Any:
         return e.frames[0].origin
 
-    @classmethod
-    def equation_names(cls, element: Element) -> tuple[str, ...]:
-        return tuple(f"zero[{k}]" for k in range(len(element.zero)))  # type: ignore[attr-defined]
+    def equation_names(self) -> tuple[str, ...]:
+        return tuple(f"zero[{k}]" for k in range(len(self.zero)))

@@ -27,3 +27,8 @@ class Prismatic(Joint):
     @staticmethod
     def position(e: Symbolic) -> Any:
         return [(e.i.point - e.j.point).dot(e.j.normal), e.i.angle - e.j.angle]
+
+    @staticmethod
+    def coordinate(e: Symbolic) -> Any:
+        """The displacement of marker i along the axis of marker j."""
+        return (e.i.point - e.j.point).dot(e.j.axis)

@@ -26,3 +26,8 @@ class Revolute(Joint):
     @staticmethod
     def position(e: Symbolic) -> Any:
         return e.i.point - e.j.point
+
+    @staticmethod
+    def coordinate(e: Symbolic) -> Any:
+        """The angle of marker i against marker j."""
+        return e.i.angle - e.j.angle

@@ -17,6 +17,8 @@ from stiffmbs.compile.native.evaluate import ACCELERATION, MOTION, OUTPUT, POSIT
 from stiffmbs.compile.native.factors import DONE, factored, solve
 
 SINGULAR, NO_CONVERGENCE, NOT_FINITE = -1, -2, -3
+MOST_FRICTION_ITERATIONS = 40
+FRICTION_TOLERANCE = 1e-13
 
 
 @compiled
@@ -49,7 +51,7 @@ def _solved(s, equations, factors, values):
     add_entries(e, values, 0.0, f.a)
     if factored(f) != DONE:
         return False
-    add_products(e, values, f.b, f.b, f.b)
+    add_products(e, values, f.previous, f.previous, f.b)
     solve(f, f.b)
     return True
 
@@ -87,14 +89,29 @@ def to_velocity_constraints(s, m, t):
 
 @compiled
 def to_accelerations(s, m, t):
-    """Accelerations (in the factors' `b`) and multipliers (there, and in lam) at the current state."""
-    values = evaluate(s, ACCELERATION, t)
-    if not _solved(s, m.accelerations, m.acceleration_factors, values):
-        return SINGULAR
-    solution = factors_view(m.acceleration_factors).b
-    for k in range(s.n_c):
-        s.lam[k] = solution[s.n_u + k]
-    return 0
+    """Accelerations (in the factors' `b`) and multipliers (in lam) at the current state.
+
+    One linear solution; Newton's iteration from the lam at hand where forces of friction hang on it.
+    """
+    e = equations_view(m.accelerations)
+    f = factors_view(m.acceleration_factors)
+    iterated = e.n_with_y > e.n_plain
+    for _ in range(MOST_FRICTION_ITERATIONS):
+        for k in range(s.n_c):
+            if e.at_lam[k] >= 0:
+                f.previous[e.at_lam[k]] = s.lam[k]
+        if not _solved(s, m.accelerations, m.acceleration_factors, evaluate(s, ACCELERATION, t)):
+            return SINGULAR
+        change = 0.0
+        largest = 0.0
+        for k in range(s.n_c):
+            new = f.b[e.at_lam[k]] if e.at_lam[k] >= 0 else 0.0
+            change = max(change, abs(new - s.lam[k]))
+            largest = max(largest, abs(new))
+            s.lam[k] = new
+        if not iterated or change <= FRICTION_TOLERANCE * largest:
+            return 0
+    return NO_CONVERGENCE
 
 
 def assemble(t, tolerance, most, mechanics):
@@ -124,8 +141,9 @@ def euler_cromer(t, h, steps, project, tolerance, mechanics):
     m = mechanics_view(mechanics)
     s = state_view(m.state)
     for step in range(steps):
-        if to_accelerations(s, m, t + step * h) < 0:
-            return SINGULAR
+        status = to_accelerations(s, m, t + step * h)
+        if status < 0:
+            return status
         acceleration = factors_view(m.acceleration_factors).b
         for k in range(s.n_u):
             s.u[k] += h * acceleration[k]
@@ -156,8 +174,9 @@ def _output_point(s, m, t, project, tolerance, largest):
     values = evaluate(s, MOTION, t)
     largest[0] = _largest_gap(s, values)
     largest[1] = _largest_gap(s, shifted(values, s.n_c))
-    if to_accelerations(s, m, t) < 0:
-        return SINGULAR
+    status = to_accelerations(s, m, t)
+    if status < 0:
+        return status
     evaluate(s, OUTPUT, t)
     return 0
 

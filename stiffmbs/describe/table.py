@@ -1,0 +1,51 @@
+"""Functions given by points."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from . import si
+from .fields import Described
+
+
+class Table(Described):
+    """A function through points, as a cubic spline or by straight lines.
+
+    Outside its points a table goes on with the slope of its end (none for ``clamped``); a periodic one repeats.
+
+    Parameters
+    ----------
+    table : list of pairs
+        Argument and value, arguments increasing.
+    ends : str
+        Of the spline: ``natural`` (no curvature), ``clamped`` (no slope), ``periodic`` (first and last value alike),
+        ``not-a-knot``.
+    lines : bool
+        Straight lines in place of a spline; its points are corners.
+    """
+
+    table: tuple[tuple[si.Anything, si.Anything], ...] = Field(min_length=2, description="pairs of argument and value")
+    ends: Literal["natural", "clamped", "periodic", "not-a-knot"] = Field("natural", description="end condition")
+    lines: bool = Field(False, description="straight lines in place of a spline")
+
+    @field_validator("table")
+    @classmethod
+    def _increasing(cls, table: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        for (before, _), (after, _) in itertools.pairwise(table):
+            if not after > before:
+                raise ValueError(f"found {after:g} after {before:g} in a table, expected increasing arguments")
+        return table
+
+    @model_validator(mode="after")
+    def _closed(self) -> Table:
+        first, last = self.table[0][1], self.table[-1][1]
+        if self.ends == "periodic" and abs(first - last) > 1e-9 * max(abs(first), abs(last), 1e-300):
+            raise ValueError(
+                f"found {first:g} at the start and {last:g} at the end, expected a periodic table to close"
+            )
+        if self.ends == "not-a-knot" and len(self.table) < 4:
+            raise ValueError(f"found {len(self.table)} points, expected 4 or more for not-a-knot ends")
+        return self
