@@ -89,7 +89,7 @@ class _Builder:
 
     def joint(self, name: str, element: Any, fields: tuple[tuple[str, Shape], ...], slot: int) -> SymbolicElement:
         own = {field_name: self.made(f"{name}_{field_name}", shape) for field_name, shape in fields}
-        joint = SymbolicElement(self.frames, own)
+        joint: Any = SymbolicElement(self.frames, own)
         count = len(list(element.position(joint))) + len(list(element.velocity(joint)))
         joint.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
         joint.kind = element.kind

@@ -24,18 +24,25 @@ class RunSettings(Described):
     points : int or "steps", optional
         Number of output points, evenly spaced, ends included; or the solver's own steps.
     solver : str
-        ``bdf`` (SUNDIALS IDA) or ``projected`` (explicit, with projection onto the constraints).
+        ``bdf`` (SUNDIALS IDA), ``projected`` (explicit, with projection onto the constraints), ``kinematic`` (for
+        scenes whose drives fix every coordinate), or ``auto`` (bdf or projected, by the spectrum of the scene).
     formulation : str
-        Of the residual that ``bdf`` integrates.
+        Of the residual that ``bdf`` integrates (`stiffmbs.solve.formulations`).
+    stabilisation : float
+        Of the formulation ``index1``: rate at which violations decay, 1/s; 0 shows its drift.
+    scheme : str
+        Of ``projected``: ``euler_cromer`` and ``rk4`` take fixed steps, ``dopri5`` and ``dop853`` choose them.
     rtol, atol : floats
-        Error tolerances of ``bdf``; atol (m, rad, m/s, rad/s) is rtol unless given, times the size of a mechanism
-        that is smaller than 1 m.
+        Error tolerances of ``bdf`` and the adaptive schemes; atol (m, rad, m/s, rad/s) is rtol unless given, times
+        the size of a mechanism that is smaller than 1 m.
     step : float
-        Step of ``projected``, s.
+        Step of the fixed schemes, s.
     projection : bool
         Whether ``projected`` returns to the constraints after each step.
     max_step : float
-        Largest step of ``bdf``, s; 0 for none.
+        Largest step of ``bdf`` and the adaptive schemes, s; 0 for none.
+    give_way : tuple of str
+        Joints whose equations are dropped first where the scene has redundant ones.
     """
 
     duration: si.PositiveTime = Field(10.0, description="s")
@@ -44,15 +51,20 @@ class RunSettings(Described):
     points: int | Literal["steps"] | None = Field(
         None, description="number of output points, or the solver's own steps"
     )
-    solver: Literal["bdf", "projected"] = Field("bdf", description="bdf (SUNDIALS IDA) or projected (explicit)")
-    formulation: Literal["SI2"] = Field("SI2", description="of the residual that bdf integrates")
-    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
-        1e-6, description="relative error tolerance of bdf"
+    solver: Literal["bdf", "projected", "kinematic", "auto"] = Field("bdf", description="how to solve")
+    formulation: Literal["SI2", "SI2_exact", "SI1", "I3", "index1"] = Field("SI2", description="of bdf's residual")
+    stabilisation: Annotated[float, Measured("angular velocity", at_least=0)] = Field(
+        0.0, description="of index1: rate at which violations decay, 1/s"
     )
-    atol: si.PositiveNumber | None = Field(None, description="absolute error tolerance of bdf; rtol unless given")
-    step: si.PositiveTime = Field(1e-3, description="step of projected, s")
+    scheme: Literal["euler_cromer", "rk4", "dopri5", "dop853"] = Field("euler_cromer", description="of projected")
+    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
+        1e-6, description="relative error tolerance of bdf and the adaptive schemes"
+    )
+    atol: si.PositiveNumber | None = Field(None, description="absolute error tolerance; rtol unless given")
+    step: si.PositiveTime = Field(1e-3, description="step of the fixed schemes, s")
     projection: bool = Field(True, description="whether projected returns to the constraints after each step")
-    max_step: si.TimeOrZero = Field(0.0, description="largest step of bdf, s; 0 for none")
+    max_step: si.TimeOrZero = Field(0.0, description="largest step of bdf and the adaptive schemes, s; 0 for none")
+    give_way: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
 
     @model_validator(mode="after")
     def _one_grid(self) -> RunSettings:
