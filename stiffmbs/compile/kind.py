@@ -197,15 +197,21 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
     return evaluate(node, lambda name: Quantity(formula.values[name]), functions, lambda n: Quantity(float(n))).value
 
 
-def step_value(x: float, x0: float, h0: float, x1: float, h1: float, quintic: bool = False) -> float:
-    """Adams' STEP and STEP5: from h0 at x0 to h1 at x1 by a polynomial that is flat at both ends."""
+def step_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic that is flat at both ends."""
     z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
-    return h0 + (h1 - h0) * (z**3 * (10 - 15 * z + 6 * z * z) if quintic else z * z * (3 - 2 * z))
+    return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
+
+
+def step5_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    """Adams' STEP5: from h0 at x0 to h1 at x1 by a quintic without slope and curvature at both ends."""
+    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
+    return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
 
 
 _NUMERIC_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     "step": lambda *a: Quantity(step_value(*(q.value for q in a))),
-    "step5": lambda *a: Quantity(step_value(*(q.value for q in a), quintic=True)),
+    "step5": lambda *a: Quantity(step5_value(*(q.value for q in a))),
     "sign": lambda a: Quantity(math.copysign(1.0, a.value)),
 }
 
