@@ -17,6 +17,7 @@ from ..describe.settings import RunSettings
 from .formulations import FORMULATIONS
 from .initial import InitialValues
 from .mechanics import Mechanics
+from .tolerances import absolute_tolerances
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 _MODULE = "stiffmbs.solve.native.ida_callbacks"
@@ -122,15 +123,11 @@ class _Ida:
         return csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.equations.n,) * 2)
 
     def _tolerances(self, settings: RunSettings) -> tuple[float, np.ndarray]:
-        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts positions and velocities.
-
-        The absolute tolerance is rtol for angles and for mechanisms of 1 m and more, and shrinks with smaller ones.
-        """
+        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts positions and velocities."""
         at, system = self.equations.at, self.equations.system
         correction = np.sqrt(self.equations.n / (system.n_q + system.n_u))
-        scale = np.tile([min(1.0, system.size), min(1.0, system.size), 1.0], len(system.bodies))
         atol = np.full(self.equations.n, OUT_OF_THE_ERROR_TEST)
-        atol[at["q"]] = atol[at["u"]] = settings.rtol * scale if settings.atol is None else settings.atol
+        atol[at["q"]] = atol[at["u"]] = absolute_tolerances(system, settings)
         return settings.rtol * correction, atol * correction
 
     def begin(self, start: InitialValues, t: float) -> Any:
