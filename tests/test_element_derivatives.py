@@ -5,6 +5,7 @@ import pytest
 
 from stiffmbs import compile_model
 from stiffmbs.compile.equations import Equations
+from stiffmbs.compile.state import State
 from stiffmbs.compile.terms import TERM_AXES
 from stiffmbs.describe.element import Joint
 from stiffmbs.solve.formulations import FORMULATIONS
@@ -48,7 +49,7 @@ def state(request):
     rng = np.random.default_rng(7)
     model = three_bodies(rng)
     model.add("element", random_element(request.param, rng))
-    state = compile_model(model.data()).state()
+    state = State(compile_model(model.data()))
     state.lam[:] = rng.uniform(-1, 1, len(state.lam))
     state.mu[:] = rng.uniform(-1, 1, len(state.mu))
     state.is_joint = issubclass(request.param, Joint)

@@ -83,7 +83,10 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": V_q,
         "gamma": -(V_q * e.u + V.diff(e.t)),
         "G_lam": (J.T * lam).jacobian(e.q), "G_mu": (C_q.T * mu[: C.rows, :]).jacobian(e.q),
+        "A_q": (J * e.a + V_q * e.u + V.diff(e.t)).jacobian(e.q),
+        "gamma_u": -(V_q * e.u + V.diff(e.t)).jacobian(e.u),
         "reaction": _reaction(kind, e, -J.T * lam),
+        "switch": sp.Matrix(symbols.switches),
     }  # fmt: skip
     entries = {name: _entries(matrix) for name, matrix in terms.items()}
     for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row
@@ -101,7 +104,7 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
         "f": f, "f_q": f.jacobian(e.q), "f_u": f.jacobian(e.u),
         "f_lam": f.jacobian(joint_lam) if joint_lam else sp.zeros(0, 0),
         "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
-        "switch": sp.Matrix([sp.sympify(part) for part in kind.element.switches(e)]),  # type: ignore[attr-defined]
+        "switch": sp.Matrix([*symbols.switches, *kind.element.switches(e)]),  # type: ignore[attr-defined]
     }  # fmt: skip
     return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()})
 

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from .layout import EQUATIONS, packed
-from .system import System
+from .system import System, Term
 from .terms import TERM_SETS
 
 ABSENT = -1
@@ -25,7 +25,8 @@ class Product:
     """One line of a residual: in `rows`, factor * block @ operand.
 
     `rows` and `operand` are names of unknowns (``q u mu lam``); an operand with a prime is a derivative; a vector
-    block (``f``, ``C``, ``V``, ``gamma``) has none.
+    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``Z`` takes u to q', ``E_mu`` and
+    ``E_lam`` are the relaxations of the rows, ``.T`` transposes, ``:rates`` keeps rows without a position form.
     """
 
     rows: str
@@ -57,6 +58,8 @@ class Formulation:
         The term sets that residual and matrix are made of.
     residual : sequence of Product
     matrix : sequence of Block
+    integrated : bool
+        Whether the unknowns mu and lam are integrals of the multipliers, which then are their derivatives.
     """
 
     name: str
@@ -65,6 +68,7 @@ class Formulation:
     matrix_set: str
     residual: Sequence[Product]
     matrix: Sequence[Block]
+    integrated: bool = False
 
 
 class Equations:
@@ -105,14 +109,18 @@ class Equations:
         """Source, row and column of a block's entries."""
         system = self.system
         base = name.removesuffix(".T")
-        first_mass = system.n_values(term_set)
+        constants = system.constants(term_set)
         if base in ("I", "Z"):  # planar: q' = u
             diagonal = np.arange(len(self.at[rows]))
-            return np.full(len(diagonal), first_mass + system.n_u), diagonal, diagonal
-        if base == "M":
-            diagonal = np.arange(system.n_u)
-            return first_mass + diagonal, diagonal, diagonal
+            return np.full(len(diagonal), constants["I"]), diagonal, diagonal
+        if base in constants:
+            diagonal = np.arange(system.n_u if base == "M" else system.n_c)
+            return constants[base] + diagonal, diagonal, diagonal
+        base, _, rates_only = base.partition(":")
         term = system.term(term_set, base)
+        if rates_only:
+            kept = ~system.holonomic[term.row]
+            term = Term(term.source[kept], term.row[kept], term.column[kept])
         return (term.source, term.column, term.row) if name.endswith(".T") else (term.source, term.row, term.column)
 
     def _compile_residual(self) -> None:

@@ -13,7 +13,7 @@ COINCIDENT = sp.Float("1e-200")
 
 @dataclass(frozen=True)
 class BodyFrame:
-    """The coordinates q = (x, y, phi) and velocities u = q' of one planar body as symbols."""
+    """The coordinates q = (x, y, phi), velocities u = q' and accelerations a of one planar body as symbols."""
 
     slot: int
 
@@ -24,6 +24,10 @@ class BodyFrame:
     @cached_property
     def u(self) -> tuple[sp.Symbol, ...]:
         return sp.symbols(f"vx{self.slot} vy{self.slot} omega{self.slot}", real=True)
+
+    @cached_property
+    def a(self) -> tuple[sp.Symbol, ...]:
+        return sp.symbols(f"ax{self.slot} ay{self.slot} alpha{self.slot}", real=True)
 
     @property
     def origin(self) -> sp.Matrix:
@@ -98,6 +102,10 @@ class SymbolicElement:
     @property
     def u(self) -> sp.Matrix:
         return sp.Matrix([symbol for frame in self.frames for symbol in frame.u])
+
+    @property
+    def a(self) -> sp.Matrix:
+        return sp.Matrix([symbol for frame in self.frames for symbol in frame.a])
 
     def rate(self, expression: sp.Expr) -> sp.Expr:
         """Total time derivative, with q' = u."""

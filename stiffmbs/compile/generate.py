@@ -52,7 +52,11 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
 
     body = [f"own = index[{width}*e + {2 * len(e.frames)}]"]
     for slot, frame in enumerate(e.frames):
-        for offset, state, symbols in ((2 * slot, "q", frame.q), (2 * slot + 1, "u", frame.u)):
+        for offset, state, symbols in (
+            (2 * slot, "q", frame.q),
+            (2 * slot + 1, "u", frame.u),
+            (2 * slot + 1, "a", frame.a),
+        ):
             if needed & set(symbols):
                 body.append(f"at = index[{width}*e + {offset}]")
                 body += [f"{s.name} = {state}[at + {k}]" for k, s in enumerate(symbols) if s in needed]

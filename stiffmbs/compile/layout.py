@@ -17,10 +17,10 @@ INTS, FLOATS, INT, FLOAT = "ints", "floats", "int", "float"
 
 STATE: Layout = {
     "n_q": INT, "n_u": INT, "n_c": INT,
-    "q": FLOATS, "u": FLOATS, "lam": FLOATS, "mu": FLOATS,
+    "q": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS,
     "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS,
 }  # fmt: skip
-"""A system's state and kernels: q and u with the ground's at their end; for each term set the number of its kernel
+"""A system's state and kernels: q, u and accelerations a with the ground's at their end; for each term set the number of its kernel
 calls, the address of their arguments (rows of `CALL`) and the address of its values; the first row of each joint."""
 
 CALL = ("kernel", "count", "index", "number", "place")
@@ -30,7 +30,7 @@ EQUATIONS: Layout = {
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
     "r_row": INTS, "r_source": INTS, "r_operand": INTS, "r_factor": FLOATS,
     "n_slots": INT, "n_entries": INT, "m_slot": INTS, "m_source": INTS, "m_constant": FLOATS, "m_cj": FLOATS,
-    "at_q": INTS, "at_u": INTS, "at_mu": INTS, "at_lam": INTS, "has_q": INT, "has_u": INT, "has_mu": INT, "has_lam": INT,
+    "at_q": INTS, "at_u": INTS, "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_q": INT, "has_u": INT, "has_mu": INT, "has_lam": INT,
 }  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 

@@ -27,11 +27,14 @@ class Symbols:
         In the order of `ElementData.numbers`; integer ones are offsets of tables.
     joint_lam : list of list of Symbol
         Multipliers of each joint that is referred to.
+    switches : list of expressions
+        What changes its sign at the corners in the state of the formulas (``abs``, ``step``, ...).
     """
 
     element: SymbolicElement
     numbers: list[sp.Symbol] = field(default_factory=list)
     joint_lam: list[list[sp.Symbol]] = field(default_factory=list)
+    switches: list[sp.Expr] = field(default_factory=list)
 
 
 def symbols_of(kind: Kind) -> Symbols:
@@ -120,9 +123,24 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
-            return sp.sympify(evaluate(tree, names(variables), SYMBOLIC_FUNCTIONS, sp.sympify))
+            return sp.sympify(evaluate(tree, names(variables), self.functions(), sp.sympify))
 
         return function if n_variables else function()
+
+    def functions(self) -> dict[str, Callable[..., sp.Expr]]:
+        """The functions of formulas; those with corners note where they are, if it is in the state."""
+        e = self.symbols.element
+
+        def noting(function: Callable[..., sp.Expr], corners: Callable[..., tuple[sp.Expr, ...]]) -> Any:
+            def called(*arguments: sp.Expr) -> sp.Expr:
+                for corner in corners(*arguments):
+                    if {*e.q, *e.u} & sp.sympify(corner).free_symbols:
+                        self.symbols.switches.append(corner)
+                return function(*arguments)
+
+            return called
+
+        return SMOOTH | {name: noting(function, corners) for name, (function, corners) in CORNERED.items()}
 
     def measure(self, name: str, markers: list[Frame]) -> sp.Expr:
         """A measure between two markers, named as in Adams, in ground axes."""
@@ -181,13 +199,29 @@ def sign(x: sp.Expr) -> sp.Expr:
     return sp.Piecewise((sp.Integer(1), x >= 0), (sp.Integer(-1), True))
 
 
-SYMBOLIC_FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
-    **{name: getattr(sp, name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")},
-    **{name: getattr(sp, name) for name in ("sinh", "cosh", "tanh", "exp", "log", "sqrt")},
-    "abs": lambda x: sp.Piecewise((x, x >= 0), (-x, True)),
-    "sign": sign,
-    "min": less,
-    "max": greater,
-    "step": step,
-    "step5": step5,
+def magnitude(x: sp.Expr) -> sp.Expr:
+    """The absolute value."""
+    return sp.Piecewise((x, x >= 0), (-x, True))
+
+
+SMOOTH: dict[str, Callable[..., sp.Expr]] = {
+    name: getattr(sp, name)
+    for name in (
+        "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
+    )
+}  # fmt: skip
+
+
+def _differences(first: sp.Expr, *others: sp.Expr) -> tuple[sp.Expr, ...]:
+    return tuple(first - other for other in others)
+
+
+CORNERED: dict[str, tuple[Callable[..., sp.Expr], Callable[..., tuple[sp.Expr, ...]]]] = {
+    "abs": (magnitude, lambda x: (x,)),
+    "sign": (sign, lambda x: (x,)),
+    "min": (less, _differences),
+    "max": (greater, _differences),
+    "step": (step, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
+    "step5": (step5, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
 }
+"""Functions with corners, and what is zero there."""

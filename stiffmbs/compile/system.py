@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -17,9 +16,7 @@ from ..describe.element import Element
 from ..describe.marker import GROUND
 from ..describe.model import ModelData
 from ..errors import InputError
-from . import routines
 from .kind import ElementData, Kind, sorted_out
-from .layout import STATE, packed
 from .machine import Compiled, compiled_source
 from .record import KindRecord, record_of
 from .terms import KERNEL_SIGNATURE, TERM_AXES, TERM_SETS
@@ -203,86 +200,15 @@ class System:
         joint = np.searchsorted(starts, own, side="right") - 1
         return joint, own - starts[joint]
 
-    @cached_property
-    def kernels(self) -> dict[str, dict[int, Compiled]]:
-        """For each term set the compiled kernel of each group that contributes to it."""
-        return {
-            term_set: {
-                g: compiled_source(group.record.sources[term_set], "kernel", KERNEL_SIGNATURE)
-                for g, group in enumerate(self.groups)
-                if term_set in group.record.sources
-            }
-            for term_set in TERM_SETS
-        }
+    def kernel(self, term_set: str, group: Group) -> Compiled | None:
+        """The compiled kernel with which a group contributes to a set, if it does."""
+        source = group.record.sources.get(term_set)
+        return compiled_source(source, "kernel", KERNEL_SIGNATURE) if source else None
 
-    def state(self) -> State:
-        """New working memory for one solver: state vectors and room for every term."""
-        return State(self)
-
-
-class State:
-    """The working memory of one solver on one system: current q, u, lam, mu, and the values of all terms.
-
-    Attributes
-    ----------
-    q, u, lam, mu : ndarrays
-        Shapes (n_q,), (n_u,), (n_c,), (n_c,): what the kernels see.
-    table : ndarray of int
-        Addresses for compiled code (`stiffmbs.compile.layout.STATE`).
-    """
-
-    def __init__(self, system: System) -> None:
-        self.system = system
-        self._q = np.concatenate([system.q, np.zeros(PLANAR)])
-        self._u = np.concatenate([system.u, np.zeros(PLANAR)])
-        self.q, self.u = self._q[: system.n_q], self._u[: system.n_u]
-        self.lam, self.mu = np.zeros(system.n_c), np.zeros(system.n_c)
-        self.values = {s: np.concatenate([np.zeros(system.n_values(s)), system.mass, [1.0]]) for s in TERM_SETS}
-        self._calls = {s: self._kernel_calls(s) for s in TERM_SETS}
-        self.table = packed(STATE, self._fields())
-        self._terms = routines.TERMS.load()
-
-    def _kernel_calls(self, term_set: str) -> np.ndarray:
-        system = self.system
-        return np.array(
-            [
-                (kernel.address, group.count, group.index.ctypes.data, group.numbers.ctypes.data,
-                 system.places[term_set][g].ctypes.data)
-                for g, kernel in system.kernels[term_set].items()
-                for group in [system.groups[g]]
-            ],
-            dtype=np.int64,
-        ).reshape(-1, 5)  # fmt: skip
-
-    def _fields(self) -> Mapping[str, Any]:
-        self._n_calls = np.array([len(self._calls[s]) for s in TERM_SETS], dtype=np.int64)
-        self._calls_at = np.array([self._calls[s].ctypes.data for s in TERM_SETS], dtype=np.int64)
-        self._values_at = np.array([self.values[s].ctypes.data for s in TERM_SETS], dtype=np.int64)
-        return {
-            "n_q": self.system.n_q, "n_u": self.system.n_u, "n_c": self.system.n_c,
-            "q": self._q, "u": self._u, "lam": self.lam, "mu": self.mu,
-            "n_calls": self._n_calls, "calls": self._calls_at, "values": self._values_at,
-            "n_joints": len(self.system.joint_start) - 1, "joint_start": self.system.joint_start,
-        }  # fmt: skip
-
-    def evaluate(self, term_set: str, t: float) -> None:
-        """Compute all terms of a set at the current state."""
-        self._terms(t, list(TERM_SETS).index(term_set), self.table.ctypes.data)
-
-    def vector(self, term_set: str, name: str) -> np.ndarray:
-        """A vector term from the last evaluation of its set, assembled."""
-        term = self.system.term(term_set, name)
-        result = np.zeros(self.system.n_c if TERM_AXES[name] == "c" else self.system.n_u)
-        np.add.at(result, term.row, self.values[term_set][term.source])
-        return result
-
-    def matrix(self, term_set: str, name: str) -> np.ndarray:
-        """A matrix term from the last evaluation of its set, dense."""
-        term = self.system.term(term_set, name)
-        shape = tuple(self.system.n_c if axis in "cl" else self.system.n_u for axis in TERM_AXES[name])
-        result = np.zeros(shape)
-        np.add.at(result, (term.row, term.column), self.values[term_set][term.source])
-        return result
+    def constants(self, term_set: str) -> dict[str, int]:
+        """Where the constants stand that follow the values of a set: mass entries, relaxations, a one."""
+        starts = np.cumsum([self.n_values(term_set), self.n_u, self.n_c, self.n_c])
+        return {name: int(start) for name, start in zip(("M", "E_mu", "E_lam", "I"), starts, strict=True)}
 
 
 def compile_model(model: ModelData) -> System:

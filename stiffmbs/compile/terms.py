@@ -9,23 +9,28 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
     "acceleration": ("J", "gamma", "f", "f_lam"),
     "output": ("reaction", "potential"),
     "switch": ("switch",),
+    "all_levels": ("C", "V", "J", "gamma", "f"),
+    "all_levels_tangent": ("C_q", "J", "V_q", "G_lam", "A_q", "gamma_u", "f_q", "f_u", "f_lam"),
 }
 """What a solver asks for at one time, so that common subexpressions are computed once.
 
 C constraints, C_q = dC/dq, V the velocity level (C_q u + C_t, and equations that have no position form), J = dV/du,
 f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q, f_u, f_lam derivatives of f (forces
 of friction hang on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
-potential = energy, switch = what changes its sign at corners of a force.
+A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, potential = energy, switch = what changes its sign at corners of a force.
 """
 
 TERM_AXES: dict[str, str] = {
     "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "switch": "s",
     "C_q": "cq", "J": "cu", "V_q": "cq", "G_lam": "uq", "G_mu": "qq", "f_q": "uq", "f_u": "uu", "f_lam": "ul",
+    "A_q": "cq", "gamma_u": "cu",
 }  # fmt: skip
 """What a term's row and column count: c own equations, u velocities, q coordinates, l equations of the joints that are
 referred to, r parts of a reaction, s switches, e elements."""
 
-KERNEL_ARGUMENTS = "count, index, number, t, q, u, lam, mu, place, value"
-KERNEL_SIGNATURE = "void(int64, int64*, float64*, float64, float64*, float64*, float64*, float64*, int64*, float64*)"
+KERNEL_ARGUMENTS = "count, index, number, t, q, u, a, lam, mu, place, value"
+KERNEL_SIGNATURE = (
+    "void(int64, int64*, float64*, float64, float64*, float64*, float64*, float64*, float64*, int64*, float64*)"
+)
 """Arguments of every kernel: the number of elements; for each element and body the offsets in q and u; parameters;
-time and state; `place`, the kind's first equation and the first value of each term; the values, written."""
+time, q, u, accelerations and multipliers; `place`, the kind's first equation and the first value of each term; the values, written."""

@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.equations import Equations
 from ..compile.layout import IDA, packed
 from ..compile.routines import Routine
-from ..compile.system import State
+from ..compile.state import State
 from ..describe.settings import RunSettings
 from .formulations import FORMULATIONS
 from .initial import InitialValues
@@ -22,7 +22,7 @@ from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 _MODULE = "stiffmbs.solve.native.ida_callbacks"
 RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
-JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, float64, int64, int64*)")
+JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
 
 DENSE_UP_TO = 90
 """Unknowns up to which the dense linear solver is as fast as the sparse one."""
@@ -45,6 +45,8 @@ class Callbacks:
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
+        state.load(equations.formulation.residual_set)
+        state.load(equations.formulation.matrix_set)
         rows, columns = equations.pattern
         slots = rows * equations.n + columns if dense else None
         self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
@@ -72,7 +74,7 @@ class Callbacks:
         call = JACOBIAN.load()
 
         def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
-            call(t, id(y), cj, id(a), table)
+            call(t, id(y), id(yp), cj, id(a), table)
 
         return jacobian
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..compile.layout import MECHANICS, packed
 from ..compile.routines import Routine
-from ..compile.system import State, System
+from ..compile.state import State
+from ..compile.system import System
 from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
 
 _MODULE = "stiffmbs.solve.native.mechanics"
@@ -70,7 +71,9 @@ class Mechanics:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.state: State = system.state()
+        self.state = State(system)
+        for term_set in ("motion", "output"):
+            self.state.load(term_set)
         self._positions = SaddlePoint(POSITION_STEP, self.state)
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
         self._accelerations = SaddlePoint(ACCELERATIONS, self.state)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compile.equations import ABSENT, Block, Equations, Formulation, Product
 from ..compile.layout import FACTORS, packed
-from ..compile.system import State
+from ..compile.state import State
 
 _SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
 
@@ -55,6 +55,7 @@ class SaddlePoint:
 
     def __init__(self, formulation: Formulation, state: State) -> None:
         self.equations = Equations(formulation, state.system)
+        state.load(formulation.residual_set)
         self.equations_table, self._slots = self.equations.table()
         n = self.equations.n
         rows, columns = self.equations.pattern

@@ -46,9 +46,9 @@ def shifted(typing_context, pointer, count):
 
 
 @intrinsic
-def call_kernel(typing_context, kernel, count, index, number, t, q, u, lam, mu, place, value):
+def call_kernel(typing_context, kernel, count, index, number, t, q, u, a, lam, mu, place, value):
     """Call a kernel (`stiffmbs.compile.generate.KERNEL_SIGNATURE`) by its address."""
-    arguments_type = (kernel, count, index, number, t, q, u, lam, mu, place, value)
+    arguments_type = (kernel, count, index, number, t, q, u, a, lam, mu, place, value)
 
     def code(context, builder, signature, arguments):
         values = [context.get_value_type(kind) for kind in signature.args[1:]]

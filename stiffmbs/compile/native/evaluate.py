@@ -17,26 +17,31 @@ def evaluate(s, term_set, t):
         at = CALL_WIDTH * k
         call_kernel(
             calls[at], calls[at + 1], ints(calls[at + 2]), floats(calls[at + 3]),
-            t, s.q, s.u, s.lam, s.mu, ints(calls[at + 4]), values,
+            t, s.q, s.u, s.a, s.lam, s.mu, ints(calls[at + 4]), values,
         )  # fmt: skip
     return values
 
 
 @compiled
-def load(s, e, y):
-    """Take q, u, mu and lam out of a vector of unknowns."""
+def load(s, e, y, yp):
+    """Take q, u, mu and lam out of a vector of unknowns, and accelerations out of its derivative.
+
+    Where the formulation integrates the multipliers, they are derivatives too.
+    """
     if e.has_q:
         for k in range(s.n_q):
             s.q[k] = y[e.at_q[k]]
     if e.has_u:
         for k in range(s.n_u):
             s.u[k] = y[e.at_u[k]]
+            s.a[k] = yp[e.at_u[k]]
+    multipliers = yp if e.integrated else y
     if e.has_mu:
         for k in range(s.n_c):
-            s.mu[k] = y[e.at_mu[k]] if e.at_mu[k] >= 0 else 0.0
+            s.mu[k] = multipliers[e.at_mu[k]] if e.at_mu[k] >= 0 else 0.0
     if e.has_lam:
         for k in range(s.n_c):
-            s.lam[k] = y[e.at_lam[k]] if e.at_lam[k] >= 0 else 0.0
+            s.lam[k] = multipliers[e.at_lam[k]] if e.at_lam[k] >= 0 else 0.0
 
 
 @compiled

@@ -39,15 +39,15 @@ def residual(t, y, yp, r, ida):
     _note(c.history, t)
     s = state_view(c.state)
     e = equations_view(c.equations)
-    unknowns = _data(y, c.array_header)
-    load(s, e, unknowns)
-    add_products(e, evaluate(s, e.residual_set, t), unknowns, _data(yp, c.array_header), _data(r, c.array_header))
+    unknowns, rates = _data(y, c.array_header), _data(yp, c.array_header)
+    load(s, e, unknowns, rates)
+    add_products(e, evaluate(s, e.residual_set, t), unknowns, rates, _data(r, c.array_header))
 
 
-def jacobian(t, y, cj, a, ida):
+def jacobian(t, y, yp, cj, a, ida):
     """The iteration matrix dr/dy + cj dr/dy' into a numpy array."""
     c = ida_view(ida)
     s = state_view(c.state)
     e = equations_view(c.equations)
-    load(s, e, _data(y, c.array_header))
+    load(s, e, _data(y, c.array_header), _data(yp, c.array_header))
     add_entries(e, evaluate(s, e.matrix_set, t), cj, _data(a, c.array_header))
