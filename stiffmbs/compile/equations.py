@@ -179,7 +179,7 @@ class Equations:
             "matrix_set": sets.index(self.formulation.matrix_set),
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
-            "n_slots": n_slots, "n_entries": len(slot), "m_slot": slot, "m_source": self._source,
+            "n_slots": n_slots, "integrated": self.formulation.integrated, "n_entries": len(slot), "m_slot": slot, "m_source": self._source,
             "m_constant": self._constant, "m_cj": self._cj,
             "has_q": "q" in self.at, "has_u": "u" in self.at, "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             **self._index,
