@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from types import ModuleType
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import WithJsonSchema
 
@@ -19,6 +19,9 @@ from ..errors import InputError
 from .fields import Described
 from .formula_field import Formula
 from .marker import Marker
+
+if TYPE_CHECKING:
+    from .model import ModelData
 
 Symbolic = Any
 """The element as its equations see it: a `Frame` for a marker, a symbol for a number, an expression for a formula, a
@@ -62,6 +65,14 @@ class Element(Described):
     def equation_names(self) -> tuple[str, ...]:
         """The names of the element's constraint equations; none for a force."""
         return ()
+
+    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
+        yield from ()
+
+    def as_drawn(self, model: ModelData) -> Self:
+        """The element with what it leaves open taken from the bodies' described poses."""
+        return self
 
 
 class Joint(Element):

@@ -61,9 +61,10 @@ class Described(_Base):
     @classmethod
     def _no_unknown_key(cls, found: Any) -> Any:
         if isinstance(found, dict):
+            known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in found:
-                if key not in cls.model_fields:
-                    raise ValueError(f"found the unknown key '{key}', expected one of {', '.join(cls.model_fields)}")
+                if key not in known:
+                    raise ValueError(f"found the unknown key '{key}', expected one of {', '.join(known)}")
         return found
 
 

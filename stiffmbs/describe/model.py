@@ -76,8 +76,8 @@ class ModelData(Described):
 
     def elements(self) -> Iterator[tuple[str, Element]]:
         """Every joint, force and weight with its name (a weight has its body's)."""
-        yield from self.joints.items()
-        yield from self.forces.items()
+        for name, element in (*self.joints.items(), *self.forces.items()):
+            yield name, element.as_drawn(self)
         if self.gravity != (0.0, 0.0):
             for name, body in self.bodies.items():
                 yield name, Weight(i=name, mass=body.mass, gravity=self.gravity)
@@ -124,6 +124,8 @@ def check_element(where: str, element: Element, bodies: dict[str, Body], joints:
             raise ValueError(
                 f"{where}.{field}: found '{joint}', which refers to a joint itself, expected one between markers"
             )
+    for field, reason in element.refused(joints):
+        raise ValueError(f"{where}.{field}: {reason}")
     for field, formula in element.parts(Formula):
         for body in formula.bodies():
             if body not in (*bodies, GROUND):
