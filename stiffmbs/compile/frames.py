@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
+
+from .spline import integral
 
 COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
@@ -121,3 +124,8 @@ class SymbolicElement:
         """Distance of two points, with a derivative of zero where they coincide."""
         d = a - b
         return sp.sqrt(d.dot(d) + COINCIDENT)
+
+    @staticmethod
+    def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
+        """The integral of a law from 0 to x, for a potential; None where there is no simple one."""
+        return integral(law, x)

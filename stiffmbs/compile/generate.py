@@ -7,7 +7,7 @@ from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
 from .derive import Derived
-from .symbols import Spline
+from .spline import Spline
 from .terms import KERNEL_ARGUMENTS, TERM_SETS
 
 HEADER = "from stiffmbs.compile.native.spline import spline\nfrom math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"

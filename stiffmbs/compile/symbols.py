@@ -13,6 +13,7 @@ from ..describe.formula import evaluate
 from ..describe.formula_field import TIME
 from .frames import MARKER_NUMBERS, BodyFrame, Frame, SymbolicElement
 from .kind import Kind, Shape
+from .spline import Spline
 
 
 @dataclass
@@ -44,17 +45,6 @@ def symbols_of(kind: Kind) -> Symbols:
     builder = _Builder(frames, symbols)
     symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
     return symbols
-
-
-class Spline(sp.Function):  # type: ignore[misc]
-    """The value, or a derivative, of the table at an offset: Spline(x, offset, order)."""
-
-    nargs = 3
-    is_real = True
-
-    def fdiff(self, argindex: int = 1) -> sp.Expr:
-        x, table, order = self.args
-        return Spline(x, table, order + 1) if order < 3 else sp.Integer(0)
 
 
 class _Builder:
@@ -161,7 +151,7 @@ class _Builder:
             case "vy":
                 return e.rate(d[1])
             case "vm":
-                return sp.sqrt(e.rate(d[0]) ** 2 + e.rate(d[1]) ** 2)
+                return e.distance(sp.Matrix([e.rate(d[0]), e.rate(d[1])]), sp.zeros(2, 1))
             case "vr":
                 return e.rate(distance)
             case _:

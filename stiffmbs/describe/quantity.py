@@ -28,6 +28,10 @@ DIMENSIONS: dict[str, tuple[Dimension, str]] = {
     "torque": ((1, 2, -2), "N m"),
     "stiffness": ((1, 0, -2), "N/m"),
     "damping": ((1, 0, -1), "N s/m"),
+    "torsional stiffness": ((1, 2, -2), "N m/rad"),
+    "torsional damping": ((1, 2, -1), "N m s/rad"),
+    "coupling stiffness": ((1, 1, -2), "N/rad"),
+    "coupling damping": ((1, 1, -1), "N s/rad"),
 }
 
 

@@ -8,17 +8,37 @@ from .access import compiled
 
 
 @compiled
-def spline(number, at, x, order):
-    """The order-th derivative of the table at ``number[at]`` (`stiffmbs.compile.kind.spline_data`).
+def _area(number, first_piece, knots, pieces):
+    """The integral over the first pieces of a table."""
+    area = 0.0
+    for k in range(pieces):
+        piece = first_piece + 4 * k
+        h = number[knots + k + 1] - number[knots + k]
+        area += _piece_area(number, piece, h)
+    return area
 
-    Outside its points it goes on with the slope of its end, or repeats.
+
+@compiled
+def _piece_area(number, piece, z):
+    """The integral of one piece from its start to z."""
+    a, b, c, d = number[piece], number[piece + 1], number[piece + 2], number[piece + 3]
+    return (((a / 4.0 * z + b / 3.0) * z + c / 2.0) * z + d) * z
+
+
+@compiled
+def spline(number, at, x, order):
+    """The order-th derivative of the table at ``number[at]`` (`stiffmbs.compile.kind.spline_data`); -1 for its integral.
+
+    Outside its points it goes on with the slope of its end, or repeats.  The integral starts at the first point.
     """
     count = int(number[at])
     knots = at + 2
     first = number[knots]
     last = number[knots + count - 1]
+    turns = 0.0
     if number[at + 1] == 1.0:
-        x = x - floor((x - first) / (last - first)) * (last - first)
+        turns = floor((x - first) / (last - first))
+        x = x - turns * (last - first)
     low = 0
     high = count - 2
     while low < high:
@@ -32,8 +52,13 @@ def spline(number, at, x, order):
     inside = min(max(x, first), last)
     z = inside - number[knots + low]
     slope = (3.0 * a * z + 2.0 * b) * z + c
+    value = ((a * z + b) * z + c) * z + d
     if order == 0:
-        return ((a * z + b) * z + c) * z + d + (x - inside) * slope
+        return value + (x - inside) * slope
+    if order == -1:
+        begin = knots + count
+        area = turns * _area(number, begin, knots, count - 1) + _area(number, begin, knots, low)
+        return area + _piece_area(number, piece, z) + (x - inside) * (value + (x - inside) / 2.0 * slope)
     if order == 1:
         return slope
     if x != inside:
