@@ -49,8 +49,28 @@ MECHANICS: Layout = {
 """The tables of one state and its three block systems; `largest` receives what a step reports besides its status."""
 
 
-IDA: Layout = {"state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT}
+IDA: Layout = {"state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT, "n_switches": INT}
 """What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array."""
+
+
+SCHEME: Layout = {
+    "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
+    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
+    "exponent": FLOATS, "memory": FLOATS, "stability": FLOATS,
+}  # fmt: skip
+"""The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
+
+EXPLICIT: Layout = {
+    "mechanics": INTS, "scheme": INTS, "n": INT, "project": INT, "tolerance": FLOATS,
+    "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS,
+    "t": FLOATS, "t_before": FLOATS, "h": FLOATS, "last_error": FLOATS,
+    "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
+    "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff": INTS, "stiff_steps": INTS,
+    "n_times": INT, "times": FLOATS, "next_time": INTS,
+    "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
+}  # fmt: skip
+"""An explicit integration between two calls: the state y = (q, u) now and before the last step, the stages k, the
+counters, the output times (none: every step), and room for the rows and ends of steps that one call stores."""
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:

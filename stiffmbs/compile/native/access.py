@@ -10,7 +10,7 @@ from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 
-from ..layout import EQUATIONS, FACTORS, IDA, MECHANICS, STATE, Layout
+from ..layout import EQUATIONS, EXPLICIT, FACTORS, IDA, MECHANICS, SCHEME, STATE, Layout
 
 compiled = njit(error_model="numpy")
 """Marks a function for use in compiled routines: a division by zero gives infinity, nothing raises."""
@@ -74,3 +74,5 @@ equations_view = view_of("Equations", EQUATIONS)
 factors_view = view_of("Factors", FACTORS)
 ida_view = view_of("Ida", IDA)
 mechanics_view = view_of("Mechanics", MECHANICS)
+scheme_view = view_of("Scheme", SCHEME)
+explicit_view = view_of("Explicit", EXPLICIT)
