@@ -107,7 +107,7 @@ def test_dense_and_sparse_solvers_agree_on_a_chain(count, monkeypatch):
     scene = stiffmbs.read_scene(text)
     assert len(scene.bodies) == count
     chosen = stiffmbs.run(scene)
-    monkeypatch.setattr("stiffmbs.solve.bdf.DENSE_UP_TO", 10_000 if 10 * count > 90 else 0)
+    monkeypatch.setattr("stiffmbs.solve.sundae.DENSE_UP_TO", 10_000 if 10 * count > 90 else 0)
     other = stiffmbs.run(scene)
     np.testing.assert_allclose(other[f"link{count}.x"], chosen[f"link{count}.x"], atol=1e-6)
 

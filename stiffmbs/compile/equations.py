@@ -58,6 +58,8 @@ class Formulation:
         The term sets that residual and matrix are made of.
     residual : sequence of Product
     matrix : sequence of Block
+    tested : tuple of str
+        Unknowns whose error the integrator controls.
     integrated : bool
         Whether the unknowns mu and lam are integrals of the multipliers, which then are their derivatives.
     """
@@ -68,6 +70,7 @@ class Formulation:
     matrix_set: str
     residual: Sequence[Product]
     matrix: Sequence[Block]
+    tested: tuple[str, ...] = ("q", "u")
     integrated: bool = False
 
 

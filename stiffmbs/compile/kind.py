@@ -193,7 +193,7 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
             return None
         if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
             return None
-    functions = {**FUNCTIONS, **_NUMERIC_FUNCTIONS}
+    functions = {**FUNCTIONS, **NUMERIC_FUNCTIONS}
     return evaluate(node, lambda name: Quantity(formula.values[name]), functions, lambda n: Quantity(float(n))).value
 
 
@@ -209,7 +209,7 @@ def step5_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
     return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
 
 
-_NUMERIC_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
+NUMERIC_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     "step": lambda *a: Quantity(step_value(*(q.value for q in a))),
     "step5": lambda *a: Quantity(step5_value(*(q.value for q in a))),
     "sign": lambda a: Quantity(math.copysign(1.0, a.value)),

@@ -1,184 +1,118 @@
-"""BDF of variable order and step: SUNDIALS IDA through scikit-sundae, as Adams' GSTIFF."""
+"""BDF of variable order and step: SUNDIALS IDA, as Adams' GSTIFF."""
 
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
-from ..compile.equations import Equations
-from ..compile.layout import IDA, packed
-from ..compile.routines import Routine
-from ..compile.state import State
+from ..compile.corners import corner_times
+from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
+from ..errors import SolverError
 from .formulations import FORMULATIONS
 from .initial import InitialValues
 from .mechanics import Mechanics
+from .relaxation import relax
+from .restart import restarted
+from .sundae import Reached, SundaeIda
 from .tolerances import absolute_tolerances
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
-_MODULE = "stiffmbs.solve.native.ida_callbacks"
-RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
-JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
-
-DENSE_UP_TO = 90
-"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
 OUT_OF_THE_ERROR_TEST = 1e15
 """Absolute tolerance of multipliers, which scikit-sundae cannot suppress in the error test (measured: without this
 the index-2 problems fail; with it the tolerance has to be corrected for the unknowns that still count in the norm)."""
-HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
-MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
-
-
-class Callbacks:
-    """Residual and Jacobian of one formulation as IDA calls them, and the history of IDA's steps.
-
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-    dense : bool
-        Whether the Jacobian is a full matrix, or the values of the pattern's entries by columns.
-    """
-
-    def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
-        state.load(equations.formulation.residual_set)
-        state.load(equations.formulation.matrix_set)
-        rows, columns = equations.pattern
-        slots = rows * equations.n + columns if dense else None
-        self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
-        self._history[3] = HISTORY_ROOM
-        self._equations_table, slot_of_entry = equations.table(slots)
-        fields = {
-            "state": state.table, "equations": self._equations_table, "history": self._history,
-            "array_header": object.__basicsize__,
-        }  # fmt: skip
-        table = packed(IDA, fields)
-        self._kept = (state, equations, slot_of_entry, table)
-        self.residual, self.jacobian = self._residual(table.ctypes.data), self._jacobian(table.ctypes.data)
-
-    @staticmethod
-    def _residual(table: int) -> Any:
-        call = RESIDUAL.load()
-
-        def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
-            call(t, id(y), id(yp), id(r), table)  # asking an array for .ctypes.data costs more than the residual
-
-        return residual
-
-    @staticmethod
-    def _jacobian(table: int) -> Any:
-        call = JACOBIAN.load()
-
-        def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
-            call(t, id(y), id(yp), cj, id(a), table)
-
-        return jacobian
-
-    def begin(self, t: float) -> None:
-        """Start a new history."""
-        self._history[:3] = t, 0, 0
-
-    @property
-    def steps(self) -> int:
-        """Accepted steps so far."""
-        return int(self._history[1])
-
-    @property
-    def rejected(self) -> int:
-        """Steps tried in vain so far."""
-        return int(self._history[2])
-
-    @property
-    def step_times(self) -> np.ndarray:
-        """Ends of the accepted steps, the first `HISTORY_ROOM` of them."""
-        return self._history[HISTORY_HEAD : HISTORY_HEAD + min(self.steps, HISTORY_ROOM)].copy()
-
-
-class _Ida:
-    """IDA set up for one system and formulation."""
-
-    def __init__(self, mechanics: Mechanics, settings: RunSettings) -> None:
-        from sksundae.ida import IDA as SundialsIda
-
-        self.equations = Equations(FORMULATIONS[settings.formulation], mechanics.system)
-        dense = self.equations.n <= DENSE_UP_TO
-        self.callbacks = Callbacks(self.equations, mechanics.state, dense)
-        linear: dict[str, Any] = (
-            {"linsolver": "dense"} if dense else {"linsolver": "sparse", "sparsity": self._sparsity()}
-        )
-        rtol, atol = self._tolerances(settings)
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
-            self._ida = SundialsIda(
-                self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
-                max_num_steps=MOST_STEPS_BETWEEN_OUTPUTS, max_step=settings.max_step, **linear,
-            )  # fmt: skip
-
-    def _sparsity(self) -> Any:
-        from scipy.sparse import csc_matrix
-
-        rows, columns = self.equations.pattern
-        return csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.equations.n,) * 2)
-
-    def _tolerances(self, settings: RunSettings) -> tuple[float, np.ndarray]:
-        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts positions and velocities."""
-        at, system = self.equations.at, self.equations.system
-        correction = np.sqrt(self.equations.n / (system.n_q + system.n_u))
-        atol = np.full(self.equations.n, OUT_OF_THE_ERROR_TEST)
-        atol[at["q"]] = atol[at["u"]] = absolute_tolerances(system, settings)
-        return settings.rtol * correction, atol * correction
-
-    def begin(self, start: InitialValues, t: float) -> Any:
-        """Start at consistent values."""
-        at = self.equations.at
-        y, yp = np.zeros(self.equations.n), np.zeros(self.equations.n)
-        y[at["q"]], y[at["u"]] = start.q, start.u
-        y[at["lam"]] = start.lam
-        yp[at["q"]], yp[at["u"]] = start.u, start.acceleration
-        self.callbacks.begin(t)
-        return self._ida.init_step(t, y, yp)
-
-    def results(self, grid: Grid) -> Iterator[Any]:
-        """IDA's result at each time of the grid, or after each of its steps."""
-        if grid.times is not None:
-            for time in grid.times[1:]:
-                yield self._ida.step(time, method="normal", tstop=grid.end)
-            return
-        t = grid.start
-        while t < grid.end:
-            result = self._ida.step(grid.end, method="onestep", tstop=grid.end)
-            t = result.t
-            yield result
 
 
 def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
-    """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`."""
-    ida = _Ida(mechanics, settings)
+    """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`.
+
+    At corners in time, and where a force changes its law (a contact closes), the integrator stops and starts anew.
+    """
+    integrator = _Integrator(mechanics, settings)
     system = mechanics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
-    at_q, at_u = ida.equations.at["q"], ida.equations.at["u"]
-    outcome, message, result = Outcome.DONE, Outcome.DONE.value, ida.begin(start, grid.start)
+    outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
-        for result in ida.results(grid):
-            if result.status < 0:
-                outcome, message = Outcome.STOPPED, _stopped_sentence(result)
+        for reached in integrator.run(start, grid):
+            if reached.failure:
+                outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {reached.failure}"
                 break
-            rows.append(result.t, result.y[at_q], result.y[at_u])
-            watch(result.t)
+            rows.append(reached.t, *integrator.split(reached.y))
+            watch(reached.t)
+    except SolverError as error:
+        outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-    statistics = {
-        "steps": ida.callbacks.steps, "rejected": ida.callbacks.rejected, "residuals": result.nfev,
-        "jacobians": result.njev, "seconds": time.perf_counter() - begun,
-    }  # fmt: skip
-    return Trajectory(*rows.stored, outcome, message, statistics, ida.callbacks.step_times)
+    statistics = {**integrator.statistics(), "seconds": time.perf_counter() - begun}
+    return Trajectory(*rows.stored, outcome, message, statistics, integrator.ida.step_times)
 
 
-def _stopped_sentence(result: Any) -> str:
-    return f"IDA stopped at t = {result.t:.9g} s: {result.message.rstrip('.').lower()}"
+class _Integrator:
+    """IDA over the pieces of a run: from corner to corner, from event to event."""
+
+    def __init__(self, mechanics: Mechanics, settings: RunSettings) -> None:
+        self.mechanics, self.settings = mechanics, settings
+        self.equations = Equations(FORMULATIONS[settings.formulation](settings), mechanics.system)
+        self.ida = SundaeIda(self.equations, mechanics.state, *self._tolerances(), settings.max_step)
+        self._events = self._corners = 0
+
+    def _tolerances(self) -> tuple[float, np.ndarray]:
+        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts those in the error test."""
+        at, system = self.equations.at, self.mechanics.system
+        tested = self.equations.formulation.tested
+        correction = np.sqrt(self.equations.n / sum(len(at[name]) for name in tested))
+        atol = np.full(self.equations.n, OUT_OF_THE_ERROR_TEST)
+        for name in tested:
+            atol[at[name]] = absolute_tolerances(system, self.settings)
+        return self.settings.rtol * correction, atol * correction
+
+    def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """q and u from a vector of unknowns."""
+        return y[self.equations.at["q"]], y[self.equations.at["u"]]
+
+    def run(self, start: InitialValues, grid: Grid) -> Iterator[Reached]:
+        """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
+        t = grid.start
+        for stop in (*corner_times(self.mechanics.system, grid.start, grid.end), grid.end):
+            while t < stop:
+                self._begin(start, t)
+                for reached, asked_for in self._leg(t, stop, grid):
+                    if asked_for or reached.failure:
+                        yield reached
+                if reached.failure:
+                    return
+                t = reached.t
+                if t < grid.end:
+                    start = restarted(self.mechanics, t, *self.split(reached.y))
+                    self._events += t < stop
+                    self._corners += t >= stop
+
+    def _leg(self, t: float, stop: float, grid: Grid) -> Iterator[tuple[Reached, bool]]:
+        """Integrate from t to `stop` or to the first event; with each instant, whether it was asked for."""
+        if grid.times is None:
+            for reached in self.ida.by_steps(stop):
+                yield reached, True
+            return
+        times = grid.times[(grid.times > t) & (grid.times <= stop)]
+        ends_there = len(times) > 0 and times[-1] == stop
+        for reached in self.ida.to_times(times if ends_there else np.append(times, stop), stop):
+            yield reached, not reached.at_root and (reached.t < stop or ends_there)
+
+    def _begin(self, start: InitialValues, t: float) -> None:
+        at = self.equations.at
+        y, yp = np.zeros(self.equations.n), np.zeros(self.equations.n)
+        y[at["q"]], y[at["u"]] = start.q, start.u
+        yp[at["q"]], yp[at["u"]] = start.u, start.acceleration
+        solved = at["lam"] != ABSENT
+        multipliers = yp if self.equations.formulation.integrated else y
+        multipliers[at["lam"][solved]] = start.lam[solved]
+        relax(self.mechanics, self.settings, t)
+        self.ida.begin(t, y, yp)
+
+    def statistics(self) -> dict[str, int | float]:
+        """IDA's counters, and how often it started anew."""
+        return {**self.ida.statistics(), "corners": self._corners, "events": self._events}

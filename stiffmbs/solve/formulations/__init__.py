@@ -1,5 +1,21 @@
 """Formulations of the residual that the BDF integrator solves, one per file, named as in Adams."""
 
-from .si2 import SI2
+from __future__ import annotations
 
-FORMULATIONS = {formulation.name: formulation for formulation in (SI2,)}
+from collections.abc import Callable
+
+from ...compile.equations import Formulation
+from ...describe.settings import RunSettings
+from .i3 import I3
+from .index1 import index1
+from .si1 import SI1
+from .si2 import SI2, SI2_EXACT
+
+FORMULATIONS: dict[str, Callable[[RunSettings], Formulation]] = {
+    "SI2": lambda settings: SI2,
+    "SI2_exact": lambda settings: SI2_EXACT,
+    "SI1": lambda settings: SI1,
+    "I3": lambda settings: I3,
+    "index1": lambda settings: index1(settings.stabilisation),
+}
+"""By the name in the settings."""

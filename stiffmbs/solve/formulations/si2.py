@@ -1,30 +1,41 @@
-"""Stabilised index 2 (SI2)."""
+"""Stabilised index 2 (SI2), relaxed and exact.
+
+Gear, Gupta, Leimkuhler, Automatic integration of Euler-Lagrange equations with constraints, J. Comput. Appl. Math.
+12-13 (1985) 77-90: both levels of every constraint hold, mu brings positions back.
+"""
 
 from __future__ import annotations
 
 from ...compile.equations import Block, Formulation, Product
 
-SI2 = Formulation(
-    name="SI2",
-    unknowns=("q", "u", "mu", "lam"),
-    residual_set="motion",
-    matrix_set="tangent",
-    residual=(
-        Product("q", +1, "I", "q'"), Product("q", -1, "Z", "u"), Product("q", +1, "C_q.T", "mu"),
-        Product("u", +1, "M", "u'"), Product("u", -1, "f"), Product("u", +1, "J.T", "lam"),
-        Product("mu", +1, "C"),
-        Product("lam", +1, "V"),
-    ),
-    matrix=(
-        Block("q", "q", "I", constant=0, cj=1), Block("q", "q", "G_mu"), Block("q", "u", "Z", -1), Block("q", "mu", "C_q.T"),
-        Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
-        Block("u", "q", "G_lam"), Block("u", "lam", "J.T"), Block("u", "lam", "f_lam", -1),
-        Block("mu", "q", "C_q"),
-        Block("lam", "q", "V_q"), Block("lam", "u", "J"),
-    ),
+_RESIDUAL = (
+    Product("q", +1, "I", "q'"), Product("q", -1, "Z", "u"), Product("q", +1, "C_q.T", "mu"),
+    Product("u", +1, "M", "u'"), Product("u", -1, "f"), Product("u", +1, "J.T", "lam"),
+    Product("mu", +1, "C"),
+    Product("lam", +1, "V"),
 )  # fmt: skip
-"""q' - Z u + C_q^T mu = 0, M u' - f + J^T lam = 0, C = 0, V = J u + C_t = 0: both levels of every constraint hold.
+_MATRIX = (
+    Block("q", "q", "I", constant=0, cj=1), Block("q", "q", "G_mu"), Block("q", "u", "Z", -1), Block("q", "mu", "C_q.T"),
+    Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
+    Block("u", "q", "G_lam"), Block("u", "lam", "J.T"), Block("u", "lam", "f_lam", -1),
+    Block("mu", "q", "C_q"),
+    Block("lam", "q", "V_q"), Block("lam", "u", "J"),
+)  # fmt: skip
 
-Gear, Gupta, Leimkuhler, Automatic integration of Euler-Lagrange equations with constraints, J. Comput. Appl.
-Math. 12-13 (1985) 77-90.
+SI2_EXACT = Formulation("SI2_exact", ("q", "u", "mu", "lam"), "motion", "tangent", _RESIDUAL, _MATRIX)
+"""q' - Z u + C_q^T mu = 0, M u' - f + J^T lam = 0, C = 0, V = J u + C_t = 0."""
+
+SI2 = Formulation(
+    "SI2",
+    ("q", "u", "mu", "lam"),
+    "motion",
+    "tangent",
+    (*_RESIDUAL, Product("mu", -1, "E_mu", "mu"), Product("lam", -1, "E_lam", "lam")),
+    (*_MATRIX, Block("mu", "mu", "E_mu", -1), Block("lam", "lam", "E_lam", -1)),
+)
+"""SI2 with C - E_mu mu = 0 and V - E_lam lam = 0: a viscous creep far below the tolerance in place of the exact rows.
+
+The iteration matrix is then never singular: poses in which constraints become dependent are passed, and redundant
+equations need no removal.  mu is zero on the exact solution, so C stays at rounding; V is off by E_lam lam, which
+dissipates and never rings.
 """

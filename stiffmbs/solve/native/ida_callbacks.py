@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiffmbs.compile.native.access import compiled, equations_view, floats, ida_view, ints, state_view
-from stiffmbs.compile.native.evaluate import add_entries, add_products, evaluate, load
+from stiffmbs.compile.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 
 LAST_TIME, STEPS, REJECTED, ROOM = range(4)
 """What the head of the history holds; the times of the steps' ends follow it."""
@@ -51,3 +51,14 @@ def jacobian(t, y, yp, cj, a, ida):
     e = equations_view(c.equations)
     load(s, e, _data(y, c.array_header), _data(yp, c.array_header))
     add_entries(e, evaluate(s, e.matrix_set, t), cj, _data(a, c.array_header))
+
+
+def switches(t, y, yp, values, ida):
+    """What changes its sign at the corners in the state, into a numpy array."""
+    c = ida_view(ida)
+    s = state_view(c.state)
+    load(s, equations_view(c.equations), _data(y, c.array_header), _data(yp, c.array_header))
+    found = evaluate(s, SWITCH, t)
+    into = _data(values, c.array_header)
+    for k in range(c.n_switches):
+        into[k] = found[k]

@@ -1,0 +1,191 @@
+"""IDA through scikit-sundae, with compiled residual, Jacobian and root functions called from Python."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..compile.equations import Equations
+from ..compile.layout import IDA, packed
+from ..compile.routines import Routine
+from ..compile.state import State
+
+_MODULE = "stiffmbs.solve.native.ida_callbacks"
+RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
+JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
+SWITCHES = Routine(_MODULE, "switches", "void(float64, int64, int64, int64, int64*)")
+
+DENSE_UP_TO = 90
+"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
+HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
+MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
+ROOT_FOUND = 2
+"""IDA's status for a step that ended at a root."""
+
+
+class Callbacks:
+    """Residual and Jacobian of one formulation as IDA calls them, and the history of IDA's steps.
+
+    Parameters
+    ----------
+    equations : Equations
+    state : State
+    dense : bool
+        Whether the Jacobian is a full matrix, or the values of the pattern's entries by columns.
+    """
+
+    def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
+        state.load(equations.formulation.residual_set)
+        state.load(equations.formulation.matrix_set)
+        state.load("switch")
+        rows, columns = equations.pattern
+        slots = rows * equations.n + columns if dense else None
+        self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
+        self._history[3] = HISTORY_ROOM
+        self._equations_table, slot_of_entry = equations.table(slots)
+        fields = {
+            "state": state.table, "equations": self._equations_table, "history": self._history,
+            "array_header": object.__basicsize__, "n_switches": state.system.n_values("switch"),
+        }  # fmt: skip
+        table = packed(IDA, fields)
+        self._kept = (state, equations, slot_of_entry, table)
+        at = table.ctypes.data
+        self.residual, self.jacobian, self.switches = self._residual(at), self._jacobian(at), self._switches(at)
+
+    @staticmethod
+    def _residual(table: int) -> Any:
+        call = RESIDUAL.load()
+
+        def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
+            call(t, id(y), id(yp), id(r), table)  # asking an array for .ctypes.data costs more than the residual
+
+        return residual
+
+    @staticmethod
+    def _jacobian(table: int) -> Any:
+        call = JACOBIAN.load()
+
+        def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
+            call(t, id(y), id(yp), cj, id(a), table)
+
+        return jacobian
+
+    @staticmethod
+    def _switches(table: int) -> Any:
+        call = SWITCHES.load()
+
+        def switches(t: float, y: np.ndarray, yp: np.ndarray, values: np.ndarray) -> None:
+            call(t, id(y), id(yp), id(values), table)
+
+        return switches
+
+    def begin(self, t: float) -> None:
+        """Go on with the history from an instant at which IDA starts anew."""
+        self._history[0] = t
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps so far."""
+        return int(self._history[1])
+
+    @property
+    def rejected(self) -> int:
+        """Steps tried in vain so far."""
+        return int(self._history[2])
+
+    @property
+    def step_times(self) -> np.ndarray:
+        """Ends of the accepted steps, the first `HISTORY_ROOM` of them."""
+        return self._history[HISTORY_HEAD : HISTORY_HEAD + min(self.steps, HISTORY_ROOM)].copy()
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Where the integrator has come: time, unknowns, whether a root stopped it, and what went wrong, if anything."""
+
+    t: float
+    y: np.ndarray
+    at_root: bool = False
+    failure: str = ""
+
+
+class SundaeIda:
+    """IDA set up for one system and formulation.
+
+    Parameters
+    ----------
+    equations : Equations
+    state : State
+    rtol : float
+    atol : ndarray, shape (n,)
+    max_step : float
+        s; 0 for none.
+    """
+
+    def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None:
+        from sksundae.ida import IDA as SundialsIda
+
+        self.equations = equations
+        dense = equations.n <= DENSE_UP_TO
+        self.callbacks = Callbacks(equations, state, dense)
+        options: dict[str, Any] = {"linsolver": "dense"} if dense else self._sparse()
+        n_switches = state.system.n_values("switch")
+        if n_switches:
+            options |= {"eventsfn": self.callbacks.switches, "num_events": n_switches}
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
+            self._ida = SundialsIda(
+                self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
+                max_num_steps=MOST_STEPS_BETWEEN_OUTPUTS, max_step=max_step, **options,
+            )  # fmt: skip
+        self._before = {"residuals": 0, "jacobians": 0}
+        self._since = {"residuals": 0, "jacobians": 0}
+
+    def _sparse(self) -> dict[str, Any]:
+        from scipy.sparse import csc_matrix
+
+        rows, columns = self.equations.pattern
+        pattern = csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.equations.n,) * 2)
+        return {"linsolver": "sparse", "sparsity": pattern}
+
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray) -> None:
+        """Start, or start anew, at consistent values."""
+        for name, count in self._since.items():
+            self._before[name] += count
+        self.callbacks.begin(t)
+        self._ida.init_step(t, y, yp)
+
+    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+        """Integrate through given times without passing `stop`; ends at a root or a failure."""
+        for time in times:
+            reached = self._reached(self._ida.step(time, method="normal", tstop=stop))
+            yield reached
+            if reached.at_root or reached.failure:
+                return
+
+    def by_steps(self, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` step by step; ends at a root or a failure."""
+        while True:
+            reached = self._reached(self._ida.step(stop, method="onestep", tstop=stop))
+            yield reached
+            if reached.at_root or reached.failure or reached.t >= stop:
+                return
+
+    def _reached(self, result: Any) -> Reached:
+        self._since = {"residuals": result.nfev, "jacobians": result.njev}
+        failure = result.message.rstrip(".").lower() if result.status < 0 else ""
+        return Reached(result.t, result.y, result.status == ROOT_FOUND, failure)
+
+    def statistics(self) -> dict[str, int | float]:
+        """Counters since the first start."""
+        calls = {name: self._before[name] + self._since[name] for name in self._before}
+        return {"steps": self.callbacks.steps, "rejected": self.callbacks.rejected, **calls}
+
+    @property
+    def step_times(self) -> np.ndarray:
+        """Ends of the accepted steps."""
+        return self.callbacks.step_times
