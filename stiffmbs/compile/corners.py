@@ -15,11 +15,10 @@ from functools import partial
 import numpy as np
 
 from ..describe.element import Element
-from ..describe.formula import UNIT, evaluate
+from ..describe.formula import UNIT
 from ..describe.formula_field import TIME, Formula, FormulaOf, is_measure, reading_order
-from ..describe.quantity import FUNCTIONS, Quantity
+from ..describe.formula_value import formula_value
 from ..describe.table import Table
-from .kind import NUMERIC_FUNCTIONS
 from .system import System
 
 SAMPLES = 4001
@@ -92,7 +91,7 @@ def _of_formula(formula: Formula, start: float, end: float) -> Iterator[float]:
     for node in reading_order(formula.tree):
         for condition in _conditions(node):
             if _depends_on_time_alone(condition, formula):
-                yield from _zeros(partial(_value, condition, formula), start, end)
+                yield from _zeros(partial(_at, formula, condition), start, end)
 
 
 def _conditions(node: ast.expr) -> list[ast.expr]:
@@ -118,12 +117,8 @@ def _depends_on_time_alone(node: ast.expr, formula: Formula) -> bool:
     return used
 
 
-def _value(node: ast.expr, formula: Formula, t: float) -> float:
-    def names(name: str) -> Quantity:
-        return Quantity(t if name == TIME else formula.values[name])
-
-    functions = {**FUNCTIONS, **NUMERIC_FUNCTIONS}
-    return evaluate(node, names, functions, lambda n: Quantity(float(n))).value
+def _at(formula: Formula, condition: ast.expr, t: float) -> float:
+    return formula_value(formula, condition, t=t)
 
 
 def _zeros(condition: Callable[[float], float], start: float, end: float) -> Iterator[float]:

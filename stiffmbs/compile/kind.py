@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..describe.element import Element, Joint, JointName
-from ..describe.formula import UNIT, evaluate
+from ..describe.formula import UNIT
 from ..describe.formula_field import TIME, Formula, is_measure, measured_markers
+from ..describe.formula_value import formula_value
 from ..describe.marker import Marker
 from ..describe.model import ModelData
-from ..describe.quantity import FUNCTIONS, Quantity
 from ..describe.table import Table
 
 Shape = tuple[Any, ...]
@@ -193,27 +192,8 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
             return None
         if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
             return None
-    functions = {**FUNCTIONS, **NUMERIC_FUNCTIONS}
-    return evaluate(node, lambda name: Quantity(formula.values[name]), functions, lambda n: Quantity(float(n))).value
+    return formula_value(formula, node)
 
-
-def step_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
-    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic that is flat at both ends."""
-    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
-    return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
-
-
-def step5_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
-    """Adams' STEP5: from h0 at x0 to h1 at x1 by a quintic without slope and curvature at both ends."""
-    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
-    return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
-
-
-NUMERIC_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
-    "step": lambda *a: Quantity(step_value(*(q.value for q in a))),
-    "step5": lambda *a: Quantity(step5_value(*(q.value for q in a))),
-    "sign": lambda a: Quantity(math.copysign(1.0, a.value)),
-}
 
 NATURAL, PERIODIC = 0.0, 1.0
 

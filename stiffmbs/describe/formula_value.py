@@ -1,0 +1,50 @@
+"""The number that a formula gives, without SymPy."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable
+
+from .formula import evaluate
+from .formula_field import Formula
+from .quantity import FUNCTIONS, Quantity
+
+
+def formula_value(formula: Formula, node: ast.expr | None = None, **variables: float) -> float:
+    """The value of a formula, or of one node of it, that holds neither coordinates nor measures.
+
+    Parameters
+    ----------
+    formula : Formula
+    node : ast.expr, optional
+        The part to evaluate; the whole formula by default.
+    **variables
+        Values of time (``t``) and of the formula's variables, where it uses them.
+    """
+
+    def names(name: str) -> Quantity:
+        return Quantity(variables[name] if name in variables else formula.values[name])
+
+    tree = formula.tree if node is None else node
+    return evaluate(tree, names, _FUNCTIONS, lambda n: Quantity(float(n))).value
+
+
+def step_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic that is flat at both ends."""
+    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
+    return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
+
+
+def step5_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    """Adams' STEP5: from h0 at x0 to h1 at x1 by a quintic without slope and curvature at both ends."""
+    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
+    return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
+
+
+_FUNCTIONS: dict[str, Callable[..., Quantity]] = {
+    **FUNCTIONS,
+    "step": lambda *a: Quantity(step_value(*(q.value for q in a))),
+    "step5": lambda *a: Quantity(step5_value(*(q.value for q in a))),
+    "sign": lambda a: Quantity(math.copysign(1.0, a.value)),
+}
