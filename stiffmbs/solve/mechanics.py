@@ -16,7 +16,6 @@ _MODULE = "stiffmbs.solve.native.mechanics"
 ASSEMBLE = Routine(_MODULE, "assemble", "int64(float64, float64, int64, int64*)")
 CORRECT_VELOCITIES = Routine(_MODULE, "correct_velocities", "int64(float64, int64*)")
 ACCELERATE = Routine(_MODULE, "accelerate", "int64(float64, float64*, int64*)")
-EULER_CROMER = Routine(_MODULE, "euler_cromer", "int64(float64, float64, int64, int64, float64, int64*)")
 OUTPUT_POINTS = Routine(
     _MODULE,
     "output_points",
@@ -108,10 +107,6 @@ class Mechanics:
         """Status and u' from the block system; the multipliers are in the state's lam."""
         acceleration = np.empty(self.system.n_u)
         return ACCELERATE.load()(t, acceleration.ctypes.data, self._at), acceleration
-
-    def euler_cromer(self, t: float, h: float, steps: int, project: bool) -> int:
-        """Take explicit steps from the current state; the number of steps done or a status."""
-        return EULER_CROMER.load()(t, h, steps, project, POSITION_TOLERANCE, self._at)
 
     def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
         """What is reported at given instants and states, up to the first that has no solution.

@@ -72,10 +72,20 @@ class Rows:
 
     def append(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Store one state."""
-        if self._count == len(self._t):
-            self._t, self._q, self._u = (np.concatenate([a, np.empty_like(a)]) for a in (self._t, self._q, self._u))
+        self._make_room(1)
         self._t[self._count], self._q[self._count], self._u[self._count] = t, q, u
         self._count += 1
+
+    def extend(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> None:
+        """Store states, one in each row."""
+        self._make_room(len(t))
+        added = slice(self._count, self._count + len(t))
+        self._t[added], self._q[added], self._u[added] = t, q, u
+        self._count += len(t)
+
+    def _make_room(self, count: int) -> None:
+        while self._count + count > len(self._t):
+            self._t, self._q, self._u = (np.concatenate([a, np.empty_like(a)]) for a in (self._t, self._q, self._u))
 
     @property
     def stored(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Assembly, projections, accelerations and explicit steps at the state of a system."""
+"""Assembly, projections and accelerations at the state of a system, and what is reported of it."""
 
 from __future__ import annotations
 
@@ -134,30 +134,6 @@ def accelerate(t, acceleration, mechanics):
     for k in range(s.n_u):
         acceleration[k] = factors_view(m.acceleration_factors).b[k]
     return status
-
-
-def euler_cromer(t, h, steps, project, tolerance, mechanics):
-    """Semi-implicit Euler steps, each brought back to the constraints; the number of steps done or a negative status."""
-    m = mechanics_view(mechanics)
-    s = state_view(m.state)
-    for step in range(steps):
-        status = to_accelerations(s, m, t + step * h)
-        if status < 0:
-            return status
-        acceleration = factors_view(m.acceleration_factors).b
-        for k in range(s.n_u):
-            s.u[k] += h * acceleration[k]
-        for k in range(s.n_q):
-            s.q[k] += h * s.u[k]
-        if not isfinite(_largest(s.q, s.n_q)):
-            return NOT_FINITE
-        if project:
-            status = to_position_constraints(s, m, t + (step + 1) * h, tolerance, 20)
-            if status < 0:
-                return status
-            if to_velocity_constraints(s, m, t + (step + 1) * h) < 0:
-                return SINGULAR
-    return steps
 
 
 @compiled

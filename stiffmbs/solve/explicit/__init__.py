@@ -1,0 +1,7 @@
+"""Explicit Runge-Kutta schemes, one table of coefficients per file, and the loops that drive them."""
+
+from .dop853 import DOP853
+from .dopri5 import DOPRI5
+from .rk4 import RK4
+
+SCHEMES = {scheme.name: scheme for scheme in (RK4, DOPRI5, DOP853)}

@@ -1,0 +1,104 @@
+"""Explicit steps of fixed length: Euler-Cromer and Runge-Kutta schemes."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...compile.routines import Routine
+from ...describe.settings import RunSettings
+from ..initial import InitialValues
+from ..mechanics import POSITION_TOLERANCE, Mechanics
+from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from .integration import Integration
+from .scheme import Scheme
+from .sentences import REASONS
+
+EULER_CROMER = Routine(
+    "stiffmbs.solve.native.euler_cromer", "euler_cromer", "int64(float64, float64, int64, int64, float64, int64*)"
+)
+FIXED_STEPS = Routine("stiffmbs.solve.native.runge_kutta", "fixed_steps", "int64(float64, float64, int64, int64*)")
+ROUNDING = 1e-9
+"""Part of a step by which an output time may miss a whole number of steps."""
+
+
+@dataclass(frozen=True)
+class Stepper:
+    """Something that takes steps of one length from the state that it holds.
+
+    Attributes
+    ----------
+    q, u : ndarrays
+        The state reached.
+    take : callable
+        ``take(t, h, steps)`` takes steps from time t and returns 0 or a negative status.
+    accelerations : int
+        Accelerations computed in a step.
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+    take: Callable[[float, float, int], int]
+    accelerations: int
+
+
+def euler_cromer(mechanics: Mechanics, start: InitialValues, settings: RunSettings) -> Stepper:
+    """Semi-implicit Euler: u_{n+1} = u_n + h u'(q_n, u_n), q_{n+1} = q_n + h u_{n+1}, then both projections."""
+    state, table, steps_of = mechanics.state, mechanics.table.ctypes.data, EULER_CROMER.load()
+    state.q[:], state.u[:] = start.q, start.u
+
+    def take(t: float, h: float, steps: int) -> int:
+        return steps_of(t, h, steps, settings.projection, POSITION_TOLERANCE, table)
+
+    return Stepper(state.q, state.u, take, 1)
+
+
+def runge_kutta(
+    scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
+) -> Stepper:
+    """A Runge-Kutta scheme, then both projections."""
+    work, steps_of = Integration(scheme, mechanics, start, grid, settings), FIXED_STEPS.load()
+
+    def take(t: float, h: float, steps: int) -> int:
+        return steps_of(t, h, steps, work.at)
+
+    return Stepper(work.q, work.u, take, scheme.stages)
+
+
+def solve_with_fixed_steps(stepper: Stepper, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+    """Integrate with steps of one length; the contract is in `stiffmbs.solve.trajectory`.
+
+    Between two output times the step is the largest that is no longer than the one asked for and divides the time
+    between them.
+    """
+    times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
+    rows = Rows(len(stepper.q), len(stepper.u), len(times))
+    rows.append(times[0], stepper.q, stepper.u)
+    outcome, message, steps = Outcome.DONE, Outcome.DONE.value, 0
+    begun = time.perf_counter()
+    try:
+        for t, end in itertools.pairwise(times):
+            count = max(1, math.ceil((end - t) / settings.step - ROUNDING))
+            status = stepper.take(t, (end - t) / count, count)
+            if status < 0:
+                outcome, message = Outcome.STOPPED, f"stopped after t = {t:.9g} s: {REASONS[status]}"
+                break
+            steps += count
+            rows.append(end, stepper.q, stepper.u)
+            watch(end)
+    except KeyboardInterrupt:
+        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
+    statistics = {
+        "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": time.perf_counter() - begun,
+    }  # fmt: skip
+    return Trajectory(*rows.stored, outcome, message, statistics)
+
+
+def _own_steps(grid: Grid, step: float) -> np.ndarray:
+    count = max(1, math.ceil((grid.end - grid.start) / step - ROUNDING))
+    return grid.start + (grid.end - grid.start) * np.arange(count + 1) / count

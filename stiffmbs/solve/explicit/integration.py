@@ -1,0 +1,116 @@
+"""The memory of one Runge-Kutta integration, laid out for compiled code."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...compile.layout import EXPLICIT, SCHEME, packed
+from ...describe.settings import RunSettings
+from ..initial import InitialValues
+from ..mechanics import POSITION_TOLERANCE, Mechanics
+from ..tolerances import absolute_tolerances
+from ..trajectory import Grid, Rows
+from .scheme import Scheme
+
+SHORTEST_PART = 1e-12
+"""Shorter steps than this part of the run would never come to its end."""
+MOST_STEPS, MOST_VALUES = 1024, 300_000
+"""Of one call of compiled code: steps, and numbers in the rows that it stores, so that it returns soon."""
+SMALLEST_ERROR = 1e-4
+"""What the step control remembers of an error at the least (as in DOPRI5)."""
+
+
+class Integration:
+    """State, stages and counters of one integration, and room for the rows that one call stores.
+
+    Attributes
+    ----------
+    room : int
+        Most steps, and most rows, of one call.
+    step_times : list of ndarray
+        Ends of the steps of each call.
+    """
+
+    def __init__(
+        self, scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
+    ) -> None:
+        self._n_q = len(start.q)
+        n = self._n_q + len(start.u)
+        self.room = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
+        self.step_times: list[np.ndarray] = []
+        self._scheme = _arrays_of(scheme)
+        y, stages = np.concatenate([start.q, start.u]), np.zeros((scheme.extended, n))
+        stages[scheme.stages] = np.concatenate([start.u, start.acceleration])
+        atol = absolute_tolerances(mechanics.system, settings)
+        times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
+        counters = ("dense_ready", "steps", "rejected", "accelerations", "stiff", "stiff_steps", "next_time", "rows")
+        self._arrays: dict[str, Any] = {
+            "mechanics": mechanics.table, "scheme": packed(SCHEME, self._scheme), "n": n,
+            "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
+            "rtol": np.array([settings.rtol]), "atol": np.concatenate([atol, atol]),
+            "longest": np.array([settings.max_step or np.inf]),
+            "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
+            "t": np.array([grid.start]), "t_before": np.array([grid.start]),
+            "h": np.array([settings.step]), "last_error": np.array([SMALLEST_ERROR]),
+            "y": y, "y_before": y.copy(), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
+            "polynomial": np.zeros((3 + len(scheme.dense), n)),
+            **{name: np.zeros(1, dtype=np.int64) for name in counters},
+            "n_times": len(times), "times": times,
+            "room": self.room, "row_t": np.empty(self.room), "row_y": np.empty((self.room, n)),
+            "ends": np.empty(self.room),
+        }  # fmt: skip
+        self._table = packed(EXPLICIT, self._arrays)
+
+    @property
+    def at(self) -> int:
+        """The address of the table for compiled code."""
+        return self._table.ctypes.data
+
+    @property
+    def t(self) -> float:
+        """The time reached."""
+        return float(self._arrays["t"][0])
+
+    @property
+    def h(self) -> float:
+        """The length of the next step, s."""
+        return float(self._arrays["h"][0])
+
+    @h.setter
+    def h(self, value: float) -> None:
+        self._arrays["h"][0] = value
+
+    @property
+    def q(self) -> np.ndarray:
+        """Positions reached."""
+        return self._arrays["y"][: self._n_q]
+
+    @property
+    def u(self) -> np.ndarray:
+        """Velocities reached."""
+        return self._arrays["y"][self._n_q :]
+
+    def count(self, name: str) -> int:
+        """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
+        return int(self._arrays[name][0])
+
+    def collect(self, rows: Rows) -> None:
+        """Take over the rows and ends of steps that the last call stored, and make room for the next."""
+        count, before = self.count("rows"), sum(len(ends) for ends in self.step_times)
+        y = self._arrays["row_y"][:count]
+        rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :])
+        self._arrays["rows"][0] = 0
+        self.step_times.append(self._arrays["ends"][np.arange(before, self.count("steps")) % self.room])
+
+
+def _arrays_of(scheme: Scheme) -> dict[str, Any]:
+    return {
+        "stages": scheme.stages, "extended": scheme.extended, "n_errors": len(scheme.errors),
+        "n_dense": len(scheme.dense), "error_needs_end": scheme.error_needs_end,
+        "c": np.array(scheme.c, dtype=float), "a": scheme.matrix(scheme.a),
+        "errors": scheme.matrix(scheme.errors), "dense": scheme.matrix(scheme.dense),
+        "exponent": np.array([scheme.exponent]), "memory": np.array([scheme.memory]),
+        "stability": np.array([scheme.stability]),
+    }  # fmt: skip

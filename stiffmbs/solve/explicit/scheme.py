@@ -1,0 +1,74 @@
+"""What an explicit Runge-Kutta scheme is: a table of coefficients."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+Row = Mapping[int, float]
+"""The coefficients of a sum over stages that are not zero, by stage."""
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Butcher's table of an explicit Runge-Kutta scheme whose weights are its last row but the extra stages.
+
+    Stage i is k_i = f(t + c_i h, y + h sum_j a_ij k_j).  Stage `stages` is taken at the step's end with the weights
+    as its row, and is the first of the next step; stages behind it serve the interpolant alone.
+
+    Attributes
+    ----------
+    name : str
+    order : int
+    stages : int
+        Evaluations that one step needs, the one at its end not counted.
+    c : tuple of float
+        Nodes of all stages.
+    a : tuple of Row
+        Coefficients of all stages.
+    errors : tuple of Row
+        Differences to embedded schemes, none for a scheme of fixed step.  With two, the estimate is
+        h |e_1|^2 / sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
+    dense : tuple of Row
+        The coefficients behind the third of the interpolant (`stiffmbs.solve.native.interpolant`).
+    exponent, memory : float
+        Of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory) last_error^memory.
+    stability : float
+        |h lambda| above which stability, and no longer accuracy, holds the step back.
+    """
+
+    name: str
+    order: int
+    stages: int
+    c: tuple[float, ...]
+    a: tuple[Row, ...]
+    errors: tuple[Row, ...] = ()
+    dense: tuple[Row, ...] = ()
+    exponent: float = 0.0
+    memory: float = 0.0
+    stability: float = field(default=float("inf"))
+
+    @property
+    def extended(self) -> int:
+        """All stages: those of a step, the one at its end, and those of the interpolant."""
+        return len(self.c)
+
+    @property
+    def adaptive(self) -> bool:
+        """Whether the scheme estimates its error and so chooses its step."""
+        return bool(self.errors)
+
+    @property
+    def error_needs_end(self) -> bool:
+        """Whether the estimate asks for the stage at the step's end."""
+        return any(self.stages in row for row in self.errors)
+
+    def matrix(self, rows: tuple[Row, ...]) -> np.ndarray:
+        """Rows of coefficients as a full matrix, one column for each stage."""
+        full = np.zeros((len(rows), self.extended))
+        for k, row in enumerate(rows):
+            for stage, value in row.items():
+                full[k, stage] = value
+        return full

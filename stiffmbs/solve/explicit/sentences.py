@@ -1,0 +1,25 @@
+"""Why an explicit integration stopped, or was slow, in words."""
+
+from __future__ import annotations
+
+from ..mechanics import NO_CONVERGENCE, NOT_FINITE, SINGULAR
+from .integration import Integration
+
+STEP_TOO_SMALL, STIFF = -4, -5
+"""Statuses of `stiffmbs.solve.native.runge_kutta` besides those of the mechanics."""
+
+_USE_BDF = "the scene is stiff, and solver bdf would be the choice"
+REASONS = {
+    SINGULAR: "the constraint equations have become dependent on each other",
+    NO_CONVERGENCE: "the positions could not be brought back to the constraints",
+    NOT_FINITE: "the motion has grown beyond all numbers; the step is too long for the stiffness of the scene",
+    STEP_TOO_SMALL: f"the step that the tolerance asks for has become too small; {_USE_BDF}",
+    STIFF: f"more than 100 million steps would be left, each as short as stability asks for; {_USE_BDF}",
+}
+"""By status."""
+
+
+def stiff_sentence(work: Integration) -> str:
+    """That the steps were short for stability's sake."""
+    held = work.count("stiff_steps")
+    return f"stability, not accuracy, held back {held} of {work.count('steps')} steps: {_USE_BDF}"

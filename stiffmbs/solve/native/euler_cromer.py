@@ -1,0 +1,45 @@
+"""Semi-implicit Euler steps with projection."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from stiffmbs.compile.native.access import compiled, factors_view, mechanics_view, state_view
+from stiffmbs.solve.native.mechanics import (
+    NOT_FINITE,
+    to_accelerations,
+    to_position_constraints,
+    to_velocity_constraints,
+)
+
+MOST_MOVES = 20
+
+
+@compiled
+def _step(s, m, t, h, project, tolerance):
+    """u += h u', q += h u, then both projections."""
+    status = to_accelerations(s, m, t)
+    if status < 0:
+        return status
+    acceleration = factors_view(m.acceleration_factors).b
+    for k in range(s.n_u):
+        s.u[k] += h * acceleration[k]
+    for k in range(s.n_q):
+        s.q[k] += h * s.u[k]
+        if not isfinite(s.q[k]):
+            return NOT_FINITE
+    if not project:
+        return 0
+    status = to_position_constraints(s, m, t + h, tolerance, MOST_MOVES)
+    return status if status < 0 else to_velocity_constraints(s, m, t + h)
+
+
+def euler_cromer(t, h, steps, project, tolerance, mechanics):
+    """So many steps from the current state; 0 or a negative status."""
+    m = mechanics_view(mechanics)
+    s = state_view(m.state)
+    for step in range(steps):
+        status = _step(s, m, t + step * h, h, project, tolerance)
+        if status < 0:
+            return status
+    return 0

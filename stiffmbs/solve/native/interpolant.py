@@ -1,0 +1,79 @@
+"""States within the last Runge-Kutta step, for output times that steps are not cut by.
+
+y(theta) = y_before + theta (p_0 + (1 - theta) (p_1 + theta (p_2 + (1 - theta) (p_3 + ...)))).  The first three
+polynomials follow from states and rates at both ends (Hermite), the others are sums of stages; Hairer, Norsett,
+Wanner, Solving Ordinary Differential Equations I (1993), eq. II.6.15 and the codes DOPRI5 and DOP853.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.native.access import compiled, shifted
+from stiffmbs.solve.native.stages import add_stages, copied, take_stage
+
+
+@compiled
+def _prepare(x, c, s, m):
+    """The coefficients p_k of the last step; 0 or a negative status."""
+    n = x.n
+    h = x.t[0] - x.t_before[0]
+    for row in range(c.stages + 1, c.extended):
+        status = take_stage(x, c, s, m, row, h)
+        if status < 0:
+            return status
+    p = x.polynomial
+    before, after = x.k, shifted(x.k, c.stages * n)
+    for i in range(n):
+        p[i] = x.y[i] - x.y_before[i]
+        p[n + i] = h * before[i] - p[i]
+        p[2 * n + i] = 2.0 * p[i] - h * (after[i] + before[i])
+    for row in range(c.n_dense):
+        target = shifted(p, (3 + row) * n)
+        for i in range(n):
+            target[i] = 0.0
+        add_stages(x, target, shifted(c.dense, row * c.extended), c.extended, h)
+    x.dense_ready[0] = 1
+    return 0
+
+
+@compiled
+def _interpolated(x, c, theta, target):
+    n = x.n
+    for i in range(n):
+        target[i] = 0.0
+    for k in range(2 + c.n_dense, -1, -1):
+        factor = theta if k % 2 == 0 else 1.0 - theta
+        p = shifted(x.polynomial, k * n)
+        for i in range(n):
+            target[i] = (target[i] + p[i]) * factor
+    for i in range(n):
+        target[i] += x.y_before[i]
+
+
+@compiled
+def store_rows(x, c, s, m):
+    """Store the states at all output times up to now; 1 when that is done, 0 when the room is full, or a status."""
+    while x.next_time[0] < x.n_times and x.times[x.next_time[0]] <= x.t[0]:
+        if x.rows[0] == x.room:
+            return 0
+        time = x.times[x.next_time[0]]
+        target = shifted(x.row_y, x.rows[0] * x.n)
+        if time == x.t[0]:
+            copied(target, x.y, x.n)
+        else:
+            if not x.dense_ready[0]:
+                status = _prepare(x, c, s, m)
+                if status < 0:
+                    return status
+            _interpolated(x, c, (time - x.t_before[0]) / (x.t[0] - x.t_before[0]), target)
+        x.row_t[x.rows[0]] = time
+        x.rows[0] += 1
+        x.next_time[0] += 1
+    return 1
+
+
+@compiled
+def store_step(x):
+    """Store the state after a step."""
+    x.row_t[x.rows[0]] = x.t[0]
+    copied(shifted(x.row_y, x.rows[0] * x.n), x.y, x.n)
+    x.rows[0] += 1

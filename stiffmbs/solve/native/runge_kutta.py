@@ -1,0 +1,191 @@
+"""Explicit Runge-Kutta steps with projection: fixed ones, and ones chosen by the error."""
+
+from __future__ import annotations
+
+from math import isfinite, sqrt
+
+from stiffmbs.compile.native.access import compiled, explicit_view, mechanics_view, scheme_view, shifted, state_view
+from stiffmbs.solve.native.interpolant import store_rows, store_step
+from stiffmbs.solve.native.mechanics import NOT_FINITE, to_position_constraints, to_velocity_constraints
+from stiffmbs.solve.native.stages import add_stages, copied, load_state, rates, take_stage, weighted
+
+STEP_TOO_SMALL, STIFF = -4, -5
+PAUSED, AT_END = 0, 1
+SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
+STRETCHED = 1.01
+"""The last step may be this much longer than asked for, so that no tiny one is left."""
+STIFF_STEPS_IN_A_ROW = 15
+TOO_MANY_STEPS = 1e8
+"""A stiff run that would need more steps than this to its end is given up."""
+MOST_MOVES = 20
+
+
+@compiled
+def _arrive(x, c, s, m, t):
+    """Bring the new state y to the constraints, and take the rates there: the first stage of the next step."""
+    load_state(s, x.y)
+    if x.project:
+        status = to_position_constraints(s, m, t, x.tolerance[0], MOST_MOVES)
+        if status < 0:
+            return status
+        status = to_velocity_constraints(s, m, t)
+        if status < 0:
+            return status
+        copied(x.y, s.q, s.n_q)
+        copied(shifted(x.y, s.n_q), s.u, s.n_u)
+    status = rates(x, s, m, c.stages, t)
+    if status < 0:
+        return status
+    for i in range(x.n):
+        if not isfinite(x.y[i]):
+            return NOT_FINITE
+    return 0
+
+
+@compiled
+def _attempt(x, c, s, m, h):
+    """All stages of one step from y_before, and the new state in y; 0 or a negative status."""
+    for row in range(1, c.stages):
+        status = take_stage(x, c, s, m, row, h)
+        if status < 0:
+            return status
+    weighted(x, c, x.y, c.stages, h)
+    if c.error_needs_end:
+        load_state(s, x.y)
+        return rates(x, s, m, c.stages, x.t_before[0] + h)
+    return 0
+
+
+@compiled
+def _squares(x, c, row):
+    """The mean square of the difference to an embedded scheme, over the tolerance (without the factor h)."""
+    for i in range(x.n):
+        x.difference[i] = 0.0
+    add_stages(x, x.difference, shifted(c.errors, row * c.extended), c.stages + 1, 1.0)
+    total = 0.0
+    for i in range(x.n):
+        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        ratio = x.difference[i] / scale
+        total += ratio * ratio
+    return total / x.n
+
+
+@compiled
+def _error(x, c, h):
+    """The estimated error of the step over the tolerance."""
+    first = _squares(x, c, 0)
+    if c.n_errors == 1:
+        return h * sqrt(first)
+    both = first + 0.01 * _squares(x, c, 1)
+    return h * first / sqrt(both) if both != 0.0 else 0.0
+
+
+@compiled
+def _watch_stiffness(x, c, h):
+    """Count steps whose h |lambda|, seen from two stages at the step's end, is beyond what accuracy alone allows."""
+    k_end = shifted(x.k, c.stages * x.n)
+    k_last = shifted(x.k, (c.stages - 1) * x.n)
+    rate = 0.0
+    move = 0.0
+    for i in range(x.n):
+        rate += (k_end[i] - k_last[i]) ** 2
+        move += (x.y[i] - x.y_stage[i]) ** 2
+    if h * h * rate > c.stability[0] ** 2 * move and move > 0.0:
+        x.stiff[0] += 1
+        x.stiff_steps[0] += 1
+    else:
+        x.stiff[0] = 0
+
+
+@compiled
+def _depart(x, c):
+    """The end of the last step is the start of the next."""
+    x.t_before[0] = x.t[0]
+    copied(x.y_before, x.y, x.n)
+    copied(x.k, shifted(x.k, c.stages * x.n), x.n)
+    x.dense_ready[0] = 0
+
+
+@compiled
+def _factor(x, c, error):
+    """How much longer the next step may be (PI control; Hairer, Norsett, Wanner I, ch. II.4 and II.5)."""
+    if error == 0.0:
+        return LARGEST_FACTOR
+    exponent = c.exponent[0] - 0.75 * c.memory[0]
+    return SAFETY * error**-exponent * x.last_error[0] ** c.memory[0]
+
+
+@compiled
+def _step(x, c, s, m, end):
+    """One accepted step, as long as the error allows; 0 or a negative status (the state is then as before)."""
+    _depart(x, c)
+    t = x.t[0]
+    h = min(x.h[0], x.longest[0])
+    most = LARGEST_FACTOR
+    while True:
+        if t + STRETCHED * h >= end:
+            h = end - t
+        status = _attempt(x, c, s, m, h)
+        error = _error(x, c, h) if status == 0 else 0.0
+        if not isfinite(error):
+            status = NOT_FINITE
+        if status == 0 and error <= 1.0:
+            t_new = end if h == end - t else t + h
+            status = _arrive(x, c, s, m, t_new)
+            if status == 0:
+                x.t[0] = t_new
+                x.h[0] = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
+                x.last_error[0] = max(error, 1e-4)
+                _watch_stiffness(x, c, h)
+                return 0
+        x.rejected[0] += 1
+        most = 1.0
+        h *= FACTOR_AFTER_FAILURE if status < 0 else max(LEAST_FACTOR, SAFETY * error ** -c.exponent[0])
+        if h < x.shortest[0]:
+            copied(x.y, x.y_before, x.n)
+            return status if status < 0 else STEP_TOO_SMALL
+
+
+def advance(end, steps, own_steps, explicit):
+    """Integrate towards `end`, for so many steps or until the room for rows is full.
+
+    AT_END, PAUSED (call again to go on), or a negative status.
+    """
+    x = explicit_view(explicit)
+    c = scheme_view(x.scheme)
+    m = mechanics_view(x.mechanics)
+    s = state_view(m.state)
+    for _ in range(steps):
+        stored = store_rows(x, c, s, m)
+        if stored < 1:
+            return stored
+        if x.t[0] >= end:
+            return AT_END
+        status = _step(x, c, s, m, end)
+        if status < 0:
+            return status
+        x.ends[x.steps[0] % x.room] = x.t[0]
+        x.steps[0] += 1
+        if own_steps:
+            store_step(x)
+        if x.stiff[0] >= STIFF_STEPS_IN_A_ROW and end - x.t[0] > TOO_MANY_STEPS * x.h[0]:
+            return STIFF
+    return PAUSED
+
+
+def fixed_steps(start, h, steps, explicit):
+    """So many steps of length h from the time `start`; 0 or a negative status."""
+    x = explicit_view(explicit)
+    c = scheme_view(x.scheme)
+    m = mechanics_view(x.mechanics)
+    s = state_view(m.state)
+    for step in range(steps):
+        x.t[0] = start + step * h
+        _depart(x, c)
+        status = _attempt(x, c, s, m, h)
+        if status < 0:
+            return status
+        status = _arrive(x, c, s, m, start + (step + 1) * h)
+        if status < 0:
+            return status
+    return 0
