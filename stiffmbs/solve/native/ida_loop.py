@@ -1,0 +1,195 @@
+"""IDA's callbacks with their C signatures, and the loop over its steps: no Python from one step to the next."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from llvmlite import ir
+from numba import int32, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from stiffmbs.compile.layout import NATIVE_IDA
+from stiffmbs.compile.native.access import compiled, equations_view, floats, shifted, state_view, view_of
+from stiffmbs.compile.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+
+OK, RECOVERABLE = 0, 1
+"""What a callback returns: after a recoverable failure IDA tries a smaller step."""
+ONE_STEP = 2
+STOP_RETURN, ROOT_RETURN = 1, 2
+"""IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
+RETURNED, INTERNAL, SIZE = range(3)
+"""Marks: the time of the returned state, the time that IDA has reached inside, the size of its last step."""
+SERVED, RECORDED, ORDER = range(3)
+"""Counts: output points served, steps in the history, order of the last step."""
+HISTORY_WIDTH = 3
+
+native_ida_view = view_of("NativeIda", NATIVE_IDA)
+
+
+@intrinsic
+def call_int(typing_context, function, arguments):
+    """Call a C function of the given address that returns an int; `arguments` is a tuple."""
+
+    def code(context, builder, signature, given):
+        values = cgutils.unpack_tuple(builder, given[1])
+        kind = ir.FunctionType(ir.IntType(32), [value.type for value in values])
+        return builder.call(builder.inttoptr(given[0], kind.as_pointer()), values)
+
+    return types.int32(types.int64, arguments), code
+
+
+@intrinsic
+def call_address(typing_context, function, argument):
+    """Call a C function of one pointer that returns a pointer; both as addresses."""
+
+    def code(context, builder, signature, given):
+        kind = ir.FunctionType(ir.IntType(64), [ir.IntType(64)])
+        return builder.call(builder.inttoptr(given[0], kind.as_pointer()), [given[1]])
+
+    return types.int64(types.int64, types.int64), code
+
+
+@intrinsic
+def copy_bytes(typing_context, target, source, count):
+    """Copy a number of bytes from one address to another."""
+
+    def code(context, builder, signature, given):
+        kind = ir.IntType(8).as_pointer()
+        to, of = builder.inttoptr(given[0], kind), builder.inttoptr(given[1], kind)
+        cgutils.raw_memcpy(builder, to, of, given[2], 1)
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.int64), code
+
+
+@compiled
+def _array(c, vector):
+    return floats(call_address(c.array_of, vector))
+
+
+@compiled
+def _finite(values, count):
+    zero = 0.0
+    for k in range(count):
+        zero += 0.0 * values[k]
+    return zero == 0.0
+
+
+def residual(t, yy, yp, rr, user_data):
+    """IDAResFn: r(t, y, y')."""
+    c = native_ida_view(user_data)
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    y, rates, r = _array(c, yy), _array(c, yp), _array(c, rr)
+    load(s, e, y, rates)
+    add_products(e, evaluate(s, e.residual_set, t), y, rates, r)
+    return int32(OK if _finite(r, e.n) else RECOVERABLE)
+
+
+def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
+    """IDALsJacFn: the iteration matrix dr/dy + cj dr/dy'."""
+    c = native_ida_view(user_data)
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    load(s, e, _array(c, yy), _array(c, yp))
+    a = floats(c.matrix)
+    add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
+    for k in range(0, 6, 3):
+        copy_bytes(c.pattern[k], c.pattern[k + 1], c.pattern[k + 2])
+    return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
+
+
+def switches(t, yy, yp, g, user_data):
+    """IDARootFn: what changes its sign at the corners of forces."""
+    c = native_ida_view(user_data)
+    s = state_view(c.state)
+    load(s, equations_view(c.equations), _array(c, yy), _array(c, yp))
+    values = evaluate(s, SWITCH, t)
+    for k in range(c.n_switches):
+        g[k] = values[c.switches[k]]
+    return int32(OK if _finite(g, c.n_switches) else RECOVERABLE)
+
+
+@compiled
+def _stepped(c, toward):
+    """One step; returns IDA's flag and notes the step's end, order and size in the history."""
+    before = c.mark[INTERNAL]
+    flag = call_int(c.solve, (c.memory, toward, c.mark, c.y, c.yp, int32(ONE_STEP)))
+    call_int(c.time_of, (c.memory, shifted(c.mark, INTERNAL)))
+    if c.mark[INTERNAL] != before and flag >= 0:
+        call_int(c.order_of, (c.memory, shifted(c.count, ORDER)))
+        call_int(c.step_of, (c.memory, shifted(c.mark, SIZE)))
+        row = HISTORY_WIDTH * c.count[RECORDED]
+        c.history[row] = c.mark[INTERNAL]
+        c.history[row + 1] = float(c.count[ORDER])
+        c.history[row + 2] = c.mark[SIZE]
+        c.count[RECORDED] += 1
+    return flag
+
+
+@compiled
+def _report(c, values, row):
+    for k in range(c.n_reported):
+        row[k] = values[c.reported[k]]
+
+
+@compiled
+def _report_at(c, t, derivative, current, row):
+    """What is reported of the solution, or of its derivative, at a time within the last step."""
+    if t == c.mark[RETURNED]:
+        _report(c, _array(c, current), row)
+        return int32(OK)
+    flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))
+    _report(c, c.output, row)
+    return flag
+
+
+@compiled
+def _served(c, times, count, y_out, yp_out):
+    """Serve the output times up to the returned one; `yp_out` may be null."""
+    flag = int32(OK)
+    while c.count[SERVED] < count and times[c.count[SERVED]] <= c.mark[RETURNED]:
+        k = c.count[SERVED]
+        flag = _report_at(c, times[k], 0, c.y, shifted(y_out, k * c.n_reported))
+        if flag >= 0 and yp_out != 0:
+            flag = _report_at(c, times[k], 1, c.yp, shifted(floats(yp_out), k * c.n_reported))
+        if flag < 0:
+            break
+        c.count[SERVED] = k + 1
+    return flag
+
+
+def advance(count, times, stop, most, y_out, yp_out, ida):
+    """At most `most` steps towards `stop`, serving output times on the way; returns IDA's last flag.
+
+    The first step's size follows from the distance to the first output time, as in IDA's own mode for them.
+    """
+    c = native_ida_view(ida)
+    c.count[SERVED] = 0
+    c.count[RECORDED] = 0
+    flag = _served(c, times, count, y_out, yp_out)
+    for _ in range(most):
+        if flag != OK:
+            break
+        flag = _stepped(c, times[c.count[SERVED]] if c.count[SERVED] < count else stop)
+        if flag >= 0:
+            told = _served(c, times, count, y_out, yp_out)
+            flag = told if told < 0 else flag
+    return int32(flag)
+
+
+def steps(room, stop, t_out, y_out, ida):
+    """At most `room` steps towards `stop`, each of them reported; returns IDA's last flag."""
+    c = native_ida_view(ida)
+    c.count[SERVED] = 0
+    c.count[RECORDED] = 0
+    flag = int32(OK)
+    while flag == OK and c.count[SERVED] < room:
+        flag = _stepped(c, stop)
+        if flag >= 0:
+            k = c.count[SERVED]
+            t_out[k] = c.mark[RETURNED]
+            _report(c, _array(c, c.y), shifted(y_out, k * c.n_reported))
+            c.count[SERVED] = k + 1
+    return int32(flag)

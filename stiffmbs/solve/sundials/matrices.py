@@ -1,0 +1,160 @@
+"""Iteration matrices and the linear solvers that go with them: dense, banded, sparse; and the choice among them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from .libraries import COMPRESSED_COLUMNS, Libraries, ida_libraries, sparse_libraries
+from .session import Session
+
+DENSE_UP_TO = 90
+"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
+BAND_WORTH_IT = 0.1
+"""Bandwidth, as a part of the number of unknowns, below which the banded solver takes the place of the dense one."""
+WIDEST_BAND = 90
+"""Bandwidth above which the sparse solver takes the place of the banded one."""
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """A matrix in SUNDIALS and how to fill it.
+
+    Attributes
+    ----------
+    matrix, solver : int
+        The SUNMatrix and its SUNLinearSolver.
+    values : int
+        Address of the matrix' values.
+    slots : ndarray of int or None
+        Where each entry of the pattern stands in them; None for the pattern's own order.
+    pattern : ndarray of int
+        Address in the matrix, address of what is to be written there, and bytes, for each of the two index arrays:
+        IDA clears them together with the values before each new matrix.
+    kept : tuple of ndarray
+        What must live as long.
+    """
+
+    matrix: int
+    solver: int
+    values: int
+    slots: np.ndarray | None
+    pattern: np.ndarray
+    kept: tuple[np.ndarray, ...] = ()
+
+
+class Matrix(Protocol):
+    """A way to store and factor the iteration matrix."""
+
+    def libraries(self) -> Libraries:
+        """The libraries that it needs."""
+        ...
+
+    def assembled(self, session: Session, y: int) -> Assembled:
+        """The matrix and its linear solver for vectors like `y`."""
+        ...
+
+    def sentence(self) -> str:
+        """What it is, for a summary."""
+        ...
+
+
+@dataclass(frozen=True)
+class Dense:
+    """All entries, column after column; Gaussian elimination with partial pivoting."""
+
+    n: int
+    rows: np.ndarray
+    columns: np.ndarray
+
+    def libraries(self) -> Libraries:
+        return ida_libraries()
+
+    def sentence(self) -> str:
+        return f"dense matrix of {self.n} unknowns"
+
+    def assembled(self, session: Session, y: int) -> Assembled:
+        s = session.libraries
+        matrix = session.keep(s.SUNDenseMatrix(self.n, self.n, session.context), s.SUNMatDestroy, "a matrix")
+        solver = session.keep(s.SUNLinSol_Dense(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
+        return Assembled(matrix, solver, s.SUNDenseMatrix_Data(matrix), self.columns * self.n + self.rows, _no_pattern())
+
+
+@dataclass(frozen=True)
+class Banded:
+    """The diagonals near the main one; Gaussian elimination with partial pivoting within them."""
+
+    n: int
+    rows: np.ndarray
+    columns: np.ndarray
+
+    @property
+    def upper(self) -> int:
+        """Diagonals above the main one."""
+        return max(0, int((self.columns - self.rows).max()))
+
+    @property
+    def lower(self) -> int:
+        """Diagonals below the main one."""
+        return max(0, int((self.rows - self.columns).max()))
+
+    def libraries(self) -> Libraries:
+        return ida_libraries()
+
+    def sentence(self) -> str:
+        return f"banded matrix of {self.n} unknowns, {self.lower} diagonals below and {self.upper} above"
+
+    def assembled(self, session: Session, y: int) -> Assembled:
+        s = session.libraries
+        made = s.SUNBandMatrix(self.n, self.upper, self.lower, session.context)
+        matrix = session.keep(made, s.SUNMatDestroy, "a matrix")
+        solver = session.keep(s.SUNLinSol_Band(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
+        height, diagonal = s.SUNBandMatrix_LDim(matrix), s.SUNBandMatrix_StoredUpperBandwidth(matrix)
+        slots = self.columns * height + self.rows - self.columns + diagonal
+        return Assembled(matrix, solver, s.SUNBandMatrix_Data(matrix), slots, _no_pattern())
+
+
+@dataclass(frozen=True)
+class Sparse:
+    """The entries of the pattern, by columns; SuperLU_MT with one thread."""
+
+    n: int
+    rows: np.ndarray
+    columns: np.ndarray
+
+    def libraries(self) -> Libraries:
+        return sparse_libraries()
+
+    def sentence(self) -> str:
+        return f"sparse matrix of {self.n} unknowns with {len(self.rows)} entries"
+
+    def assembled(self, session: Session, y: int) -> Assembled:
+        s = session.libraries
+        entries = len(self.rows)
+        made = s.SUNSparseMatrix(self.n, self.n, entries, COMPRESSED_COLUMNS, session.context)
+        matrix = session.keep(made, s.SUNMatDestroy, "a matrix")
+        solver = session.keep(s.SUNLinSol_SuperLUMT(y, matrix, 1, session.context), s.SUNLinSolFree, "a linear solver")
+        rows = self.rows.astype(s.index_dtype)
+        starts = np.searchsorted(self.columns, np.arange(self.n + 1)).astype(s.index_dtype)
+        pattern = np.array(
+            [
+                s.SUNSparseMatrix_IndexValues(matrix), rows.ctypes.data, rows.nbytes,
+                s.SUNSparseMatrix_IndexPointers(matrix), starts.ctypes.data, starts.nbytes,
+            ], dtype=np.int64,
+        )  # fmt: skip
+        return Assembled(matrix, solver, s.SUNSparseMatrix_Data(matrix), None, pattern, (rows, starts))
+
+
+def _no_pattern() -> np.ndarray:
+    return np.zeros(6, dtype=np.int64)
+
+
+def chosen(n: int, rows: np.ndarray, columns: np.ndarray) -> Matrix:
+    """The storage that is cheapest for a pattern: rows and columns of its entries, by columns."""
+    banded = Banded(n, rows, columns)
+    width = banded.lower + banded.upper
+    if width <= WIDEST_BAND and width < BAND_WORTH_IT * n:
+        return banded
+    return Dense(n, rows, columns) if n <= DENSE_UP_TO else Sparse(n, rows, columns)
