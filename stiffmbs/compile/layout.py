@@ -72,6 +72,16 @@ EXPLICIT: Layout = {
 """An explicit integration between two calls: the state y = (q, u) now and before the last step, the stages k, the
 counters, the output times (none: every step), and room for the rows and ends of steps that one call stores."""
 
+NATIVE_IDA: Layout = {
+    "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
+    "n_switches": INT, "switches": INTS,
+    "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
+    "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
+    "mark": FLOATS, "count": INTS, "history": FLOATS,
+}  # fmt: skip
+"""What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
+of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported."""
+
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     """The table for a layout: addresses of arrays, and numbers as they are.

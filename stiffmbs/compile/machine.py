@@ -16,7 +16,7 @@ from typing import Any
 
 from . import cache as store
 
-_CTYPES: dict[str, Any] = {"int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
+_CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
