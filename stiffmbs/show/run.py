@@ -15,6 +15,7 @@ from ..describe.model import Model, ModelData
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..solve import SOLVERS
+from ..solve.explicit import ADAPTIVE
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.trajectory import Grid, Trajectory, Watch
@@ -79,16 +80,21 @@ def run(
     """
     job = prepare(model, settings, **changes)
     trajectory = job.integrate(watch)
-    implicit = job.settings.solver == "bdf"  # the explicit solver's states are shown as they are
-    rows = job.mechanics.report(trajectory.t, trajectory.q, trajectory.u, project=implicit)
+    project = _near_constraints(job.settings)
+    rows = job.mechanics.report(trajectory.t, trajectory.q, trajectory.u, project=project)
     statistics = {"name": job.settings.solver, **trajectory.statistics}
-    if implicit:
+    if project:
         statistics["drift"] = float(rows.drift.max())
     return Solution(
         name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=trajectory.outcome,
         message=trajectory.message, notes=tuple(_notes(job.start, rows, trajectory)), solver=statistics,
         step_times=trajectory.step_times,
     )  # fmt: skip
+
+
+def _near_constraints(settings: RunSettings) -> bool:
+    """Whether states are on the constraints but for the tolerance; those of explicit fixed steps are shown as they are."""
+    return settings.solver != "projected" or (settings.projection and settings.scheme in ADAPTIVE)
 
 
 def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:
