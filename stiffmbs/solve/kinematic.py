@@ -121,7 +121,7 @@ class _Motion:
         system, state = self._mechanics.system, self._mechanics.state
         state.q[:], state.u[:] = self.q, self.u
         state.evaluate("motion", self.t)
-        directions, values, _ = np.linalg.svd(state.matrix("motion", "J")[system.active])
+        directions, _, _ = np.linalg.svd(state.matrix("motion", "J")[system.active])
         names = [name for (name, _), active in zip(system.equations, system.active, strict=True) if active]
         involved = list(dict.fromkeys(names[k] for k in np.argsort(-np.abs(directions[:, -1]))[:4]))
         pose = ", ".join(
