@@ -1,5 +1,5 @@
 """Initial values and integrators.  They see a `System`, never a kind of element."""
 
-from . import bdf, projected
+from . import bdf, kinematic, projected
 
-SOLVERS = {"bdf": bdf.solve, "projected": projected.solve}
+SOLVERS = {"bdf": bdf.solve, "projected": projected.solve, "kinematic": kinematic.solve}

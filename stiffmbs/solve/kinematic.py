@@ -1,0 +1,135 @@
+"""Kinematic analysis: the motion of a scene whose drives fix every coordinate, by Newton with continuation."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from ..describe.settings import RunSettings
+from ..errors import InputError, SolverError
+from .initial import InitialValues
+from .mechanics import Mechanics
+from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
+
+LARGEST_SURPRISE = 0.05
+"""Part of a step's own length by which the positions found may miss the predicted ones."""
+LARGEST_TURN = 0.5
+"""Part of its length by which the velocity found may miss the predicted one."""
+SHORTEST = 1e-10
+"""Part of the duration below which a step that still fails means that the mechanism locks."""
+MOST_MOVES = 12
+
+
+def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+    """Follow the motion that the drives prescribe; the contract is in `stiffmbs.solve.trajectory`.
+
+    Each step predicts q + h u + h^2/2 u' and corrects it by Newton; it is halved until positions and velocities come
+    out near their prediction, so that the solution cannot jump to another branch.  A mechanism that locks (a dead
+    centre under its drive) stops there with a message that names instant and pose.
+
+    Raises
+    ------
+    InputError
+        When the drives leave a freedom or prescribe one twice.
+    """
+    _refuse_freedoms(mechanics)
+    times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, 1001)
+    system = mechanics.system
+    rows = Rows(system.n_q, system.n_u, len(times))
+    outcome, message = Outcome.DONE, Outcome.DONE.value
+    begun = time.perf_counter()
+    motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start))
+    rows.append(times[0], motion.q, motion.u)
+    try:
+        for t in times[1:]:
+            motion.go_to(t)
+            rows.append(t, motion.q, motion.u)
+            watch(t)
+    except SolverError as error:
+        outcome, message = Outcome.STOPPED, str(error)
+    except KeyboardInterrupt:
+        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
+    statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": time.perf_counter() - begun}
+    return Trajectory(*rows.stored, outcome, message, statistics)
+
+
+def _refuse_freedoms(mechanics: Mechanics) -> None:
+    system = mechanics.system
+    equations = int(np.sum(system.active & system.holonomic))
+    if equations != system.n_q:
+        raise InputError(
+            f"kinematic analysis: found {equations} independent position equations for {system.n_q} coordinates, "
+            "expected as many: joints and drives that fix every coordinate"
+        )
+
+
+class _Motion:
+    """The state that is followed in time, with its velocities and accelerations."""
+
+    def __init__(self, mechanics: Mechanics, start: InitialValues, t: float, shortest: float) -> None:
+        self._mechanics, self._shortest = mechanics, shortest
+        self.t, self.steps, self.moves = t, 0, 0
+        self.q, self.u, self.a = start.q, start.u, start.acceleration
+        state = mechanics.state
+        state.q[:], state.u[:] = start.q, start.u
+        self._polish(t)
+        self.q, self.u = state.q.copy(), state.u.copy()
+
+    def go_to(self, end: float) -> None:
+        """Follow the motion to a later time, in as many steps as it takes."""
+        h = end - self.t
+        while self.t < end:
+            h = min(h, end - self.t)
+            last = end - self.t <= h
+            if self._step(end if last else self.t + h, h):
+                h *= 2
+            elif h > self._shortest:
+                h /= 2
+            else:
+                raise SolverError(self._locked())
+
+    def _step(self, t: float, h: float) -> bool:
+        """Try one step; whether positions and velocities came out near their prediction."""
+        state, mechanics = self._mechanics.state, self._mechanics
+        predicted_q, predicted_u = self.q + h * self.u + h * h / 2 * self.a, self.u + h * self.a
+        state.q[:], state.u[:] = predicted_q, predicted_u
+        moves = mechanics.assemble(t, most=MOST_MOVES)
+        if moves < 0 or not self._near(state.q, predicted_q, h) or mechanics.correct_velocities(t) < 0:
+            return False
+        size = max(np.linalg.norm(self.u), np.linalg.norm(state.u))
+        if np.linalg.norm(state.u - predicted_u) > LARGEST_TURN * size + 1e-9:
+            return False
+        self._polish(t)
+        status, acceleration = mechanics.accelerate(t)
+        if status < 0:
+            return False
+        self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration
+        self.steps, self.moves = self.steps + 1, self.moves + moves
+        return True
+
+    def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
+        own = np.linalg.norm(h * self.u) + np.linalg.norm(h * h / 2 * self.a)
+        return bool(np.linalg.norm(q - predicted) <= LARGEST_SURPRISE * own + 1e-9)
+
+    def _polish(self, t: float) -> None:
+        """Take positions to rounding, and velocities with them."""
+        self._mechanics.assemble(t, tolerance=0.0, most=2)
+        self._mechanics.correct_velocities(t)
+
+    def _locked(self) -> str:
+        system, state = self._mechanics.system, self._mechanics.state
+        state.q[:], state.u[:] = self.q, self.u
+        state.evaluate("motion", self.t)
+        directions, values, _ = np.linalg.svd(state.matrix("motion", "J")[system.active])
+        names = [name for (name, _), active in zip(system.equations, system.active, strict=True) if active]
+        involved = list(dict.fromkeys(names[k] for k in np.argsort(-np.abs(directions[:, -1]))[:4]))
+        pose = ", ".join(
+            f"{body} at ({self.q[3 * k]:.6g}, {self.q[3 * k + 1]:.6g}) m, {np.degrees(self.q[3 * k + 2]):.6g} deg"
+            for k, body in enumerate(system.bodies[:6])
+        )
+        more = ", ..." if len(system.bodies) > 6 else ""
+        return (
+            f"the mechanism locks at t = {self.t:.9g} s (dead centre): the drives ask for more than "
+            f"{', '.join(involved)} allow; there {pose}{more}"
+        )
