@@ -10,7 +10,7 @@ from stiffmbs.compile.terms import TERM_AXES
 from stiffmbs.describe.element import Joint
 from stiffmbs.solve.formulations import FORMULATIONS
 
-from .random_parts import ALL_KINDS, random_element, three_bodies
+from .random_parts import CASES, add_joints, random_element, refers_to_joints, three_bodies
 
 T = 0.37
 STEP = 1e-2
@@ -44,15 +44,19 @@ def assert_close(found, expected):
     assert np.max(np.abs(found - expected), initial=0) <= TOLERANCE * max(1, np.max(np.abs(expected), initial=0))
 
 
-@pytest.fixture(params=ALL_KINDS, ids=lambda kind: kind.kind)
+@pytest.fixture(params=CASES, ids=lambda case: "-".join([case[0].kind, *(f"no_{name}" for name in case[1])]))
 def state(request):
     rng = np.random.default_rng(7)
     model = three_bodies(rng)
-    model.add("element", random_element(request.param, rng))
+    kind, left_out = request.param
+    element = random_element(kind, rng, left_out)
+    if refers_to_joints(element):
+        add_joints(model)
+    model.add("element", element)
     state = State(compile_model(model.data()))
     state.lam[:] = rng.uniform(-1, 1, len(state.lam))
     state.mu[:] = rng.uniform(-1, 1, len(state.mu))
-    state.is_joint = issubclass(request.param, Joint)
+    state.is_joint = issubclass(kind, Joint)
     return state
 
 

@@ -215,3 +215,7 @@ OfPosition = Annotated[Formula, FormulaOf(coordinates=True)]
 """A formula of coordinates and time."""
 OfMotion = Annotated[Formula, FormulaOf(coordinates=True, velocities=True)]
 """A formula of coordinates, velocities and time."""
+OfDeflection = Annotated[Formula | Table, FormulaOf(("s",), time=False, table=True)]
+"""A formula or a table of a deflection s."""
+OfRate = Annotated[Formula | Table, FormulaOf(("v",), time=False, table=True)]
+"""A formula or a table of a rate v."""

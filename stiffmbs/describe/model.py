@@ -86,11 +86,12 @@ class ModelData(Described):
         """Diagonal of the box around all bodies and markers at the start, m; 1 where it is a single point."""
         points = [body.position for body in self.bodies.values()]
         for _, element in (*self.joints.items(), *self.forces.items()):
-            points += [self._point(marker) for _, marker in element.markers()]
+            points += [self.point(marker) for _, marker in element.markers()]
         width, height = (max(p[k] for p in points) - min(p[k] for p in points) for k in (0, 1))
         return math.hypot(width, height) or 1.0
 
-    def _point(self, marker: Marker) -> tuple[float, float]:
+    def point(self, marker: Marker) -> tuple[float, float]:
+        """Where a marker is in ground axes at the start, m."""
         xi, eta = self.place(marker).point
         if marker.body == GROUND:
             return xi, eta

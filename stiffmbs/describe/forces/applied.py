@@ -12,54 +12,69 @@ from ..marker import Marker
 
 
 class AppliedForce(Force):
-    """A force at a point of a body, of time or of anything measured; constant ones have a potential.
+    """A force at a point of a body: constant, or a formula of time and of anything measured.
 
-    Components are along the ground's axes, or along those of marker `axes` (which takes no reaction: the force is
-    an external one).  With `j` the opposite force acts on a second body at its marker.
+    Its components are along the ground's axes, or with ``axes: body`` along those of marker i, turning with it.
+    Bodies that a formula merely measures take no force.  With `j` a second body takes the opposite force at the
+    same point of space (Adams' JFLOAT marker), so that momentum and angular momentum of both are kept.
+
+    A constant force on one body in ground axes has a potential, others have none.
+
+    Examples
+    --------
+    Drag of a ball in air, with parameters rho, cd and area; vm and vx are measured at its centre against ground::
+
+        {type: force, i: ball, force: ["-rho*cd*area/2*vm(ball)*vx(ball)", "-rho*cd*area/2*vm(ball)*vy(ball)"]}
+
+    Together with `AppliedTorque` this is Adams' GFORCE in the plane.
     """
 
     kind: ClassVar[str] = "force"
 
     type: Literal["force"] = "force"
     i: Marker = Field(description="marker at which the force acts")
-    j: Marker | None = Field(None, description="marker of a second body on which the opposite force acts")
+    j: Marker | None = Field(None, description="a second body, which takes the opposite force at the same point")
     force: tuple[OfMotion, OfMotion] = Field(description="components along x and y, N: numbers or formulas")
     axes: Literal["ground", "body"] = Field("ground", description="whether x and y are the ground's or marker i's axes")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         along, across = e.force
-        if e.axes == "body":
-            fx, fy = along * e.i.axis + across * e.i.normal
-        else:
-            fx, fy = along, across
-        pairs = [(fx, e.i.point[0]), (fy, e.i.point[1])]
-        return pairs + ([(-fx, e.j.point[0]), (-fy, e.j.point[1])] if e.j is not None else [])
+        fx, fy = along * e.i.axis + across * e.i.normal if e.axes == "body" else (along, across)
+        if e.j is None:
+            return [(fx, e.i.point[0]), (fy, e.i.point[1])]
+        d = e.i.point - e.j.point
+        return [(fx * axis[0] + fy * axis[1], d.dot(axis)) for axis in (e.j.axis, e.j.normal)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        if e.axes == "body" or not all(e.is_constant(component) for component in e.force):
+        if e.j is not None or e.axes == "body" or not all(e.is_constant(component) for component in e.force):
             return 0
-        arm = e.i.point - e.j.point if e.j is not None else e.i.point
-        return -e.force[0] * arm[0] - e.force[1] * arm[1]
+        return -e.force[0] * e.i.point[0] - e.force[1] * e.i.point[1]
 
 
 class AppliedTorque(Force):
-    """A torque on a body, of time or of anything measured, with its opposite on a second body where `j` is given."""
+    """A torque on a body: constant, or a formula of time and of anything measured.
+
+    With `j` a second body takes the opposite torque.  A constant torque has a potential, others have none.
+    """
 
     kind: ClassVar[str] = "torque"
 
     type: Literal["torque"] = "torque"
     i: Marker = Field(description="marker of the body on which the torque acts")
-    j: Marker | None = Field(None, description="marker of a second body on which the opposite torque acts")
+    j: Marker | None = Field(None, description="marker of a second body, which takes the opposite torque")
     torque: OfMotion = Field(description="about z, N m: a number or a formula")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
-        return [(e.torque, e.i.angle - (e.j.angle if e.j is not None else 0))]
+        return [(e.torque, AppliedTorque.angle(e))]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        if not e.is_constant(e.torque):
-            return 0
-        return -e.torque * (e.i.angle - (e.j.angle if e.j is not None else 0))
+        return -e.torque * AppliedTorque.angle(e) if e.is_constant(e.torque) else 0
+
+    @staticmethod
+    def angle(e: Symbolic) -> Any:
+        """The angle on which the torque does work."""
+        return e.i.angle - (e.j.angle if e.j is not None else 0)

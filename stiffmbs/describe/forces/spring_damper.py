@@ -8,14 +8,21 @@ from pydantic import Field
 
 from .. import si
 from ..element import Force, Symbolic
+from ..formula_field import OfDeflection, OfRate
 from ..marker import Marker
 
 
 class SpringDamper(Force):
-    """Line spring and damper: tension k (L - L0) + c L' + preload, along the line between two points.
+    """Line spring and damper, linear or by curves, along the line between two points.
+
+    With the deflection s = L - L0 and its rate v = L' the tension is
+    k s + spring_law(s) + c v + damper_law(v) + preload; tension pulls the points together.
 
     A damping below zero is allowed (it feeds energy in); the points must not coincide while the spring has a
-    free length.
+    free length.  A spring law that is a table or a polynomial in s has a potential; with any other formula the
+    element counts none, and energy.total is not kept.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.2 (TSDA).
     """
 
     kind: ClassVar[str] = "spring_damper"
@@ -27,14 +34,21 @@ class SpringDamper(Force):
     damping: si.Damping = Field(0.0, description="c, N s/m")
     free_length: si.LengthOrZero = Field(0.0, description="L0, the length without tension of the spring, m")
     preload: si.Force = Field(0.0, description="tension added at every length, N")
+    spring_law: OfDeflection | None = Field(None, description="tension added over s = L - L0 (m), N")
+    damper_law: OfRate | None = Field(None, description="tension added over v = L' (m/s), N")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         length = e.distance(e.i.point, e.j.point)
-        tension = e.stiffness * (length - e.free_length) + e.damping * e.rate(length) + e.preload
+        s, v = length - e.free_length, e.rate(length)
+        tension = e.stiffness * s + e.damping * v + e.preload
+        tension += e.spring_law(s) if e.spring_law is not None else 0
+        tension += e.damper_law(v) if e.damper_law is not None else 0
         return [(-tension, length)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
         length = e.distance(e.i.point, e.j.point)
-        return e.stiffness * (length - e.free_length) ** 2 / 2 + e.preload * length
+        s = length - e.free_length
+        of_law = e.integral(e.spring_law, s) if e.spring_law is not None else 0
+        return e.stiffness * s**2 / 2 + e.preload * length + of_law if of_law is not None else 0

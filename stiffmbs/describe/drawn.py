@@ -1,0 +1,61 @@
+"""Elements with the numbers of the bodies' described poses in place of symbols: mechanisms as they are drawn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .element import Element, Joint, JointName
+from .marker import GROUND, Marker
+
+if TYPE_CHECKING:
+    from .model import ModelData
+
+
+@dataclass(frozen=True)
+class DrawnMarker:
+    """A marker with numbers, in ground axes: what `stiffmbs.compile.frames.Frame` is with symbols.
+
+    Attributes
+    ----------
+    point : ndarray, shape (2,)
+        m.
+    angle : float
+        rad.
+    """
+
+    point: np.ndarray
+    angle: float
+
+    @property
+    def axis(self) -> np.ndarray:
+        """Unit vector along the marker's axis."""
+        return np.array([math.cos(self.angle), math.sin(self.angle)])
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit vector across the marker's axis, a quarter turn ahead of it."""
+        return np.array([-math.sin(self.angle), math.cos(self.angle)])
+
+
+def drawn(element: Element, model: ModelData) -> Any:
+    """The element as its equations see it, for markers, numbers and joints that it refers to."""
+    e: Any = SimpleNamespace(**{name: _drawn(getattr(element, name), model) for name in type(element).model_fields})
+    if isinstance(element, Joint):
+        e.coordinate = element.coordinate(e)
+    return e
+
+
+def _drawn(value: Any, model: ModelData) -> Any:
+    match value:
+        case Marker():
+            turned = 0.0 if value.body == GROUND else model.bodies[value.body].angle
+            return DrawnMarker(np.array(model.point(value)), turned + model.place(value).angle)
+        case JointName():
+            return drawn(model.joints[value], model)
+        case _:
+            return value

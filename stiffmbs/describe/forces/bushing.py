@@ -1,0 +1,120 @@
+"""Bushing: springs and dampers in two directions and in rotation."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, WithJsonSchema, field_validator
+
+from .. import si
+from ..element import Force, Symbolic
+from ..formula_field import OfDeflection
+from ..marker import Marker
+
+_AS_WRITTEN = WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})
+
+Stiffness = Annotated[
+    tuple[
+        tuple[si.Stiffness | None, si.Stiffness | None, si.CouplingStiffness | None],
+        tuple[si.Stiffness | None, si.Stiffness | None, si.CouplingStiffness | None],
+        tuple[si.CouplingStiffness | None, si.CouplingStiffness | None, si.TorsionalStiffness | None],
+    ],
+    _AS_WRITTEN,
+]
+Damping = Annotated[
+    tuple[
+        tuple[si.Damping | None, si.Damping | None, si.CouplingDamping | None],
+        tuple[si.Damping | None, si.Damping | None, si.CouplingDamping | None],
+        tuple[si.CouplingDamping | None, si.CouplingDamping | None, si.TorsionalDamping | None],
+    ],
+    _AS_WRITTEN,
+]
+"""Three by three numbers; None where directions are not coupled, so that nothing is computed for them."""
+
+NONE = (0.0, 0.0, 0.0)
+
+
+class Bushing(Force):
+    """Force and torque between two markers that are held together elastically.
+
+    The deformation s = (x, y, angle) of marker i against marker j is measured along the axes of j, and the force
+    is preload - K s - C s' - law(s): on i at its point, as the powers of the three deformations demand, and
+    opposite on j at the same point of space, so that momentum and angular momentum of both bodies are kept.
+
+    With ``axes: ground`` x and y are the ground's, and the force acts at each body's own marker: as the two points
+    lie apart by the deformation, angular momentum is then kept only where the force is along the line between them.
+
+    Stiffness and damping are three numbers (x, y, angle), or a symmetric matrix that couples the directions.
+    A law that is a table or a polynomial in s has a potential; with any other formula the element counts none, and
+    energy.total is not kept.
+
+    The equations are those of Adams' BUSHING and FIELD statements in the plane.
+    """
+
+    kind: ClassVar[str] = "bushing"
+
+    type: Literal["bushing"] = "bushing"
+    i: Marker = Field(description="marker of the first body, on which force and torque are reported")
+    j: Marker = Field(description="marker of the second body, whose direction orients the bushing")
+    stiffness: Stiffness = Field(NONE, validate_default=True, description="K: x, y, angle, or a symmetric matrix")
+    damping: Damping = Field(NONE, validate_default=True, description="C: x, y, angle, or a symmetric matrix")
+    preload: tuple[si.Force, si.Force, si.Torque] = Field(
+        NONE, description="force and torque on i without deformation, N, N, N m"
+    )
+    law_x: OfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
+    law_y: OfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
+    law_angle: OfDeflection | None = Field(None, description="moment against the rotation added over s (rad), N m")
+    axes: Literal["j", "ground"] = Field("j", description="whether x and y are marker j's or the ground's axes")
+
+    @field_validator("stiffness", "damping", mode="before")
+    @classmethod
+    def _diagonal(cls, found: Any) -> Any:
+        """Three numbers stand for a matrix without coupling."""
+        if not isinstance(found, list | tuple) or any(isinstance(part, list | tuple) for part in found):
+            return found
+        return tuple(tuple(part if k == row else None for k in range(3)) for row, part in enumerate(found))
+
+    @field_validator("stiffness", "damping")
+    @classmethod
+    def _symmetric(cls, matrix: Any) -> Any:
+        for row, column in itertools.combinations(range(3), 2):
+            one, other = matrix[row][column] or 0.0, matrix[column][row] or 0.0
+            if abs(one - other) > 1e-12 * max(abs(one), abs(other)):
+                raise ValueError(
+                    f"found {one:g} in row {row + 1}, column {column + 1} and {other:g} across the diagonal, "
+                    "expected a symmetric matrix"
+                )
+        return matrix
+
+    @staticmethod
+    def deformation(e: Symbolic) -> tuple[Any, Any, Any]:
+        """x, y and angle of marker i against marker j."""
+        d = e.i.point - e.j.point
+        x, y = d if e.axes == "ground" else (d.dot(e.j.axis), d.dot(e.j.normal))
+        return x, y, e.i.angle - e.j.angle
+
+    @staticmethod
+    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        s = Bushing.deformation(e)
+        elastic, viscous = _product(e.stiffness, s), _product(e.damping, [e.rate(part) for part in s])
+        laws = [law(part) if law is not None else 0 for law, part in zip(_laws(e), s, strict=True)]
+        return [(e.preload[k] - elastic[k] - viscous[k] - laws[k], s[k]) for k in range(3)]
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        s = Bushing.deformation(e)
+        elastic = _product(e.stiffness, s)
+        of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]
+        if None in of_laws:
+            return 0
+        return sum(elastic[k] * s[k] / 2 - e.preload[k] * s[k] for k in range(3)) + sum(of_laws)
+
+
+def _laws(e: Symbolic) -> tuple[Any, Any, Any]:
+    return e.law_x, e.law_y, e.law_angle
+
+
+def _product(matrix: Any, vector: Any) -> list[Any]:
+    """Matrix times vector, without the entries that are None."""
+    return [sum(k * part for k, part in zip(row, vector, strict=True) if k is not None) for row in matrix]

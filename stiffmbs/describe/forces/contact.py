@@ -1,0 +1,111 @@
+"""Contact of a point or circle with a line or circle."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from .. import si
+from ..element import Symbolic
+from ..fields import Measured
+from ..marker import Marker
+from .friction import Friction
+
+
+class Contact(Friction):
+    """A point or circle about marker i that presses on a line or circle of marker j, with friction.
+
+    Where the gap is closed by delta = -gap > 0 the surfaces repel each other with
+    N = k delta^n (1 + chi delta'), never below zero, and rub with mu(v) N, v being the sliding speed at the point
+    of contact.  The force is the same and opposite on both bodies there.
+
+    Surfaces of j: ``line``, the axis of j, solid on the side away from j's normal; ``circle``, solid inside
+    `surface_radius`; ``hole``, solid outside of it.
+
+    Without friction and dissipation the element keeps energy: it has the potential k delta^(n+1)/(n+1).  For a
+    coefficient of restitution e at an impact speed v, near e = 1, chi = 3 (1 - e) / (2 v) (Hunt and Crossley,
+    J. Appl. Mech. 42, 1975, 440-445) or 3 (1 - e^2) / (4 v) (Lankarani and Nikravesh, J. Mech. Des. 112, 1990,
+    369-376); for any e, chi = 8 (1 - e) / (5 e v) (Flores and others, Multibody Syst. Dyn. 25, 2011, 357-375).
+    """
+
+    kind: ClassVar[str] = "contact"
+
+    type: Literal["contact"] = "contact"
+    i: Marker = Field(description="the point, or the circle's centre")
+    j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")
+    radius: si.LengthOrZero = Field(0.0, description="of the circle about i, m; 0 for a point")
+    surface: Literal["line", "circle", "hole"] = Field("line", description="what i meets")
+    surface_radius: si.LengthOrZero = Field(0.0, description="of a circle or hole about j, m")
+    stiffness: Annotated[float, Measured("any", above=0)] = Field(description="k, N/m^n")
+    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
+    dissipation: Annotated[float, Measured("any", at_least=0)] = Field(0.0, description="chi, s/m")
+
+    @model_validator(mode="after")
+    def _fits(self) -> Contact:
+        if self.surface == "circle" and self.radius + self.surface_radius == 0:
+            raise ValueError("found two points, expected a radius or surface_radius above zero")
+        if self.surface == "hole" and self.surface_radius <= self.radius:
+            raise ValueError(
+                f"found a circle of radius {self.radius:g} in a hole of {self.surface_radius:g}, expected a wider hole"
+            )
+        if self.static_friction is not None and self.friction is None:
+            raise ValueError("found static_friction alone, expected friction too")
+        return self
+
+    @staticmethod
+    def normal(e: Symbolic) -> Any:
+        """Unit vector out of the surface, at the point of contact."""
+        if e.surface == "line":
+            return e.j.normal
+        d = (e.i.point - e.j.point) / e.distance(e.i.point, e.j.point)
+        return d if e.surface == "circle" else -d
+
+    @staticmethod
+    def gap(e: Symbolic) -> Any:
+        """Distance of the surfaces, m; below zero where they overlap."""
+        if e.surface == "line":
+            return (e.i.point - e.j.point).dot(e.j.normal) - e.radius
+        distance = e.distance(e.i.point, e.j.point)
+        return (
+            distance - e.radius - e.surface_radius if e.surface == "circle" else e.surface_radius - e.radius - distance
+        )
+
+    @staticmethod
+    def pressure(e: Symbolic) -> Any:
+        """The normal force N, zero without contact."""
+        from sympy import And, Piecewise
+
+        gap = Contact.gap(e)
+        damped = 1 - e.dissipation * e.rate(gap)
+        return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
+
+    @staticmethod
+    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        pressure = Contact.pressure(e)
+        pairs = [(pressure, Contact.gap(e))]
+        return pairs + (Contact.rubbing(e, pressure) if e.friction is not None else [])
+
+    @staticmethod
+    def rubbing(e: Symbolic, pressure: Any) -> list[tuple[Any, Any]]:
+        """Friction at the point of contact, which is `radius` from i and `arm` from j, both along the normal."""
+        normal = Contact.normal(e)
+        d = e.i.point - e.j.point
+        tangent = (normal[1], -normal[0])
+        arm = d.dot(normal) - e.radius
+        sliding = sum(t * e.rate(part) for t, part in zip(tangent, d, strict=True))
+        v = sliding + e.radius * e.rate(e.i.angle) + arm * e.rate(e.j.angle)
+        force = -Friction.coefficient(e, v) * pressure
+        along = [(force * t, part) for t, part in zip(tangent, d, strict=True)]
+        return [*along, (force * e.radius, e.i.angle), (force * arm, e.j.angle)]
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        from sympy import Piecewise
+
+        gap, power = Contact.gap(e), e.exponent + 1
+        return Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
+
+    @staticmethod
+    def switches(e: Symbolic) -> Any:
+        return (Contact.gap(e),)

@@ -1,0 +1,38 @@
+"""Dry friction: the coefficient over the sliding speed, shared by all forces that rub."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from .. import si
+from ..element import Force, Symbolic
+
+
+class Friction(Force):
+    """Base of forces with dry friction: Coulomb's law with Stribeck's falling branch, smoothed where sliding turns round.
+
+    mu(v) = (mu_d + (mu_s - mu_d) exp(-(v/v_stribeck)^2)) tanh(v/v_smooth).  Nothing sticks for good: below v_smooth
+    friction is viscous, and what should stick creeps.
+
+    Andersson, Soderberg, Bjorklund, Friction models for sliding dry, boundary and mixed lubricated contacts,
+    Tribology International 40 (2007) 580-587.
+    """
+
+    friction: si.NumberOrZero | None = Field(None, description="mu_d, coefficient of friction when sliding fast")
+    static_friction: si.NumberOrZero | None = Field(
+        None, description="mu_s, coefficient when sliding begins; mu_d unless given"
+    )
+    stribeck_velocity: si.PositiveVelocity = Field(0.01, description="sliding speed over which mu_s falls to mu_d, m/s")
+    smooth_velocity: si.PositiveVelocity = Field(
+        0.001, description="sliding speed below which friction is smoothed, m/s"
+    )
+
+    @staticmethod
+    def coefficient(e: Symbolic, v: Any) -> Any:
+        """mu at a sliding speed, with its sign."""
+        from sympy import exp, tanh
+
+        peak = e.static_friction - e.friction if e.static_friction is not None else 0
+        return (e.friction + peak * exp(-((v / e.stribeck_velocity) ** 2))) * tanh(v / e.smooth_velocity)

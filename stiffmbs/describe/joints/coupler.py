@@ -1,0 +1,47 @@
+"""Coupler of two joint coordinates."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from .. import si
+from ..element import JointReference, Symbolic
+from .relation import Relation
+
+
+class Coupler(Relation):
+    """Ties two joint coordinates by a straight line: s_1 - scale s_2 - offset = 0.
+
+    A coordinate is the angle of a revolute joint, or the displacement of a prismatic or point-on-line joint, of marker
+    i against marker j: belts, screws, winches, hydraulic links.  The equation is that of
+    Adams' COUPLER of two joints.
+
+    The reaction is the generalised force on the first body of joint 1: a torque on an angle, a force along the axis
+    of a displacement.
+    """
+
+    kind: ClassVar[str] = "coupler"
+    equations: ClassVar[tuple[str, ...]] = ("ratio",)
+
+    type: Literal["coupler"] = "coupler"
+    joint_1: JointReference = Field(description="joint with the coordinate s_1")
+    joint_2: JointReference = Field(description="joint with the coordinate s_2")
+    scale: si.Anything = Field(description="ds_1/ds_2, in units of s_1 over units of s_2 (m, rad)")
+    offset: si.Anything | None = Field(None, description="s_1 - scale s_2, m or rad; as drawn unless given")
+
+    @field_validator("scale")
+    @classmethod
+    def _not_zero(cls, scale: float) -> float:
+        if scale == 0:
+            raise ValueError("found 0, expected a scale other than zero (a drive can hold one joint alone)")
+        return scale
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [e.joint_1.coordinate - e.scale * e.joint_2.coordinate - e.offset]
+
+    @staticmethod
+    def point(e: Symbolic) -> Any:
+        return e.joint_1.i.point

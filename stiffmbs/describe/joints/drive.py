@@ -1,0 +1,78 @@
+"""Drive: a prescribed motion (Adams: motion)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from types import FunctionType
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from ..element import Joint, JointReference, Symbolic
+from ..exactly_one import exactly_one
+from ..formula_field import Formula, OfPosition, OfTime
+from ..joint_reference import unfit_joints
+
+
+class Drive(Joint):
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes.
+
+    With a position s(t): coordinate - s(t) = 0; with a velocity v(t): d(coordinate)/dt - v(t) = 0, an equation that has
+    no position form, so that the coordinate starts where it is drawn.  Haug, Computer Aided Kinematics and Dynamics of
+    Mechanical Systems (1989), section 3.5.
+
+    The reaction is what the motor does to its first body (marker i of the joint, or the first body that the formula
+    names): ``motor.torque`` on an angle, ``motor.fx motor.fy`` along a displacement.  As for every joint it is
+    -J^T lam: the torque on a driven angle is minus the multiplier.
+    """
+
+    kind: ClassVar[str] = "drive"
+    equations: ClassVar[tuple[str, ...]] = ("motion",)
+
+    type: Literal["drive"] = "drive"
+    joint: JointReference | None = Field(None, description="joint whose coordinate is driven")
+    driven: OfPosition | None = Field(
+        None, alias="coordinate", description="what is driven, in place of a joint: crank.angle, dm(bar.end, ground)"
+    )
+    prescribed_position: OfTime | None = Field(
+        None, alias="position", description="angle, rad, or displacement, m, over time"
+    )
+    prescribed_velocity: OfTime | None = Field(None, alias="velocity", description="rate over time, rad/s or m/s")
+
+    @field_validator("driven")
+    @classmethod
+    def _names_a_body(cls, driven: Formula | None) -> Formula | None:
+        if driven is not None and not any(True for _ in driven.bodies()):
+            raise ValueError(f"found '{driven.text}', expected a formula with a body's coordinate such as crank.angle")
+        return driven
+
+    @model_validator(mode="after")
+    def _one_of_each(self) -> Drive:
+        exactly_one(("joint", self.joint), ("coordinate", self.driven))
+        exactly_one(("position", self.prescribed_position), ("velocity", self.prescribed_velocity))
+        return self
+
+    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        yield from unfit_joints(self, joints)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [] if e.prescribed_position is None else [_driven(e) - _at(e.prescribed_position, e.t)]
+
+    @staticmethod
+    def velocity(e: Symbolic) -> Any:
+        return [] if e.prescribed_velocity is None else [e.rate(_driven(e)) - _at(e.prescribed_velocity, e.t)]
+
+    @staticmethod
+    def point(e: Symbolic) -> Any:
+        """The joint's point; without a joint the first body's centre of mass."""
+        return e.frames[0].origin if e.joint is None else e.joint.i.point
+
+
+def _driven(e: Symbolic) -> Any:
+    return e.driven if e.joint is None else e.joint.coordinate
+
+
+def _at(law: Any, t: Any) -> Any:
+    """A law of time, which is a function if it is a table and an expression if it is a formula."""
+    return law(t) if isinstance(law, FunctionType) else law

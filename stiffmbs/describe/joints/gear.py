@@ -1,0 +1,51 @@
+"""Gear pair."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from .. import si
+from ..element import JointReference, Symbolic
+from .relation import Relation
+from .revolute import Revolute
+
+
+class Gear(Relation):
+    """Two wheels in mesh, each pinned to one carrier: theta_1 + ratio theta_2 - offset = 0.
+
+    theta are the coordinates of the two revolute joints, which have the wheels as marker i and the carrier (an arm, or
+    ground) as marker j.  `ratio` is teeth_2/teeth_1, or radius_2/radius_1: above zero for external teeth, where
+    the wheels turn against each other, below zero for a pinion in an internal gear.  Nikravesh, Computer-Aided
+    Analysis of Mechanical Systems (1988), section 4.2.3, in the angles instead of the arcs, so that full turns count.
+
+    The reaction is the torque that the mesh puts on wheel 1; the force between the teeth has no place in the equation,
+    so the pins carry none of it.
+    """
+
+    kind: ClassVar[str] = "gear"
+    equations: ClassVar[tuple[str, ...]] = ("mesh",)
+    wanted = {"joint_1": Revolute, "joint_2": Revolute}
+    carried: ClassVar[bool] = True
+
+    type: Literal["gear"] = "gear"
+    joint_1: JointReference = Field(description="revolute joint of wheel 1 (marker i), on which the torque is reported")
+    joint_2: JointReference = Field(description="revolute joint of wheel 2 (marker i), in the same carrier (marker j)")
+    ratio: si.Number = Field(description="teeth of wheel 2 over teeth of wheel 1, below zero for internal teeth")
+    offset: si.Angle | None = Field(None, description="theta_1 + ratio theta_2, rad; as drawn unless given")
+
+    @field_validator("ratio")
+    @classmethod
+    def _not_zero(cls, ratio: float) -> float:
+        if ratio == 0:
+            raise ValueError("found 0, expected a ratio of teeth other than zero")
+        return ratio
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [e.joint_1.coordinate + e.ratio * e.joint_2.coordinate - e.offset]
+
+    @staticmethod
+    def point(e: Symbolic) -> Any:
+        return e.joint_1.i.point

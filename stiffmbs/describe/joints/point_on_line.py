@@ -1,0 +1,34 @@
+"""Point on a line: a pin in a straight slot."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ..element import Joint, Symbolic
+from ..marker import Marker
+
+
+class PointOnLine(Joint):
+    """Pin in a slot: the point of marker i stays on the line through marker j along j's axis, d . n_j = 0.
+
+    Body i may turn.  Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.1 (the first of the
+    two equations of a translational joint); the reaction is across the line, without friction.
+    """
+
+    kind: ClassVar[str] = "point_on_line"
+    equations: ClassVar[tuple[str, ...]] = ("normal",)
+
+    type: Literal["point_on_line"] = "point_on_line"
+    i: Marker = Field(description="marker of the body with the pin, on which the reaction is reported")
+    j: Marker = Field(description="marker whose axis is the line")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [(e.i.point - e.j.point).dot(e.j.normal)]
+
+    @staticmethod
+    def coordinate(e: Symbolic) -> Any:
+        """The displacement of the pin along the line, from marker j."""
+        return (e.i.point - e.j.point).dot(e.j.axis)

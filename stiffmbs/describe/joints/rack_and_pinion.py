@@ -1,0 +1,54 @@
+"""Rack and pinion."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from .. import si
+from ..element import JointReference, Symbolic
+from .prismatic import Prismatic
+from .relation import Relation
+from .revolute import Revolute
+
+
+class RackAndPinion(Relation):
+    """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0.
+
+    s is the coordinate of the rack's prismatic joint, theta that of the pinion's revolute joint; both joints have the
+    housing (or ground) as marker j.  With R above zero the rack goes forward along its axis as the pinion turns
+    counter-clockwise, as it does with the pinion on its left; a pinion on the right has R below zero.
+    Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.3.
+
+    The reaction is the force of the teeth on the rack, along its axis; their force on the pinion appears as its moment
+    alone.
+    """
+
+    kind: ClassVar[str] = "rack_and_pinion"
+    equations: ClassVar[tuple[str, ...]] = ("mesh",)
+    wanted = {"rack": Prismatic, "pinion": Revolute}
+    carried: ClassVar[bool] = True
+
+    type: Literal["rack_and_pinion"] = "rack_and_pinion"
+    rack: JointReference = Field(description="prismatic joint of the rack (marker i), on which the force is reported")
+    pinion: JointReference = Field(
+        description="revolute joint of the pinion (marker i), in the same housing (marker j)"
+    )
+    pitch_radius: si.Length = Field(description="R, m; below zero for a pinion on the right of the rack's axis")
+    offset: si.Length | None = Field(None, description="s - R theta, m; as drawn unless given")
+
+    @field_validator("pitch_radius")
+    @classmethod
+    def _not_zero(cls, radius: float) -> float:
+        if radius == 0:
+            raise ValueError("found 0, expected a pitch radius other than zero")
+        return radius
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [e.rack.coordinate - e.pitch_radius * e.pinion.coordinate - e.offset]
+
+    @staticmethod
+    def point(e: Symbolic) -> Any:
+        return e.rack.i.point
