@@ -65,7 +65,7 @@ EXPLICIT: Layout = {
     "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS,
     "t": FLOATS, "t_before": FLOATS, "h": FLOATS, "last_error": FLOATS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
-    "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff": INTS, "stiff_steps": INTS,
+    "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INTS,
     "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 }  # fmt: skip
@@ -74,8 +74,7 @@ counters, the output times (none: every step), and room for the rows and ends of
 
 NATIVE_IDA: Layout = {
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
-    "n_switches": INT, "switches": INTS,
-    "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
+    "n_switches": INT, "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "mark": FLOATS, "count": INTS, "history": FLOATS,
 }  # fmt: skip

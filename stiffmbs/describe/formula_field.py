@@ -176,7 +176,8 @@ class FormulaOf:
     def _value(self, text: str, name: str, known: dict[str, float]) -> float:
         if name in known:
             return known[name]
-        for table in (UNITS, CONSTANTS):
+        units = {} if self.variables else UNITS  # a lone s in a law of v would be a second
+        for table in (units, CONSTANTS):
             if name in table:
                 return table[name].value
         meanings = [*self.variables, *(["t"] if self.time else [])]

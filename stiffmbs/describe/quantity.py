@@ -12,7 +12,7 @@ from .formula import UNIT, FormulaError, evaluate, parse
 Dimension = tuple[float, float, float]  # exponents of kg, m, s; angles have none
 
 NUMBER: Dimension = (0, 0, 0)
-ANY = "any"
+ANY = "value"
 DIMENSIONS: dict[str, tuple[Dimension, str]] = {
     ANY: (NUMBER, "SI units"),
     "number": (NUMBER, "1"),

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from .fields import Measured
 
-Anything = Annotated[float, Measured("any")]
+Anything = Annotated[float, Measured("value")]
 Number = Annotated[float, Measured("number")]
 Angle = Annotated[float, Measured("angle")]
 Length = Annotated[float, Measured("length")]

@@ -37,9 +37,9 @@ class Contact(Friction):
     radius: si.LengthOrZero = Field(0.0, description="of the circle about i, m; 0 for a point")
     surface: Literal["line", "circle", "hole"] = Field("line", description="what i meets")
     surface_radius: si.LengthOrZero = Field(0.0, description="of a circle or hole about j, m")
-    stiffness: Annotated[float, Measured("any", above=0)] = Field(description="k, N/m^n")
+    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
     exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
-    dissipation: Annotated[float, Measured("any", at_least=0)] = Field(0.0, description="chi, s/m")
+    dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
 
     @model_validator(mode="after")
     def _fits(self) -> Contact:

@@ -26,7 +26,7 @@ class Friction(Force):
     )
     stribeck_velocity: si.PositiveVelocity = Field(0.01, description="sliding speed over which mu_s falls to mu_d, m/s")
     smooth_velocity: si.PositiveVelocity = Field(
-        0.001, description="sliding speed below which friction is smoothed, m/s"
+        1e-4, description="sliding speed below which friction is smoothed, m/s"
     )
 
     @staticmethod

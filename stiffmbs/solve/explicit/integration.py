@@ -45,7 +45,7 @@ class Integration:
         stages[scheme.stages] = np.concatenate([start.u, start.acceleration])
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
-        counters = ("dense_ready", "steps", "rejected", "accelerations", "stiff", "stiff_steps", "next_time", "rows")
+        counters = ("dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
         self._arrays: dict[str, Any] = {
             "mechanics": mechanics.table, "scheme": packed(SCHEME, self._scheme), "n": n,
             "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),

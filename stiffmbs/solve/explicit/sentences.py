@@ -13,7 +13,8 @@ REASONS = {
     SINGULAR: "the constraint equations have become dependent on each other",
     NO_CONVERGENCE: "the positions could not be brought back to the constraints",
     NOT_FINITE: "the motion has grown beyond all numbers; the step is too long for the stiffness of the scene",
-    STEP_TOO_SMALL: f"the step that the tolerance asks for has become too small; {_USE_BDF}",
+    STEP_TOO_SMALL: "the step that the tolerance asks for has become too small: the motion has a singularity there, or "
+    + _USE_BDF,
     STIFF: f"more than 100 million steps would be left, each as short as stability asks for; {_USE_BDF}",
 }
 """By status."""

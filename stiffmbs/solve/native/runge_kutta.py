@@ -14,9 +14,8 @@ PAUSED, AT_END = 0, 1
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
 STRETCHED = 1.01
 """The last step may be this much longer than asked for, so that no tiny one is left."""
-STIFF_STEPS_IN_A_ROW = 15
-TOO_MANY_STEPS = 1e8
-"""A stiff run that would need more steps than this to its end is given up."""
+STIFF_PART, ENOUGH_STEPS, TOO_MANY_STEPS = 0.1, 100_000, 1e8
+"""A run is given up when this part of its steps was held back by stability, after so many, with so many ahead."""
 MOST_MOVES = 20
 
 
@@ -91,10 +90,13 @@ def _watch_stiffness(x, c, h):
         rate += (k_end[i] - k_last[i]) ** 2
         move += (x.y[i] - x.y_stage[i]) ** 2
     if h * h * rate > c.stability[0] ** 2 * move and move > 0.0:
-        x.stiff[0] += 1
         x.stiff_steps[0] += 1
-    else:
-        x.stiff[0] = 0
+
+
+@compiled
+def _is_hopeless(x, end):
+    """Whether stability holds the steps back and too many of them are left."""
+    return x.stiff_steps[0] > STIFF_PART * x.steps[0] and end - x.t[0] > TOO_MANY_STEPS * x.h[0]
 
 
 @compiled
@@ -168,7 +170,7 @@ def advance(end, steps, own_steps, explicit):
         x.steps[0] += 1
         if own_steps:
             store_step(x)
-        if x.stiff[0] >= STIFF_STEPS_IN_A_ROW and end - x.t[0] > TOO_MANY_STEPS * x.h[0]:
+        if x.steps[0] >= ENOUGH_STEPS and _is_hopeless(x, end):
             return STIFF
     return PAUSED
 

@@ -1,0 +1,159 @@
+"""The equations of one loop as small dense matrices, without units, and its assembly where they are redundant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.state import State
+from ..compile.system import PLANAR
+from .loops import Loop
+
+CLOSED = 1e-11
+"""Largest violation, in parts of the loop's size, of a pose that counts as assembled."""
+MOST_STEPS = 80
+LONGEST_STEP = 1.0
+LEAST_DAMPING = 1e-13
+LEAST_NORM = 1e-9
+"""A row is scaled as if it were at least this part of the others: one that vanishes must not be blown up."""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A loop at an instant and pose, everything in the loop's own rows and columns and without units.
+
+    Attributes
+    ----------
+    q : ndarray
+        Coordinates of the loop's bodies, m and rad.
+    t : float
+        s.
+    gap : float
+        Largest violation of the positions.
+    C : ndarray, shape (n,)
+        Violations.
+    C_q, J : ndarrays, shape (n, 3 bodies)
+        Derivatives of the positions, and of the velocity level.
+    rates : ndarray, shape (n,)
+        J u + C_t at u = 0, 1/s.
+    """
+
+    q: np.ndarray
+    t: float
+    gap: float
+    C: np.ndarray
+    C_q: np.ndarray
+    J: np.ndarray
+    rates: np.ndarray
+
+
+class LoopEquations:
+    """C, J and C_t of a loop at any pose: lengths in units of its joints' arms, each row of J of length one.
+
+    Parameters
+    ----------
+    loop : Loop
+    state : State
+        Working memory; its pose is where rows are scaled.
+    t : float
+        s.
+
+    Attributes
+    ----------
+    length : float
+        Root mean square arm of the joints, m: velocities count in it, so that units of length do not matter.
+    row_scale : ndarray, shape (n,)
+        What each equation is multiplied by; so lam = row_scale * w for a null vector w of the scaled J^T.
+    """
+
+    def __init__(self, loop: Loop, state: State, t: float) -> None:
+        self.loop, self.state = loop, state
+        system = state.system
+        self._row_at, self._column_at = np.full(system.n_c, -1), np.full(system.n_u, -1)
+        self._row_at[loop.rows] = np.arange(len(loop.rows))
+        self._column_at[loop.columns] = np.arange(len(loop.columns))
+        self._entries = {name: self._places(name) for name in ("C", "V", "C_q", "J")}
+        state.evaluate("motion", t)
+        J = self._matrix("J")
+        self.length = _root_mean_square_arm(J, system.size)
+        self._column_scale = np.tile([self.length, self.length, 1.0], len(loop.bodies))
+        self.row_scale = np.ones(len(loop.rows))
+        self.scale_rows([J * self._column_scale])
+
+    def scale_rows(self, matrices: list[np.ndarray]) -> None:
+        """Scale rows so that the longest form that each takes in matrices scaled so far has length one."""
+        norms = np.max([np.linalg.norm(J, axis=1) for J in matrices], axis=0)
+        self.row_scale /= np.maximum(norms, LEAST_NORM * np.median(norms) or 1.0)
+
+    def pose(self, q: np.ndarray, t: float) -> Pose:
+        """The equations at given coordinates of the loop's bodies."""
+        state, rows = self.state, self.row_scale
+        state.q[self.loop.columns] = q
+        state.u[self.loop.columns] = 0.0
+        state.evaluate("motion", t)
+        C = rows * self._vector("C")
+        C_q, J = (rows[:, None] * self._matrix(name) * self._column_scale for name in ("C_q", "J"))
+        return Pose(q, t, float(np.abs(C).max()), C, C_q, J, rows * self._vector("V"))
+
+    def moved(self, q: np.ndarray, move: np.ndarray) -> np.ndarray:
+        """Coordinates after a move without units."""
+        return q + self._column_scale * move
+
+    def distance(self, a: Pose, b: Pose) -> float:
+        """Length of the move between two poses, without units."""
+        return float(np.linalg.norm((a.q - b.q) / self._column_scale))
+
+    def assembled(self, q: np.ndarray, t: float, kept: np.ndarray | None = None) -> Pose:
+        """The pose nearby where the equations hold, or come closest to holding.
+
+        Levenberg and Marquardt's steps with the damping |C|^2 (Yamashita and Fukushima, Computing Suppl. 15, 2001),
+        which converge quadratically to solutions that are not isolated, whatever the rank of C_q there.
+
+        Parameters
+        ----------
+        kept : ndarray of bool, optional
+            The rows to satisfy; all by default.
+        """
+        rows = np.ones(len(self.loop.rows), dtype=bool) if kept is None else kept
+        pose = self.pose(q, t)
+        closed = False  # one step more once closed, not more: where C_q is singular they would creep towards that pose
+        for _ in range(MOST_STEPS):
+            C, C_q = pose.C[rows], pose.C_q[rows]
+            if closed or not np.all(np.isfinite(C_q)) or not np.any(C):
+                break
+            closed = bool(np.abs(C).max() < CLOSED)
+            damping = max(float(C @ C), LEAST_DAMPING)
+            step = -C_q.T @ np.linalg.solve(C_q @ C_q.T + damping * np.eye(len(C)), C)
+            length = float(np.linalg.norm(step))
+            pose = self.pose(self.moved(pose.q, step * min(1.0, LONGEST_STEP / max(length, 1e-300))), t)
+            if length < 1e-14 * len(C):
+                break
+        return pose
+
+    def _places(self, name: str) -> tuple[np.ndarray, ...]:
+        """Source, row and column of a term's entries in this loop."""
+        term = self.state.system.term("motion", name)
+        inside = self._row_at[term.row] >= 0
+        return term.source[inside], self._row_at[term.row[inside]], self._column_at[term.column[inside]]
+
+    def _matrix(self, name: str) -> np.ndarray:
+        source, row, column = self._entries[name]
+        result = np.zeros((len(self.loop.rows), len(self.loop.columns)))
+        np.add.at(result, (row, column), self.state.values["motion"][source])
+        return result
+
+    def _vector(self, name: str) -> np.ndarray:
+        source, row, _ = self._entries[name]
+        result = np.zeros(len(self.loop.rows))
+        result[row] = self.state.values["motion"][source]
+        return result
+
+
+def _root_mean_square_arm(J: np.ndarray, size: float) -> float:
+    """Of the rows that hold points: the part in angular velocities over that in velocities, m."""
+    turning = np.arange(J.shape[1]) % PLANAR == PLANAR - 1
+    along, about = (np.linalg.norm(J[:, part], axis=1) for part in (~turning, turning))
+    of_points = along * size > 1e-6 * about
+    arms = about[of_points] / along[of_points]
+    return float(np.sqrt(np.mean(arms**2))) if np.any(arms > 0) else size

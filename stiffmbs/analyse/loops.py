@@ -1,0 +1,129 @@
+"""Which bodies and joints form loops: only there can equations be redundant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.state import State
+from ..compile.system import PLANAR, Group, System
+from ..compile.terms import TERM_SETS
+from ..describe.element import Element
+
+FULL_RANK = 1e-8
+"""Determinant of the Gram matrix of scaled rows above which a joint surely holds a body with all its equations."""
+
+
+@dataclass(frozen=True)
+class LoopJoint:
+    """A joint with its rows and bodies.
+
+    Attributes
+    ----------
+    rows : ndarray of int
+        Of its equations in the whole.
+    bodies : tuple of int
+        Numbers of its bodies, the ground left out.
+    """
+
+    name: str
+    element: Element
+    rows: np.ndarray
+    bodies: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Bodies and joints of a mechanism that is no tree, connected by more than the ground.
+
+    Attributes
+    ----------
+    joints : tuple of LoopJoint
+    bodies : tuple of int
+        Their numbers in the system.
+    rows, columns : ndarrays of int
+        The joints' equations and the bodies' coordinates in the whole.
+    """
+
+    joints: tuple[LoopJoint, ...]
+    bodies: tuple[int, ...]
+    rows: np.ndarray
+    columns: np.ndarray
+
+
+def loops(system: System, state: State, t: float) -> list[Loop]:
+    """The parts of a system in which equations could depend on each other, those that share no body apart.
+
+    A body with a single joint is taken away with it where the joint's rows are independent on that body's velocities
+    alone: such rows depend on no others.  What is left when no such body remains are the loops; of a tree, nothing.
+
+    Parameters
+    ----------
+    state : State
+        At the pose to look at.
+    t : float
+        s.
+    """
+    state.evaluate("motion", t)
+    joints = [joint for g, group in enumerate(system.groups) for joint in _joints(system, state, g, group)]
+    joints_of: list[set[int]] = [set() for _ in system.bodies]
+    for k, (joint, _) in enumerate(joints):
+        for body in joint.bodies:
+            joints_of[body].add(k)
+    leaves = [body for body, around in enumerate(joints_of) if len(around) == 1]
+    while leaves:
+        body = leaves.pop()
+        if len(joints_of[body]) != 1:
+            continue
+        (k,) = joints_of[body]
+        joint, held = joints[k]
+        if body in held:
+            for other in joint.bodies:
+                joints_of[other].discard(k)
+                if len(joints_of[other]) == 1:
+                    leaves.append(other)
+    return list(_connected([joint for joint, _ in joints], joints_of))
+
+
+def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tuple[LoopJoint, set[int]]]:
+    """The joints of a group, each with the bodies on whose velocities alone its rows are independent."""
+    count = group.record.n_equations
+    if not count:
+        return
+    row, column = np.array(group.record.patterns["J"], dtype=np.int64).reshape(-1, 2).T
+    first = system.places["motion"][g, 1 + TERM_SETS["motion"].index("J")]
+    values = state.values["motion"][first : first + group.count * len(row)].reshape(group.count, len(row))
+    J = np.zeros((group.count, count, PLANAR * group.kind.n_bodies))
+    J[:, row, column] = values
+    J[:, :, PLANAR - 1 :: PLANAR] /= system.size
+    norms = np.linalg.norm(J, axis=2, keepdims=True)
+    J /= np.where(norms > 0, norms, 1.0)
+    parts = J.reshape(group.count, count, group.kind.n_bodies, PLANAR).transpose(0, 2, 1, 3)
+    independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > FULL_RANK
+    numbers = group.index[:, : 2 * group.kind.n_bodies : 2] // PLANAR
+    for e, name in enumerate(group.names):
+        on = [int(body) for body in numbers[e]]
+        rows = group.first_row + e * count + np.arange(count)
+        held = {body for body, alone in zip(on, independent[e], strict=True) if alone}
+        yield LoopJoint(name, group.elements[e], rows, tuple(b for b in on if b < len(system.bodies))), held
+
+
+def _connected(joints: list[LoopJoint], joints_of: list[set[int]]) -> Iterator[Loop]:
+    """The joints that are left, in parts that share no body."""
+    seen: set[int] = set()
+    for start, around in enumerate(joints_of):
+        if not around or start in seen:
+            continue
+        bodies, members, open_bodies = {start}, set(), [start]
+        while open_bodies:
+            for k in joints_of[open_bodies.pop()] - members:
+                members.add(k)
+                new = set(joints[k].bodies) - bodies
+                bodies |= new
+                open_bodies += new
+        seen |= bodies
+        inside, numbers = tuple(joints[k] for k in sorted(members)), tuple(sorted(bodies))
+        columns = PLANAR * np.array(numbers)[:, None] + np.arange(PLANAR)
+        yield Loop(inside, numbers, np.concatenate([joint.rows for joint in inside]), columns.ravel())
