@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..describe.element import Force, Joint
+from ..describe.request import Request
 from ..errors import InputError
 from .frames import SymbolicElement
 from .kind import Kind
@@ -61,6 +62,8 @@ def derive(kind: Kind) -> Derived:
     symbols = symbols_of(kind)
     if issubclass(kind.element, Joint):
         return _derived_joint(kind, symbols)
+    if issubclass(kind.element, Request):
+        return Derived(0, 0, symbols, {"request": [Entry(sp.sympify(kind.element.value(symbols.element)), 0)]})
     assert issubclass(kind.element, Force)
     return _derived_force(kind, symbols)
 

@@ -7,7 +7,7 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
     "motion": ("C", "V", "C_q", "J", "f"),
     "tangent": ("C_q", "J", "V_q", "G_lam", "G_mu", "f_q", "f_u", "f_lam"),
     "acceleration": ("J", "gamma", "f", "f_lam"),
-    "output": ("reaction", "potential"),
+    "output": ("reaction", "potential", "request"),
     "switch": ("switch",),
     "all_levels": ("C", "V", "J", "gamma", "f"),
     "all_levels_tangent": ("C_q", "J", "V_q", "G_lam", "A_q", "gamma_u", "f_q", "f_u", "f_lam"),
@@ -17,11 +17,12 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
 C constraints, C_q = dC/dq, V the velocity level (C_q u + C_t, and equations that have no position form), J = dV/du,
 f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q, f_u, f_lam derivatives of f (forces
 of friction hang on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
-A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, potential = energy, switch = what changes its sign at corners of a force.
+A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, potential = energy, request =
+what the user asked for, switch = what changes its sign at corners of a force.
 """
 
 TERM_AXES: dict[str, str] = {
-    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "switch": "s",
+    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "request": "e", "switch": "s",
     "C_q": "cq", "J": "cu", "V_q": "cq", "G_lam": "uq", "G_mu": "qq", "f_q": "uq", "f_u": "uu", "f_lam": "ul",
     "A_q": "cq", "gamma_u": "cu",
 }  # fmt: skip

@@ -17,8 +17,9 @@ from .element import Element, Force, Joint, JointName, kinds
 from .fields import Described
 from .forces.weight import Weight
 from .formula import UNIT
-from .formula_field import TIME, Formula
+from .formula_field import TIME, Formula, OfMotion
 from .marker import GROUND, Marker, Placement
+from .request import Request
 
 JOINTS = kinds(joints, Joint)
 FORCES = kinds(forces, Force)
@@ -37,8 +38,8 @@ class ModelData(Described):
         Shown in summaries.
     gravity : tuple of float
         Acceleration along the ground's x and y, m/s^2.
-    bodies, joints, forces : mappings by name
-        Names are shared by all three, as channels are named after them.
+    bodies, joints, forces, requests : mappings by name
+        Names are shared by all, as channels are named after them.
     """
 
     name: str = Field("", description="shown in summaries")
@@ -48,8 +49,9 @@ class ModelData(Described):
     bodies: dict[str, Body] = Field(description="bodies by name")
     joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
     forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
+    requests: dict[str, OfMotion] = Field(default_factory=dict, description="formulas to report, by channel name")
 
-    @field_validator("bodies", "joints", "forces", mode="before")
+    @field_validator("bodies", "joints", "forces", "requests", mode="before")
     @classmethod
     def _names(cls, named: Any, info: Any) -> Any:
         if isinstance(named, dict):
@@ -64,7 +66,7 @@ class ModelData(Described):
         if not self.bodies:
             raise ValueError("bodies: found no body, expected at least one")
         seen: dict[str, str] = {}
-        for section in ("bodies", "joints", "forces"):
+        for section in ("bodies", "joints", "forces", "requests"):
             for name in getattr(self, section):
                 if name in seen:
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
@@ -72,12 +74,16 @@ class ModelData(Described):
         for section in ("joints", "forces"):
             for name, element in getattr(self, section).items():
                 check_element(f"{section}.{name}", element, self.bodies, self.joints)
+        for name, formula in self.requests.items():
+            check_element(f"requests.{name}", Request(formula=formula), self.bodies, self.joints)
         return self
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """Every joint, force and weight with its name (a weight has its body's)."""
+        """Every joint, force, request and weight with its name (a weight has its body's)."""
         for name, element in (*self.joints.items(), *self.forces.items()):
             yield name, element.as_drawn(self)
+        for name, formula in self.requests.items():
+            yield name, Request(formula=formula)
         if self.gravity != (0.0, 0.0):
             for name, body in self.bodies.items():
                 yield name, Weight(i=name, mass=body.mass, gravity=self.gravity)
@@ -160,6 +166,7 @@ class Model:
         self.bodies: dict[str, Body] = {}
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
+        self.requests: dict[str, Formula] = {}
 
     def add(self, name: str, part: Body | Joint | Force) -> BodyHandle | None:
         """Add a body (its handle is returned), a joint or a force under a name.
@@ -179,7 +186,24 @@ class Model:
                 section = cast(dict[str, Any], self.forces)
             case _:
                 raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force")
-        taken = {*self.bodies, *self.joints, *self.forces, *RESERVED}
+        self._check(name, part)
+        section[name] = part
+        return BodyHandle(name) if isinstance(part, Body) else None
+
+    def request(self, name: str, formula: str) -> None:
+        """Report a formula of coordinates, velocities, measures and time as a channel of the given name.
+
+        Raises
+        ------
+        InputError
+            As for `add`, and for a formula that cannot be read.
+        """
+        request = Request(formula=formula)  # type: ignore[arg-type]
+        self._check(name, request)
+        self.requests[name] = request.formula  # type: ignore[assignment]
+
+    def _check(self, name: str, part: Body | Element) -> None:
+        taken = {*self.bodies, *self.joints, *self.forces, *self.requests, *RESERVED}
         if name in taken:
             raise InputError(f"{name}: found a name that is taken or reserved, expected another")
         try:
@@ -188,8 +212,6 @@ class Model:
                 check_element(name, part, self.bodies, self.joints)
         except ValueError as error:
             raise InputError(str(error)) from None
-        section[name] = part
-        return BodyHandle(name) if isinstance(part, Body) else None
 
     def data(self) -> ModelData:
         """The model as it would stand in a scene.
@@ -200,5 +222,6 @@ class Model:
             When the model has no body.
         """
         return ModelData(
-            name=self.name, gravity=self.gravity, bodies=self.bodies, joints=self.joints, forces=self.forces
-        )
+            name=self.name, gravity=self.gravity, bodies=self.bodies, joints=self.joints, forces=self.forces,
+            requests=self.requests,
+        )  # fmt: skip

@@ -13,6 +13,7 @@ from pydantic import ValidationError as PydanticError
 from ..errors import InputError
 from .expand import read_parameters, repeat_entries, set_value
 from .fields import sentence
+from .figure import Figure
 from .model import FORCES, JOINTS, ModelData
 from .settings import RunSettings
 
@@ -24,6 +25,7 @@ class Scene(ModelData):
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
+    figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
 
 
 def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
