@@ -107,7 +107,8 @@ def compiled(scene: ModelData, **changes: Any) -> Contestant:
         end = job.integrate().q[-1]
         return max(abs(end[0] - X_AT_END), abs(end[5] + pi / 2 - THETA_AT_END))
 
-    return Contestant("bdf", f"rtol {job.settings.rtol:g}", False, solve)
+    name = "bdf" if job.settings.solver == "bdf" else job.settings.scheme
+    return Contestant(name, f"rtol {job.settings.rtol:g}", False, solve)
 
 
 def contestants() -> list[Contestant]:
@@ -117,4 +118,5 @@ def contestants() -> list[Contestant]:
     for rtol in (1e-6, 1e-8, 1e-10):
         found.append(Contestant("scikit-sundae by hand", f"rtol {rtol:g}", True, partial(by_hand, rtol)))
         found.append(compiled(scene, rtol=rtol))
+        found.append(compiled(scene, rtol=rtol, solver="projected", scheme="dop853"))
     return found
