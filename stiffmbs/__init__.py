@@ -12,7 +12,8 @@ from typing import Any
 from .describe.body import Body
 from .describe.marker import GROUND as ground
 from .describe.marker import Marker
-from .describe.model import FORCES, JOINTS, Model
+from .describe.model import FORCES, JOINTS
+from .describe.model import Model as DescribedModel
 from .describe.scene import load_scene, read_scene, scene_schema
 from .describe.settings import RunSettings
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
@@ -23,8 +24,18 @@ _ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES
 
 __all__ = [
     "AssemblyError", "Body", "InputError", "Marker", "Model", "RunSettings", "SolverError", "StiffmbsError",
-    "compile_model", "ground", "load_scene", "read_scene", "run", "scene_schema", *_ELEMENTS,
+    "check", "compile_model", "ground", "load_scene", "read_scene", "run", "scene_schema", *_ELEMENTS,
 ]  # fmt: skip
+
+
+class Model(DescribedModel):
+    __doc__ = DescribedModel.__doc__
+
+    def check(self, **changes: Any) -> Any:
+        """Examine the model: degrees of freedom, redundancy; see `stiffmbs.check`."""
+        from .show.check import check
+
+        return check(self, **changes)
 
 
 def __getattr__(name: str) -> Any:
@@ -34,6 +45,10 @@ def __getattr__(name: str) -> Any:
         from .show.run import run
 
         return run
+    if name == "check":
+        from .show.check import check
+
+        return check
     if name == "compile_model":
         from .compile.system import compile_model
 

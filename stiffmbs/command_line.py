@@ -12,7 +12,7 @@ import click
 from .describe.scene import Scene, load_scene, scene_schema
 from .errors import StiffmbsError
 
-WRONG_INPUT, STOPPED_EARLY = 2, 1
+WRONG_INPUT, STOPPED_EARLY, PROBLEMS = 2, 1, 1
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -117,6 +117,32 @@ def _refuse(scene: str, error: StiffmbsError, as_json: bool) -> NoReturn:
         click.echo(error_as_json(scene, str(error)))
     click.echo(f"stiffmbs: {error}", err=True)
     sys.exit(WRONG_INPUT)
+
+
+@main.command()
+@click.argument("scene")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of sentences.")
+@click.option(
+    "--set", "changes", multiple=True, callback=_settings, metavar="PATH=VALUE", help="Change a value of the scene."
+)
+def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
+    """Report SCENE's degrees of freedom, redundant equations, and reactions without a unique value.
+
+    Exit status: 0 sound, 1 problems, 2 the input is wrong.
+    """
+    from .show.check import check as examine
+
+    try:
+        report = examine(load_scene(scene, changes))
+    except StiffmbsError as error:
+        _refuse(scene, error, as_json)
+    if as_json:
+        from .show.summary import check_as_json
+
+        click.echo(check_as_json(scene, report))
+    else:
+        click.echo(report)
+    sys.exit(0 if report.sound else PROBLEMS)
 
 
 @main.command()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,14 +11,16 @@ from .give_way import Redundant
 from .loop_equations import CLOSED, LoopEquations, Pose
 from .loop_rank import LoopRank
 
-INSTANTS = (0.0137, 0.0931, 0.2113, 0.3719, 0.6131, 0.8677, 1.0)
-"""Parts of the run at which scenes that depend on time are looked at again."""
+INSTANTS = (0.0137, 0.0931, 0.2113, 0.3719, 0.6131, 0.8677, 0.9941)
+"""Parts of the run at which scenes that depend on time are looked at again, and as often in between as they move."""
 OPEN = 1e-8
 """Violation, in parts of the loop's size, that contradicts the other equations."""
 DISAGREES = 1e-7
 """Part of the largest prescribed velocity by which two equations may differ."""
 NEAR = 20.0
 """Length of the move that satisfies the other equations, in gaps, up to which the gap is put down to a contradiction."""
+STRIDE, MOST_STRIDES = 0.2, 150
+"""Longest move (arms, rad) between two instants, so that no other branch is met, and how many are made at the most."""
 REGULAR = 1e-5
 """Least singular value for a velocity to be computed from the equations kept."""
 
@@ -58,22 +61,40 @@ def contradictions(found: LoopRank, redundant: list[Redundant], duration: float)
     """
     if not redundant:
         return []
-    equations, start = found.equations, found.start
-    driven = time_dependent(equations, start, duration)
-    pose = start
-    for part in (0.0, *(INSTANTS if driven.any() else ())):
-        pose = equations.assembled(pose.q, start.t + part * duration) if part else start
-        level, rows = _disagreement(found, redundant, pose)
-        if rows:
-            return [
-                Contradiction(r.row, _joints(equations, r, driven), pose.t, level) for r in redundant if r.row in rows
-            ]
+    equations = found.equations
+    driven = time_dependent(equations, found.start, duration)
+    for pose in _followed(equations, found.start, duration if driven.any() else 0.0):
+        asked = redundant if pose is found.start else [r for r in redundant if driven[[r.row, *r.others]].any()]
+        level, rows = _disagreement(equations, redundant, pose)
+        if against := [r for r in asked if r.row in rows]:
+            return [Contradiction(r.row, _joints(equations, r, driven), pose.t, level) for r in against]
     return []
 
 
-def _disagreement(found: LoopRank, redundant: list[Redundant], pose: Pose) -> tuple[str, list[int]]:
+def _followed(equations: LoopEquations, start: Pose, duration: float) -> Iterator[Pose]:
+    """The start, and poses along one motion that the equations allow, up to the first that cannot be assembled."""
+    yield start
+    pose, strides = start, 0
+    for part in INSTANTS:
+        end = start.t + part * duration
+        while pose.t < end and pose.gap <= CLOSED:
+            u = np.linalg.lstsq(pose.J, -pose.rates)[0]
+            h = min(end - pose.t, STRIDE / max(float(np.linalg.norm(u)), 1e-300))
+            while True:
+                strides += 1
+                t = end if h >= end - pose.t else pose.t + h
+                there = equations.assembled(equations.moved(pose.q, h * u), t)
+                if strides > MOST_STRIDES or not np.all(np.isfinite(there.J)):
+                    return
+                if equations.distance(pose, there) <= 2 * STRIDE:
+                    break
+                h /= 2
+            pose = there
+            yield pose
+
+
+def _disagreement(equations: LoopEquations, redundant: list[Redundant], pose: Pose) -> tuple[str, list[int]]:
     """The level and the rows of the redundant equations that do not hold."""
-    equations = found.equations
     kept = np.ones(len(pose.C), dtype=bool)
     kept[[r.row for r in redundant]] = False
     if not np.all(np.isfinite(pose.J)):

@@ -116,7 +116,7 @@ def _connected(joints: list[LoopJoint], joints_of: list[set[int]]) -> Iterator[L
     for start, around in enumerate(joints_of):
         if not around or start in seen:
             continue
-        bodies, members, open_bodies = {start}, set(), [start]
+        bodies, members, open_bodies = {start}, set[int](), [start]
         while open_bodies:
             for k in joints_of[open_bodies.pop()] - members:
                 members.add(k)

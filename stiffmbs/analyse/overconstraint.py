@@ -48,18 +48,18 @@ class Overconstraint:
 def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
     """What is held more than once in a system, independent cases apart."""
     for finding in redundancy.findings:
-        for block in _blocks(finding.redundant):
+        for block in _blocks(finding):
             yield _overconstraint(redundancy.system, finding, block)
 
 
 def directions(parts: Sequence[Undetermined]) -> str:
     """The directions in which forces are undetermined, in words; empty where they have none that stays."""
     found = [
-        f"{part.element} along {math.degrees(part.direction):.4g} deg of {part.axes}"
+        f"of {part.element} at {math.degrees(part.direction):.4g} deg of {part.axes}"
         for part in parts
         if part.axes is not None and part.direction is not None
     ]
-    return f"undetermined are only the forces in {listed(found)}; those across are unique" if found else ""
+    return f"forces only in the directions {listed(found)}, across them they are unique" if found else ""
 
 
 def listed(names: Sequence[str]) -> str:
@@ -69,12 +69,14 @@ def listed(names: Sequence[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
-def _blocks(redundant: Sequence[Redundant]) -> list[list[Redundant]]:
-    """Redundant equations that are repeated by common rows, together."""
+def _blocks(finding: LoopFinding) -> list[list[Redundant]]:
+    """Redundant equations that are repeated by common rows, or among the same joints, together."""
+    joint_of = [joint.name for joint in finding.rank.equations.loop.joints for _ in joint.rows]
     blocks: list[tuple[set[int], list[Redundant]]] = []
-    for part in redundant:
+    for part in finding.redundant:
         rows, members = {part.row, *part.others}, [part]
-        for other in [block for block in blocks if block[0] & rows]:
+        joints = {joint_of[row] for row in rows}
+        for other in [block for block in blocks if block[0] & rows or {joint_of[row] for row in block[0]} == joints]:
             blocks.remove(other)
             rows, members = rows | other[0], [*other[1], *members]
         blocks.append((rows, members))
@@ -152,9 +154,8 @@ def _remedy(remedies: list[tuple[LoopJoint, ...]]) -> str:
         return f"bushings in place of {listed([joint.name for joint in remedies[0]])} make all reactions unique"
     elastic = [joint.name for (joint,) in remedies if _elastic(joint)]
     others = [joint.name for (joint,) in remedies if not _elastic(joint)]
-    ways = [f"a bushing in place of {_one_of(elastic)}"] * bool(elastic) + [f"leaving out {_one_of(others)}"] * bool(
-        others
-    )
+    choices = (("a bushing in place of", elastic), ("leaving out", others))
+    ways = [f"{way} {_one_of(names)}" for way, names in choices if names]
     return f"{' or '.join(ways)} makes all reactions unique"
 
 

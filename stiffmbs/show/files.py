@@ -14,21 +14,27 @@ from .solution import Solution
 
 
 def _write_csv(path: Path, solution: Solution) -> None:
-    columns = np.column_stack([solution.time, *solution.channels.values()])
-    header = ",".join(["time", *solution.channels])
+    marks = [
+        f"{name}.not_unique" for name in solution.not_unique
+    ]  # columns of ones: names of channels stay as they are
+    ones = np.ones((len(solution.time), len(marks)))
+    columns = np.column_stack([solution.time, *solution.channels.values(), ones])
+    header = ",".join(["time", *solution.channels, *marks])
     np.savetxt(path, columns, delimiter=",", header=header, comments="", fmt="%.17g")
 
 
 def _write_npz(path: Path, solution: Solution) -> None:
+    marked = {"not_unique": np.array(solution.not_unique)} if solution.not_unique else {}
     with path.open("wb") as file:
-        np.savez(file, time=solution.time, **solution.channels)  # type: ignore[arg-type]
+        np.savez(file, time=solution.time, **solution.channels, **marked)  # type: ignore[arg-type]
 
 
 def _write_netcdf(path: Path, solution: Solution) -> None:
     import xarray
 
     variables = {
-        name.replace(".", "_"): ("time", values, {"channel": name}) for name, values in solution.channels.items()
+        name.replace(".", "_"): ("time", values, {"channel": name, "unique": int(name not in solution.not_unique)})
+        for name, values in solution.channels.items()
     }
     xarray.Dataset(variables, coords={"time": solution.time}).to_netcdf(path, engine="scipy")
 
@@ -63,7 +69,9 @@ def write(path: Path, solution: Solution) -> None:
     Parameters
     ----------
     path : Path
-        Ends in .csv (a header line, time first), .npz (arrays by channel name, and ``time``) or .nc.
+        Ends in .csv (a header line, time first), .npz (arrays by channel name, and ``time``) or .nc.  Channels without
+        a unique value are marked: by a column ``rail.fy.not_unique`` of ones, by an array ``not_unique`` of names, or
+        by the attribute ``unique`` of each variable.
     """
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=".part-", suffix=path.suffix)
     os.close(handle)

@@ -3,26 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
+from ..analyse.redundancy import Redundancy, examine
 from ..compile.system import System, compile_model
 from ..describe.model import Model, ModelData
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
+from ..errors import AssemblyError, InputError
 from ..solve import SOLVERS
 from ..solve.explicit import ADAPTIVE
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.trajectory import Grid, Trajectory, Watch
+from .redundancy import contradiction_sentences, note_sentences, singular_sentence
 from .solution import Solution
 
 DEFAULT_POINTS = 1001
 BODY_CHANNELS = (("x", "y", "angle"), ("vx", "vy", "omega"), ("ax", "ay", "alpha"))
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A model compiled and examined for redundant equations."""
+
+    data: ModelData
+    settings: RunSettings
+    grid: Grid
+    redundancy: Redundancy
+
+    def mechanics(self) -> Mechanics:
+        """Of the system without its redundant equations."""
+        system = self.redundancy.system
+        return Mechanics(replace(system, active=self.redundancy.active) if self.redundancy.redundant else system)
 
 
 @dataclass(frozen=True)
@@ -32,6 +50,7 @@ class Job:
     data: ModelData
     settings: RunSettings
     grid: Grid
+    redundancy: Redundancy
     mechanics: Mechanics
     start: InitialValues
 
@@ -43,11 +62,24 @@ class Job:
 
 def prepare(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
+    found = examined(model, settings, **changes)
+    for sentence in (*contradiction_sentences(found.redundancy), *singular_sentence(found.redundancy)):
+        raise AssemblyError(sentence)
+    mechanics = found.mechanics()
+    start = initial_values(mechanics, found.grid.start)
+    return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start)
+
+
+def examined(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Examined:
+    """Compile a model and look for redundant equations; parameters and errors as for `run`."""
     data = model.data() if isinstance(model, Model) else model
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
+    for name in chosen.give_way:
+        if name not in data.joints:
+            raise InputError(f"give_way: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
+    order = [*(name for name in data.joints if name not in chosen.give_way), *chosen.give_way]
     grid = output_grid(chosen)
-    mechanics = Mechanics(compile_model(data))
-    return Job(data, chosen, grid, mechanics, initial_values(mechanics, grid.start))
+    return Examined(data, chosen, grid, examine(compile_model(data), grid.start, chosen.duration, order))
 
 
 def run(
@@ -82,13 +114,15 @@ def run(
     trajectory = job.integrate(watch)
     project = _near_constraints(job.settings)
     rows = job.mechanics.report(trajectory.t, trajectory.q, trajectory.u, project=project)
+    if not len(rows.t):
+        raise AssemblyError("no accelerations could be computed at the start: the equations depend on each other there")
     statistics = {"name": job.settings.solver, **trajectory.statistics}
     if project:
         statistics["drift"] = float(rows.drift.max())
     return Solution(
         name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=trajectory.outcome,
-        message=trajectory.message, notes=tuple(_notes(job.start, rows, trajectory)), solver=statistics,
-        step_times=trajectory.step_times,
+        message=trajectory.message, notes=(*note_sentences(job.redundancy), *_notes(job.start, rows, trajectory)), solver=statistics,
+        step_times=trajectory.step_times, not_unique=job.redundancy.not_unique,
     )  # fmt: skip
 
 

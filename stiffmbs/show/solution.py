@@ -33,6 +33,8 @@ class Solution(Mapping[str, np.ndarray]):
         Name, steps, residuals, jacobians, seconds.
     step_times : ndarray
         Ends of the solver's own steps, where it tells them.
+    not_unique : tuple of str
+        Channels of reactions that rigid bodies do not determine; what they hold is one of many possible values.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Solution(Mapping[str, np.ndarray]):
     notes: tuple[str, ...]
     solver: dict[str, Any]
     step_times: np.ndarray
+    not_unique: tuple[str, ...] = ()
 
     @property
     def t(self) -> np.ndarray:

@@ -13,8 +13,12 @@ from .solution import Solution, channel_ranges
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from .check import Report
+
 ROUNDING = 1e-12
 """Part of the largest force below which a force is shown as zero."""
+NOT_UNIQUE = "*"
+"""Stands behind the range of a reaction that has no unique value."""
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
@@ -28,9 +32,15 @@ def as_json(scene: str, solution: Solution) -> str:
             "notes": list(solution.notes),
             "time": {"start": float(solution.time[0]), "end": float(solution.time[-1])},
             "solver": solution.solver,
+            "not_unique": list(solution.not_unique),
             "channels": channel_ranges(solution),
         }
     )
+
+
+def check_as_json(scene: str, report: Report) -> str:
+    """The one-line JSON object of ``stiffmbs check --json``."""
+    return _line(report.as_dict(scene))
 
 
 def error_as_json(scene: str, message: str) -> str:
@@ -63,6 +73,8 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
         console.print(f"note: {note}", highlight=False)
     console.print("force and torque on the first body, least .. greatest (N, N m):", highlight=False)
     console.print(_force_table(solution))
+    if solution.not_unique:
+        console.print(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values", highlight=False)
     total = solution.channels["energy.total"]
     console.print(
         f"energy: {total[0]:.9g} J at the start, changes by at most {solution.energy_drift():.3g} J; "
@@ -88,7 +100,10 @@ def _force_table(solution: Solution) -> Any:
         (abs(cell[end]) for cells in rows.values() for cell in cells for end in ("min", "max")), default=0
     )
     for element, cells in rows.items():
-        table.add_row(element, *(" .. ".join(_shown(cell[end], noise) for end in ("min", "max")) for cell in cells))
+        names = [f"{element}.{component}" for component in COMPONENTS]
+        shown = [" .. ".join(_shown(cell[end], noise) for end in ("min", "max")) for cell in cells]
+        marks = [NOT_UNIQUE * (name in solution.not_unique) for name in names]
+        table.add_row(element, *(text + mark for text, mark in zip(shown, marks, strict=True)))
     return table
 
 

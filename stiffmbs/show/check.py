@@ -1,0 +1,146 @@
+"""Checking a model without running it: degrees of freedom, redundant equations, reactions without a unique value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from ..analyse.overconstraint import Overconstraint, listed, overconstraints
+from ..compile.system import PLANAR, System
+from ..describe.model import Model, ModelData
+from ..describe.settings import RunSettings
+from ..errors import AssemblyError
+from ..solve.initial import initial_values
+from .redundancy import contradiction_sentences, overconstraint_sentences, pose_sentences, singular_sentence
+from .run import Examined, examined
+
+
+@dataclass(frozen=True)
+class Report:
+    """What `check` found.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    degrees_of_freedom : int
+        n_u - rank.
+    equations, rank : int
+        Constraint equations, and how many of them are independent in general.
+    redundant : tuple of (str, str)
+        Joint and name of the equations that a run leaves out.
+    not_unique : tuple of str
+        Channels of reactions that have no unique value.
+    overconstraints : tuple of Overconstraint
+        What is held more than once, with reasons and remedies.
+    contradictions : tuple of str
+        Sentences on equations that no motion satisfies.
+    extra_freedoms : int
+        Degrees of freedom at the start beyond those in general: more than 0 at a singular pose.
+    unknowns : tuple of (int, int)
+        Of the formulation SI2, with all equations and without the redundant ones.
+    messages : tuple of str
+        All there is to say, a sentence each.
+    sound : bool
+        Whether nothing stands in the way of a run with unique reactions.
+    """
+
+    name: str
+    degrees_of_freedom: int
+    equations: int
+    rank: int
+    redundant: tuple[tuple[str, str], ...]
+    not_unique: tuple[str, ...]
+    overconstraints: tuple[Overconstraint, ...]
+    contradictions: tuple[str, ...]
+    extra_freedoms: int
+    unknowns: tuple[int, int]
+    messages: tuple[str, ...]
+    sound: bool
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs check --json``."""
+        return {
+            "scene": scene,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "equations": self.equations,
+            "rank": self.rank,
+            "redundant": [{"joint": joint, "equation": equation} for joint, equation in self.redundant],
+            "not_unique": list(self.not_unique),
+            "unknowns": {"before": self.unknowns[0], "after": self.unknowns[1]},
+            "messages": list(self.messages),
+        }
+
+    def __str__(self) -> str:
+        head = (
+            f"{self.name or 'model'}: {self.degrees_of_freedom} degrees of freedom, {self.equations} equations of rank "
+            f"{self.rank}, {self.unknowns[0]} unknowns"
+        )
+        if self.unknowns[1] != self.unknowns[0]:
+            head += f", {self.unknowns[1]} without redundant equations"
+        return "\n".join([head, *(f"- {message}" for message in self.messages or ("nothing to object to",))])
+
+
+def check(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Report:
+    """Examine a model: degrees of freedom, redundancy, uniqueness of reactions, singular poses, contradictions.
+
+    Parameters
+    ----------
+    model : Model or Scene
+    settings : RunSettings, optional
+        Whose ``give_way``, ``start`` and ``duration`` are used; the scene's own by default.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    InputError
+        When the model or a setting is wrong.
+    """
+    found = examined(model, settings, **changes)
+    redundancy, system = found.redundancy, found.redundancy.system
+    cases = tuple(overconstraints(redundancy))
+    against = tuple(contradiction_sentences(redundancy))
+    held_twice = [] if against else [sentence for case in cases for sentence in overconstraint_sentences(case)]
+    problems = [*against, *held_twice]
+    problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
+    problems += [] if against or redundancy.extra_freedoms else _start_sentences(found)
+    positions = system.n_q + system.n_u
+    return Report(
+        name=found.data.name, degrees_of_freedom=redundancy.degrees_of_freedom, equations=system.n_c,
+        rank=redundancy.rank, redundant=redundancy.redundant, not_unique=redundancy.not_unique, overconstraints=cases,
+        contradictions=against, extra_freedoms=redundancy.extra_freedoms,
+        unknowns=(
+            positions + int(system.holonomic.sum()) + system.n_c,
+            positions + int((system.holonomic & redundancy.active).sum()) + redundancy.rank,
+        ),
+        messages=(*problems, *_freedom_sentences(found, system)), sound=not problems,
+    )  # fmt: skip
+
+
+def _start_sentences(found: Examined) -> list[str]:
+    """Why there are no initial values, where there are none."""
+    try:
+        initial_values(found.mechanics(), found.grid.start)
+    except AssemblyError as error:
+        return [str(error)]
+    return []
+
+
+def _freedom_sentences(found: Examined, system: System) -> Iterator[str]:
+    if found.redundancy.degrees_of_freedom == 0:
+        yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
+    touched = {
+        body
+        for group in system.groups if group.kind.element.kind
+        for body in (group.index[:, : 2 * group.kind.n_bodies : 2] // PLANAR).ravel()
+    }  # fmt: skip
+    alone = [name for k, name in enumerate(system.bodies) if k not in touched]
+    if alone:
+        what = "is" if len(alone) == 1 else "are"
+        yield f"{listed(alone)} {what} connected to nothing: no joint and no force but weight acts there"
