@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,8 @@ from ..compile.equations import Equations
 from ..compile.layout import IDA, packed
 from ..compile.routines import Routine
 from ..compile.state import State
+from .engine import Reached
+from .trajectory import History
 
 _MODULE = "stiffmbs.solve.native.ida_callbacks"
 RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
@@ -103,18 +104,8 @@ class Callbacks:
         return self._history[HISTORY_HEAD : HISTORY_HEAD + min(self.steps, HISTORY_ROOM)].copy()
 
 
-@dataclass(frozen=True)
-class Reached:
-    """Where the integrator has come: time, unknowns, whether a root stopped it, and what went wrong, if anything."""
-
-    t: float
-    y: np.ndarray
-    at_root: bool = False
-    failure: str = ""
-
-
-class SundaeIda:
-    """IDA set up for one system and formulation.
+class SundaeEngine:
+    """IDA through scikit-sundae, as `stiffmbs.solve.engine.Engine` wants it.
 
     Parameters
     ----------
@@ -160,32 +151,35 @@ class SundaeIda:
         self._ida.init_step(t, y, yp)
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
-        """Integrate through given times without passing `stop`; ends at a root or a failure."""
-        for time in times:
-            reached = self._reached(self._ida.step(time, method="normal", tstop=stop))
+        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+        asked_for = np.append(times, stop) if len(times) == 0 or times[-1] < stop else times
+        for k, time in enumerate(asked_for):
+            reached = self._reached(self._ida.step(time, method="normal", tstop=stop), k < len(times))
             yield reached
-            if reached.at_root or reached.failure:
+            if reached.at_event or reached.failure:
                 return
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` step by step; ends at a root or a failure."""
+        """Integrate to `stop` and report each step; ends early at an event or a failure."""
         while True:
-            reached = self._reached(self._ida.step(stop, method="onestep", tstop=stop))
+            reached = self._reached(self._ida.step(stop, method="onestep", tstop=stop), True)
             yield reached
-            if reached.at_root or reached.failure or reached.t >= stop:
+            if reached.at_event or reached.failure or reached.t >= stop:
                 return
 
-    def _reached(self, result: Any) -> Reached:
+    def _reached(self, result: Any, asked_for: bool) -> Reached:
         self._since = {"residuals": result.nfev, "jacobians": result.njev}
         failure = result.message.rstrip(".").lower() if result.status < 0 else ""
-        return Reached(result.t, result.y, result.status == ROOT_FOUND, failure)
+        at_event = result.status == ROOT_FOUND
+        rows = 1 if asked_for and not failure and not at_event else 0
+        times, y = np.array([result.t])[:rows], np.asarray(result.y)
+        return Reached(times, y[None, :][:rows], result.t, y, at_event, failure)
 
     def statistics(self) -> dict[str, int | float]:
         """Counters since the first start."""
         calls = {name: self._before[name] + self._since[name] for name in self._before}
         return {"steps": self.callbacks.steps, "rejected": self.callbacks.rejected, **calls}
 
-    @property
-    def step_times(self) -> np.ndarray:
-        """Ends of the accepted steps."""
-        return self.callbacks.step_times
+    def history(self) -> History:
+        """Ends of the steps; their orders are not known here."""
+        return History(self.callbacks.step_times, np.empty(0, dtype=int))

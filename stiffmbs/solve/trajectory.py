@@ -29,6 +29,22 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True)
+class History:
+    """A solver's own steps.
+
+    Attributes
+    ----------
+    t : ndarray
+        Ends of the steps, s.
+    order : ndarray of int
+        Order of the formula in each step; empty where it is fixed or not known.
+    """
+
+    t: np.ndarray
+    order: np.ndarray
+
+
+@dataclass(frozen=True)
 class Grid:
     """When to report: the ends of the run, and output times (ends included) or None for the solver's own steps."""
 
@@ -49,8 +65,8 @@ class Trajectory:
         One sentence: what happened, and for an early stop where and why.
     statistics : dict
         ``steps``, ``seconds`` and what else the solver counts.
-    step_times : ndarray
-        Ends of the solver's own steps.
+    history : History
+        The solver's own steps, as far as it tells them.
     """
 
     t: np.ndarray
@@ -59,7 +75,12 @@ class Trajectory:
     outcome: Outcome
     message: str
     statistics: dict[str, int | float]
-    step_times: np.ndarray = field(default_factory=lambda: np.empty(0))
+    history: History = field(default_factory=lambda: History(np.empty(0), np.empty(0, dtype=int)))
+
+    @property
+    def step_times(self) -> np.ndarray:
+        """Ends of the solver's own steps, s."""
+        return self.history.t
 
 
 class Rows:

@@ -11,7 +11,7 @@ from ...describe.settings import RunSettings
 from ..initial import InitialValues
 from ..mechanics import Mechanics
 from ..tolerances import absolute_tolerances
-from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
@@ -50,9 +50,10 @@ def solve_adaptively(
         outcome, message = Outcome.STOPPED, f"stopped at t = {work.t:.9g} s: {REASONS[status]}"
     elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
         message = f"{message}; {stiff_sentence(work)}"
-    statistics = {name: work.count(name) for name in ("steps", "rejected", "accelerations")}
+    statistics: dict[str, int | float] = {name: work.count(name) for name in ("steps", "rejected", "accelerations")}
     statistics["seconds"] = time.perf_counter() - begun
-    return Trajectory(*rows.stored, outcome, message, statistics, np.concatenate([*work.step_times, np.empty(0)]))
+    history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
+    return Trajectory(*rows.stored, outcome, message, statistics, history)
 
 
 def first_step(scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings) -> float:

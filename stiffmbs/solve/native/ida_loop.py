@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import isfinite
-
 from llvmlite import ir
 from numba import int32, types
 from numba.core import cgutils

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import time
 import weakref
 from typing import Any
@@ -63,6 +62,8 @@ class NativeIda:
         Unknowns that are left out of the error test but not of Newton's convergence test (IDASetSuppressAlg).
     newton : float, optional
         Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
+    renewal : float, optional
+        Relative change of cj from which the iteration matrix is made anew (IDASetDeltaCjLSetup); 0.25 by default.
     reported : ndarray of int, optional
         The unknowns that are given at output times; all by default.
     matrix : Matrix, optional
@@ -99,6 +100,7 @@ class NativeIda:
         max_order: int = 5,
         suppressed: np.ndarray | None = None,
         newton: float | None = None,
+        renewal: float | None = None,
         reported: np.ndarray | None = None,
         matrix: Matrix | None = None,
     ) -> None:
@@ -115,7 +117,7 @@ class NativeIda:
         self._connect(equations)
         self._statistics = Statistics(self._session.libraries, self._memory)
         self._set_tolerances(rtol, atol, suppressed)
-        self._set(max_step=max_step, max_order=max_order, newton=newton)
+        self._set(max_step=max_step, max_order=max_order, newton=newton, renewal=renewal)
 
     def _connect(self, equations: Equations) -> None:
         """Make the objects of SUNDIALS and give them the compiled functions and their table."""
@@ -166,13 +168,15 @@ class NativeIda:
             self._must(s.IDASetId(self._memory, self._session.vector(self._counts_in_error_test)))
             self._must(s.IDASetSuppressAlg(self._memory, 1))
 
-    def _set(self, max_step: float, max_order: int, newton: float | None) -> None:
+    def _set(self, max_step: float, max_order: int, newton: float | None, renewal: float | None) -> None:
         s = self._session.libraries
         self._must(s.IDASetMaxStep(self._memory, max_step))
         self._must(s.IDASetMaxOrd(self._memory, max_order))
         self._must(s.IDASetMaxNumSteps(self._memory, -1))  # calls are of one step each
         if newton is not None:
             self._must(s.IDASetNonlinConvCoef(self._memory, newton))
+        if renewal is not None:
+            self._must(s.IDASetDeltaCjLSetup(self._memory, renewal))
 
     @staticmethod
     def _must(flag: int) -> None:

@@ -1,0 +1,54 @@
+"""What `bdf` asks of a driver of IDA, be it native or through scikit-sundae's callbacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from .trajectory import History
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Where an integrator has come since it was last heard of.
+
+    Attributes
+    ----------
+    times, rows : ndarrays, shapes (k,), (k, n)
+        Instants asked for on the way (or ends of steps), and the unknowns there.
+    t, y : float, ndarray
+        Where it is now.
+    at_event : bool
+        Whether a switch stopped it.
+    failure : str
+        Why it cannot go on; empty where it can.
+    """
+
+    times: np.ndarray
+    rows: np.ndarray
+    t: float
+    y: np.ndarray
+    at_event: bool = False
+    failure: str = ""
+
+
+class Engine(Protocol):
+    """A driver of IDA."""
+
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray) -> None:
+        """Start, or start anew, at consistent values."""
+
+    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+
+    def by_steps(self, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report each step; ends early at an event or a failure."""
+
+    def statistics(self) -> dict[str, int | float]:
+        """Counters since the first start."""
+
+    def history(self) -> History:
+        """Ends of the steps, and their orders where they are known."""
