@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import time
 import weakref
 from typing import Any
@@ -29,7 +28,7 @@ ADVANCE = Routine(_MODULE, "advance", "int32(int64, float64*, float64, int64, fl
 STEPS = Routine(_MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
 RETURNED, INTERNAL, SIZE = range(3)
-SERVED, RECORDED, ORDER = range(3)
+SERVED, RECORDED, ORDER, TINY = range(4)
 STOP_RETURN, ROOT_RETURN = 1, 2
 """As in `stiffmbs.solve.native.ida_loop`."""
 
@@ -109,7 +108,7 @@ class NativeIda:
         self._state = state
         self.y, self.yp, self._output = np.zeros(n), np.zeros(n), np.zeros(n)
         self._reported = np.arange(n) if reported is None else np.ascontiguousarray(reported, dtype=np.int64)
-        self._mark, self._count = np.zeros(3), np.zeros(3, dtype=np.int64)
+        self._mark, self._count = np.zeros(3), np.zeros(4, dtype=np.int64)
         self.history = History()
         self._pace, self._flag, self._begun = FIRST_CALL, 0, False
         self._connect(equations)
@@ -121,12 +120,10 @@ class NativeIda:
         """Make the objects of SUNDIALS and give them the compiled functions and their table."""
         session, s = self._session, self._session.libraries
         self._y, self._yp, self._at_output = (session.vector(v) for v in (self.y, self.yp, self._output))
-        system = equations.system
         self._assembled = self.matrix.assembled(session, self._y)
         self._memory = session.ida()
         self._equations_table, self._slots = equations.table(self._assembled.slots)
-        self._switches = np.ascontiguousarray(system.term("switch", "switch").source, dtype=np.int64)
-        self.n_switches = len(self._switches)
+        self.n_switches = equations.system.n_values("switch")
         for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set):
             self._state.load(term_set)
         if self.n_switches:
@@ -145,7 +142,7 @@ class NativeIda:
         return {
             "state": self._state.table, "equations": self._equations_table, "array_of": s.address("N_VGetArrayPointer"),
             "matrix": self._assembled.values, "pattern": self._assembled.pattern,
-            "n_switches": self.n_switches, "switches": self._switches,
+            "n_switches": self.n_switches,
             "memory": self._memory, "y": self._y, "yp": self._yp, "at_output": self._at_output, "output": self._output,
             "n_reported": len(self._reported), "reported": self._reported,
             "solve": s.address("IDASolve"), "interpolate": s.address("IDAGetDky"),
@@ -201,6 +198,7 @@ class NativeIda:
         self._must(s.IDAReInit(self._memory, t, self._y, self._yp))
         self._must(s.IDASetInitStep(self._memory, first_step))
         self._mark[[RETURNED, INTERNAL]] = t
+        self._count[TINY] = 0
         self.history.begin(t)
         self._begun, self._flag = True, 0
 
@@ -231,11 +229,7 @@ class NativeIda:
             self._check_rows(rows, len(times))
         self._stop_at(stop)
         derivatives = 0 if yp_out is None else yp_out.ctypes.data
-        begun = time.perf_counter()
-        self._flag = ADVANCE.load()(
-            len(times), times.ctypes.data, stop, self._pace, y_out.ctypes.data, derivatives, self._table.ctypes.data
-        )
-        self._note(time.perf_counter() - begun)
+        self._run(ADVANCE, len(times), times.ctypes.data, stop, self._pace, y_out.ctypes.data, derivatives)
         return int(self._count[SERVED]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
@@ -249,11 +243,7 @@ class NativeIda:
         """
         self._check_rows(y_out, len(t_out))
         self._stop_at(stop)
-        begun = time.perf_counter()
-        self._flag = STEPS.load()(
-            min(self._pace, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data, self._table.ctypes.data
-        )
-        self._note(time.perf_counter() - begun)
+        self._run(STEPS, min(self._pace, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data)
         return int(self._count[SERVED]), self._status()
 
     def _check_rows(self, rows: np.ndarray, count: int) -> None:
@@ -264,10 +254,13 @@ class NativeIda:
     def _stop_at(self, stop: float) -> None:
         self._must(self._session.libraries.IDASetStopTime(self._memory, stop))
 
-    def _note(self, seconds: float) -> None:
-        """Keep the history of a call, and set the number of steps of the next."""
-        recorded = int(self._count[RECORDED])
-        self.history.add(recorded)
+    def _run(self, loop: Routine, *arguments: Any) -> None:
+        """Call a compiled loop; keep the history of the call, and set the number of steps of the next."""
+        begun = time.perf_counter()
+        with self._session.libraries.on_one_thread():
+            self._flag = loop.load()(*arguments, self._table.ctypes.data)
+        seconds = time.perf_counter() - begun
+        self.history.add(int(self._count[RECORDED]))
         wanted = self._pace * LONGEST_CALL / max(seconds, 1e-9)
         self._pace = int(np.clip(wanted, 1, min(MOST_STEPS, 8 * self._pace)))
 

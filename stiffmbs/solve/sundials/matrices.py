@@ -79,7 +79,9 @@ class Dense:
         s = session.libraries
         matrix = session.keep(s.SUNDenseMatrix(self.n, self.n, session.context), s.SUNMatDestroy, "a matrix")
         solver = session.keep(s.SUNLinSol_Dense(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
-        return Assembled(matrix, solver, s.SUNDenseMatrix_Data(matrix), self.columns * self.n + self.rows, _no_pattern())
+        return Assembled(
+            matrix, solver, s.SUNDenseMatrix_Data(matrix), self.columns * self.n + self.rows, _no_pattern()
+        )
 
 
 @dataclass(frozen=True)

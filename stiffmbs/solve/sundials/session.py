@@ -58,5 +58,3 @@ class Session:
     def close(self) -> None:
         """Free everything; a second call does nothing."""
         self._frees.close()
-
-
