@@ -115,7 +115,7 @@ def _depart(x, c):
 
 @compiled
 def _factor(x, c, error):
-    """How much longer the next step may be (PI control; Hairer, Norsett, Wanner I, ch. II.4 and II.5)."""
+    """How much longer the next step may be (PI control; Hairer, Wanner II, ch. IV.2)."""
     if error == 0.0:
         return LARGEST_FACTOR
     exponent = c.exponent[0] - 0.75 * c.memory[0]
