@@ -54,20 +54,12 @@ class Contact(Friction):
         return self
 
     @staticmethod
-    def normal(e: Symbolic) -> Any:
-        """Unit vector out of a round surface, at the point of contact."""
-        d = (e.i.point - e.j.point) / e.distance(e.i.point, e.j.point)
-        return d if e.surface == "circle" else -d
-
-    @staticmethod
     def gap(e: Symbolic) -> Any:
         """Distance of the surfaces, m; below zero where they overlap."""
         if e.surface == "line":
             return (e.i.point - e.j.point).dot(e.j.normal) - e.radius
         distance = e.distance(e.i.point, e.j.point)
-        return (
-            distance - e.radius - e.surface_radius if e.surface == "circle" else e.surface_radius - e.radius - distance
-        )
+        return (distance - e.surface_radius if e.surface == "circle" else e.surface_radius - distance) - e.radius
 
     @staticmethod
     def pressure(e: Symbolic) -> Any:
@@ -98,9 +90,11 @@ class Contact(Friction):
         d = e.i.point - e.j.point
         if e.surface == "line":
             return [(1, d.dot(e.j.axis) + e.radius * (e.i.angle - e.j.angle))]
-        normal = Contact.normal(e)
-        arm = d.dot(normal) - e.radius
-        return [(normal[1], d[0]), (-normal[0], d[1]), (e.radius, e.i.angle), (arm, e.j.angle)]
+        distance = e.distance(e.i.point, e.j.point)
+        outward = 1 if e.surface == "circle" else -1
+        arm = outward * distance - e.radius
+        across = outward / distance
+        return [(across * d[1], d[0]), (-across * d[0], d[1]), (e.radius, e.i.angle), (arm, e.j.angle)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
