@@ -224,6 +224,8 @@ def test_a_drive_and_a_redundant_loop_do_not_disagree():
     report = stiffmbs.check(model, duration=2.0)
     assert report.contradictions == ()
     assert report.degrees_of_freedom == 0
+    model.add("second", Drive(joint="foot1", position="1 + 6*t"))
+    assert stiffmbs.check(model, duration=2.0).contradictions == ()
     solution = stiffmbs.run(model, duration=2.0, points=11, solver="kinematic")
     np.testing.assert_allclose(solution["crank2.angle"], 1 + 6 * solution.time, atol=1e-9)
 

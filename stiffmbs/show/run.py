@@ -21,7 +21,6 @@ from ..solve.explicit import ADAPTIVE
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.trajectory import Grid, Trajectory, Watch
-from .redundancy import contradiction_sentences, note_sentences, singular_sentence
 from .solution import Solution
 
 DEFAULT_POINTS = 1001
@@ -63,8 +62,10 @@ class Job:
 def prepare(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
     found = examined(model, settings, **changes)
-    for sentence in (*contradiction_sentences(found.redundancy), *singular_sentence(found.redundancy)):
-        raise AssemblyError(sentence)
+    if found.redundancy.findings:
+        from .redundancy import refuse_contradictions
+
+        refuse_contradictions(found.redundancy)
     mechanics = found.mechanics()
     start = initial_values(mechanics, found.grid.start)
     return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start)
@@ -121,7 +122,7 @@ def run(
         statistics["drift"] = float(rows.drift.max())
     return Solution(
         name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=trajectory.outcome,
-        message=trajectory.message, notes=(*note_sentences(job.redundancy), *_notes(job.start, rows, trajectory)), solver=statistics,
+        message=trajectory.message, notes=tuple(_notes(job, rows, trajectory)), solver=statistics,
         step_times=trajectory.step_times, not_unique=job.redundancy.not_unique,
     )  # fmt: skip
 
@@ -174,9 +175,13 @@ def channels_of(system: System, rows: OutputRows) -> dict[str, np.ndarray]:
     return channels
 
 
-def _notes(start: InitialValues, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
-    if start.moved:
-        yield start.sentence()
+def _notes(job: Job, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
+    if job.redundancy.findings:
+        from .redundancy import note_sentences
+
+        yield from note_sentences(job.redundancy)
+    if job.start.moved:
+        yield job.start.sentence()
     if len(rows.t) < len(trajectory.t):
         t = trajectory.t[len(rows.t)]
         yield f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"
