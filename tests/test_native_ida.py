@@ -20,16 +20,17 @@ from stiffmbs.solve.sundae import SundaeIda
 from stiffmbs.solve.sundials import libraries
 from stiffmbs.solve.sundials.ida import NativeIda
 from stiffmbs.solve.sundials.matrices import Banded, Dense, Sparse
+from stiffmbs.solve.sundials.ordering import narrowed
 from stiffmbs.solve.sundials.status import Status
 
 
 class Problem:
     """A model's consistent start, its SI2 equations and its tolerances, multipliers out of the error test."""
 
-    def __init__(self, model, rtol=1e-6):
+    def __init__(self, model, rtol=1e-6, order=lambda equations: equations):
         job = prepare(model)
         self.system, start = job.mechanics.system, job.start
-        self.equations = Equations(SI2_EXACT, self.system)
+        self.equations = order(Equations(SI2_EXACT, self.system))
         n, at = self.equations.n, self.equations.at
         self.rtol, self.atol = rtol, np.full(n, 1e15)
         self.atol[at["q"]] = self.atol[at["u"]] = rtol
@@ -62,15 +63,19 @@ def pendulum(examples):
     return Problem(stiffmbs.load_scene(examples / "cart_pendulum.yaml"), rtol=1e-8)
 
 
-@pytest.fixture(scope="module")
-def chain():
+def hanging_chain():
     """Twelve rods of 1 m hinged to one another, let go from the horizontal: 120 unknowns."""
     model, end = Model("Chain", gravity=(0, -9.81)), "ground"
     for k in range(12):
         rod = model.add(f"rod{k}", Body(mass=1.0, inertia=1 / 12, position=(k + 0.5, 0)))
         model.add(f"pin{k}", Revolute(i=rod.at(-0.5, 0), j=end))
         end = rod.at(0.5, 0)
-    return Problem(model)
+    return model
+
+
+@pytest.fixture(scope="module")
+def chain():
+    return Problem(hanging_chain())
 
 
 @pytest.fixture(scope="module")
@@ -104,6 +109,19 @@ def test_all_matrices_give_the_same_motion(chain, kind):
     assert status is Status.STOP
     at = np.concatenate([chain.equations.at["q"], chain.equations.at["u"]])
     np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-7)
+
+
+def test_the_unknowns_of_a_chain_are_brought_into_a_band(chain, pendulum):
+    ordered = Problem(hanging_chain(), order=narrowed)
+    ida, times = ordered.native(), np.array([0.2, 0.4])
+    assert isinstance(ida.matrix, Banded)
+    assert ida.matrix.lower == ida.matrix.upper == 10
+    rows, _ = ordered.through(ida, times)
+    expected, _ = chain.through(chain.native(), times)
+    for unknown in ("q", "u"):
+        at, natural = ordered.equations.at[unknown], chain.equations.at[unknown]
+        np.testing.assert_allclose(rows[:, at], expected[:, natural], atol=1e-5)
+    assert narrowed(pendulum.equations) is pendulum.equations
 
 
 def test_history_tells_time_order_and_size_of_each_step(pendulum):
