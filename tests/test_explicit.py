@@ -9,12 +9,15 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import Body, Model
+from stiffmbs.compile.routines import Routine
+from stiffmbs.show.run import prepare
 from stiffmbs.solve.explicit import SCHEMES
 from stiffmbs.solve.trajectory import Outcome
 
 from .random_parts import random_tree
 
 ADAPTIVE = ["dopri5", "dop853"]
+ELIMINATED = Routine("stiffmbs.solve.native.eliminated", "accelerate", "int64(float64, float64*, int64*)")
 
 
 @pytest.fixture(scope="module")
@@ -170,3 +173,30 @@ def test_motion_that_ends_in_a_singularity_stops_there():
     assert solution.outcome is Outcome.STOPPED
     assert 0.985 < solution.time[-1] < 1.005
     np.testing.assert_allclose(solution["a.x"][:90], 1 / (1 - solution.time[:90]), rtol=1e-5)
+
+
+@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 8))
+def test_eliminated_accelerations_are_those_of_the_whole_block_system(seed, count):
+    rng = np.random.default_rng(seed)
+    mechanics = prepare(random_tree(rng, count, gravity=True, grounded=True, springs=1)).mechanics
+    mechanics.state.u[:] = rng.uniform(-1, 1, mechanics.system.n_u)
+    _, whole = mechanics.accelerate(0.0)
+    lam = mechanics.state.lam.copy()
+    found = np.empty_like(whole)
+    assert mechanics.eliminated.serves
+    assert ELIMINATED.load()(0.0, found.ctypes.data, mechanics.eliminated.table.ctypes.data)
+    np.testing.assert_allclose(found, whole, atol=1e-9 * (1 + np.abs(whole).max()))
+    np.testing.assert_allclose(mechanics.state.lam, lam, atol=1e-9 * (1 + np.abs(lam).max()))
+
+
+def test_one_plate_with_many_pendulums_is_left_to_the_whole_system():
+    """All its joints meet in one body, so that eliminating it would fill the matrix."""
+    model = Model("comb", gravity=(0, -9.81))
+    plate = model.add("plate", Body(mass=50, inertia=50))
+    for k in range(60):
+        bob = model.add(f"bob{k}", Body(mass=1, inertia=0.1, position=(k, -1)))
+        model.add(f"pin{k}", stiffmbs.Revolute(i=bob.at(0, 1), j=plate.at(k, 0)))
+    job = prepare(model, duration=0.1, points=3, solver="projected", scheme="dop853")
+    assert not job.mechanics.eliminated.serves
+    assert job.integrate().outcome is Outcome.DONE

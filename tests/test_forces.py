@@ -10,14 +10,19 @@ from stiffmbs import (
     Body,
     Bushing,
     InputError,
+    JointFriction,
     Marker,
     Model,
+    Prismatic,
     Revolute,
     SpringDamper,
     TorsionSpring,
+    compile_model,
 )
+from stiffmbs.compile.state import State
 
 from .closed_forms import momenta, oscillation, two_bodies
+from .test_element_derivatives import assert_close, derivative, term
 
 FINE = {"rtol": 1e-10, "points": 101}
 
@@ -190,3 +195,33 @@ def test_bad_input_is_refused_in_one_sentence(element, fields, sentence):
     with pytest.raises(InputError, match=sentence) as error:
         element(**PAIR, **fields)
     assert "\n" not in str(error.value)
+
+
+def rubbing_guide():
+    model = two_bodies(Prismatic)
+    model.add(
+        "rubbing", JointFriction(joint="element", friction=0.3, static_friction=0.4, length=0.2, smooth_velocity=2)
+    )
+    return model
+
+
+VARIANTS = {
+    "spring": two_bodies(SpringDamper, **SPRING),
+    "torsion": two_bodies(TorsionSpring, stiffness=3, spring_law=CURVES["spline"], damper_law="sin(v)"),
+    "bushing": two_bodies(Bushing, **FULL),
+    "bushing, ground": two_bodies(Bushing, **FULL, axes="ground"),
+    "force": two_bodies(AppliedForce, force=("sin(t)*dm(a, b)", "vr(a, b)"), axes="body"),
+    "guide": rubbing_guide(),
+}
+
+
+@pytest.mark.parametrize("model", VARIANTS.values(), ids=VARIANTS.keys())
+def test_derivatives_of_what_random_elements_leave_out(model):
+    state = State(compile_model(model.data()))
+    state.lam[:] = (1.3, -0.8)[: len(state.lam)]
+    state.q[:2] += 1  # away from where a distance is strongly curved
+    force = derivative(lambda: term(state, "motion", "f"), state.q)
+    assert np.linalg.norm(force) > 0.1
+    assert_close(term(state, "tangent", "f_q"), force)
+    assert_close(term(state, "tangent", "f_u"), derivative(lambda: term(state, "motion", "f"), state.u))
+    assert_close(term(state, "tangent", "f_lam"), derivative(lambda: term(state, "motion", "f"), state.lam))

@@ -12,8 +12,10 @@ from .loops import Loop
 
 CLOSED = 1e-11
 """Largest violation, in parts of the loop's size, of a pose that counts as assembled."""
-MOST_STEPS = 80
+MOST_STEPS = 40
 LONGEST_STEP = 1.0
+STATIONARY = 1e-9
+"""Slope of |C|, in parts of itself, below which equations that disagree come no closer to holding."""
 LEAST_DAMPING = 1e-13
 LEAST_NORM = 1e-9
 """A row is scaled as if it were at least this part of the others: one that vanishes must not be blown up."""
@@ -123,6 +125,9 @@ class LoopEquations:
             if closed or not np.all(np.isfinite(C_q)) or not np.any(C):
                 break
             closed = bool(np.abs(C).max() < CLOSED)
+            slope = C_q.T @ C
+            if not closed and np.linalg.norm(slope) < STATIONARY * np.linalg.norm(C):
+                break
             damping = max(float(C @ C), LEAST_DAMPING)
             step = -C_q.T @ np.linalg.solve(C_q @ C_q.T + damping * np.eye(len(C)), C)
             length = float(np.linalg.norm(step))

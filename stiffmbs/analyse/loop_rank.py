@@ -17,6 +17,8 @@ UNCLEAR = 1e-9, 1e-5
 """A pose with singular values between these, near a singular one by chance, is not asked where others are clear."""
 SINGULAR = 1e-5
 """Part of the general pose's least singular value below which the start counts as singular."""
+SMALL = 1e-3
+"""Singular values below this are not taken from eigenvalues of J J^T, which know them to 1e-8 only."""
 POSES, PERTURBATION, SHRINKS = 3, 0.1, 5
 """Poses to confirm the rank at, the size of a perturbation (arms, rad), and how often it is made smaller in vain."""
 
@@ -75,15 +77,30 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     before = equations.row_scale.copy()
     equations.scale_rows([pose.J for pose in poses])
     rescaled = (equations.row_scale / before)[:, None]
-    decomposed = [np.linalg.svd(rescaled * pose.J) for pose in poses]
-    values = [np.pad(s, (0, count - len(s))) for _, s, _ in decomposed]
+    decomposed = [_left_singular(rescaled * pose.J) for pose in poses]
+    values = [s for s, _ in decomposed]
     asked = _clear(values[1:]) or values[1:] or values
     rank = max(int(np.sum(s > DEPENDENT)) for s in asked)
     least = max(float(s[rank - 1]) for s in asked) if rank else 0.0
     start_rank = int(np.sum(values[0][:rank] > SINGULAR * least))
     general = [k for k, s in enumerate(values) if _is_general(s, rank, least, k == 0 or any(s is own for own in asked))]
-    null_spaces = [(poses[k], decomposed[k][0][:, rank:]) for k in general]
+    null_spaces = [(poses[k], decomposed[k][1][:, rank:]) for k in general]
     return LoopRank(equations, start, rank, start_rank, least, null_spaces)
+
+
+def _left_singular(J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Singular values, the largest first, and left singular vectors.
+
+    As eigenvalues of J J^T, which is some times faster; those too small to be told from rounding there are found anew
+    by the decomposition of J^T on their eigenvectors alone.
+    """
+    squares, vectors = np.linalg.eigh(J @ J.T)
+    count = int(np.sum(squares < SMALL**2))
+    small = vectors[:, :count]
+    _, values, turn = np.linalg.svd(J.T @ small, full_matrices=count > J.shape[1])
+    values = np.pad(values, (0, count - len(values)))
+    large = slice(None, count - 1 if count else None, -1)
+    return np.concatenate([np.sqrt(squares[large]), values]), np.hstack([vectors[:, large], small @ turn.T])
 
 
 def _clear(values: list[np.ndarray]) -> list[np.ndarray]:
@@ -113,7 +130,7 @@ def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:
     """Assembled poses near the start; smaller moves where larger ones cannot be assembled."""
     rng = np.random.default_rng(1)
     size, found = PERTURBATION, 0
-    for _ in range(POSES + SHRINKS):
+    for _ in range(POSES + SHRINKS if start.gap <= CLOSED else POSES):
         move = size * rng.uniform(-1, 1, len(start.q))
         pose = equations.assembled(equations.moved(start.q, move), start.t)
         if np.all(np.isfinite(pose.J)) and pose.gap <= max(CLOSED, 2 * start.gap):

@@ -11,9 +11,10 @@ import numpy as np
 from ..compile.system import System
 from ..describe.element import JointName
 from ..describe.marker import Marker
+from .finding import LoopFinding
 from .give_way import TAKES_PART, Redundant
 from .loops import LoopJoint
-from .redundancy import LoopFinding, Redundancy
+from .redundancy import Redundancy
 from .uniqueness import Undetermined
 
 MOST_NAMES = 6

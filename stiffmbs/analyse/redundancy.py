@@ -1,60 +1,24 @@
 """Degrees of freedom, redundant equations, and reactions without a unique value.
 
 The degrees of freedom are n_u minus the rank of the velocity Jacobian J.  Rows of a tree are always independent, so
-only loops are looked at, each by itself: `loops` finds them, `loop_rank` their rank, `give_way` the equations to
-leave out, `uniqueness` the reactions that stay undetermined, `contradictions` equations that cannot hold together.
+only loops are looked at, each by itself: `loops` finds them, and `finding` puts together what there is to say of one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..compile.state import State
 from ..compile.system import System
-from .contradictions import Contradiction, contradictions, time_dependent
-from .give_way import Redundant, redundant_rows
-from .loop_equations import LoopEquations
-from .loop_rank import SOUND, LoopRank, loop_rank
 from .loops import loops
-from .uniqueness import Undetermined, forces_change, undetermined
 
-
-@dataclass(frozen=True)
-class LoopFinding:
-    """A loop whose equations are not independent at the start, and what follows.
-
-    Attributes
-    ----------
-    rank : LoopRank
-    redundant : list of Redundant
-        The equations that give way.
-    undetermined : list of Undetermined
-    contradictions : list of Contradiction
-    driven : ndarray of bool
-        Which of the loop's rows depend on time.
-    motion_unique : bool
-        False where friction hangs on reactions that are not unique.
-    """
-
-    rank: LoopRank
-    redundant: list[Redundant]
-    undetermined: list[Undetermined]
-    contradictions: list[Contradiction]
-    driven: np.ndarray
-    motion_unique: bool
-
-    @property
-    def extra_freedoms(self) -> int:
-        """Degrees of freedom at the start beyond those in general: more than 0 at a singular pose."""
-        return self.rank.rank - self.rank.start_rank
-
-    @property
-    def nearly_dependent(self) -> bool:
-        """Whether equations differ by so little that the motion hangs on rounding."""
-        return not self.extra_freedoms and self.rank.least < SOUND
+if TYPE_CHECKING:
+    from .finding import LoopFinding
+    from .uniqueness import Undetermined
 
 
 @dataclass(frozen=True)
@@ -121,22 +85,11 @@ def examine(system: System, start: float, duration: float, order: Sequence[str])
     active = np.ones(system.n_c, dtype=bool)
     findings = []
     for loop in loops(system, state, start):
-        equations = LoopEquations(loop, state, start)
-        pose = equations.pose(system.q[loop.columns], start)
-        if not (np.all(np.isfinite(pose.J)) and np.all(np.isfinite(pose.C))):
-            continue  # the search for initial values names the element
-        rank = loop_rank(equations, pose.q, start)
-        if not rank.null_spaces:
+        from .finding import finding_of  # trees do not pay for it
+
+        finding = finding_of(loop, state, start, duration, order)
+        if finding is None:
             continue
-        redundant = redundant_rows(rank, order, system.holonomic[loop.rows])
-        active[loop.rows[[part.row for part in redundant]]] = False
-        findings.append(_finding(rank, redundant, duration))
+        active[loop.rows[[part.row for part in finding.redundant]]] = False
+        findings.append(finding)
     return Redundancy(system, tuple(findings), active)
-
-
-def _finding(rank: LoopRank, redundant: list[Redundant], duration: float) -> LoopFinding:
-    spaces = rank.null_spaces if redundant else []
-    return LoopFinding(
-        rank, redundant, undetermined(rank, spaces) if redundant else [], contradictions(rank, redundant, duration),
-        time_dependent(rank.equations, rank.start, duration), not forces_change(rank, spaces),
-    )  # fmt: skip

@@ -14,6 +14,7 @@ import sympy as sp
 from ..describe.element import Force, Joint
 from ..describe.request import Request
 from ..errors import InputError
+from .differentiate import Derivatives
 from .frames import SymbolicElement
 from .kind import Kind
 from .symbols import Symbols, symbols_of
@@ -69,25 +70,25 @@ def derive(kind: Kind) -> Derived:
 
 
 def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
-    e = symbols.element
+    e, jacobian = symbols.element, Derivatives().jacobian
     C = sp.Matrix([sp.sympify(equation) for equation in kind.element.position(e)])  # type: ignore[attr-defined]
     rates = sp.Matrix([sp.sympify(equation) for equation in kind.element.velocity(e)])  # type: ignore[attr-defined]
-    C_q = C.jacobian(e.q) if C else sp.zeros(0, e.q.rows)
+    C_q = jacobian(C, e.q) if C else sp.zeros(0, e.q.rows)
     V = sp.Matrix([*(C_q * e.u + C.diff(e.t) if C else ()), *rates])
-    J = V.jacobian(e.u)
+    J = jacobian(V, e.u)
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
             raise InputError(f"found the equation {[*C, *rates][row]} = 0, which depends on no coordinate of a body")
         if J[row, :].free_symbols & set(e.u):
             raise InputError(f"found the equation {[*C, *rates][row]} = 0, expected one that is linear in velocities")
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
-    V_q = V.jacobian(e.q)
+    V_q = jacobian(V, e.q)
     terms = {
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": V_q,
         "gamma": -(V_q * e.u + V.diff(e.t)),
-        "G_lam": (J.T * lam).jacobian(e.q), "G_mu": (C_q.T * mu[: C.rows, :]).jacobian(e.q),
-        "A_q": (J * e.a + V_q * e.u + V.diff(e.t)).jacobian(e.q),
-        "gamma_u": -(V_q * e.u + V.diff(e.t)).jacobian(e.u),
+        "G_lam": jacobian(J.T * lam, e.q), "G_mu": jacobian(C_q.T * mu[: C.rows, :], e.q),
+        "A_q": jacobian(J * e.a + V_q * e.u + V.diff(e.t), e.q),
+        "gamma_u": -jacobian(V_q * e.u + V.diff(e.t), e.u),
         "reaction": _reaction(kind, e, -J.T * lam),
         "switch": sp.Matrix(symbols.switches),
     }  # fmt: skip
@@ -98,14 +99,14 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
-    e = symbols.element
+    e, jacobian = symbols.element, Derivatives().jacobian
     f = sp.zeros(e.q.rows, 1)
     for effort, coordinate in kind.element.efforts(e):  # type: ignore[attr-defined]
-        f += sp.Matrix([coordinate]).jacobian(e.q).T * effort
+        f += jacobian([coordinate], e.q).T * effort
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
     terms = {
-        "f": f, "f_q": f.jacobian(e.q), "f_u": f.jacobian(e.u),
-        "f_lam": f.jacobian(joint_lam) if joint_lam else sp.zeros(0, 0),
+        "f": f, "f_q": jacobian(f, e.q), "f_u": jacobian(f, e.u),
+        "f_lam": jacobian(f, joint_lam) if joint_lam else sp.zeros(0, 0),
         "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
         "switch": sp.Matrix([*symbols.switches, *kind.element.switches(e)]),  # type: ignore[attr-defined]
     }  # fmt: skip

@@ -81,6 +81,8 @@ class Equations:
     ----------
     formulation : Formulation
     system : System
+    place : ndarray of int, shape (n,), optional
+        Where each unknown of the natural order (kind after kind) stands instead.
 
     Attributes
     ----------
@@ -93,7 +95,7 @@ class Equations:
         Row and column of each slot of the matrix, by columns.
     """
 
-    def __init__(self, formulation: Formulation, system: System) -> None:
+    def __init__(self, formulation: Formulation, system: System, place: np.ndarray | None = None) -> None:
         self.formulation, self.system = formulation, system
         everything = np.ones
         present = {
@@ -105,6 +107,8 @@ class Equations:
         for name in formulation.unknowns:
             self.at[name] = np.where(present[name], self.n + np.cumsum(present[name]) - 1, ABSENT)
             self.n += int(present[name].sum())
+        if place is not None:
+            self.at = {name: np.where(at == ABSENT, ABSENT, place[at]) for name, at in self.at.items()}
         self._compile_residual()
         self._compile_matrix()
 

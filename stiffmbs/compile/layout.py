@@ -53,6 +53,17 @@ IDA: Layout = {"state": INTS, "equations": INTS, "history": FLOATS, "array_heade
 """What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array."""
 
 
+ELIMINATED: Layout = {
+    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_products": INT, "n_slots": INT,
+    "f_source": INTS, "f_row": INTS, "gamma_source": INTS, "gamma_row": INTS,
+    "j_source": INTS, "j_row": INTS, "j_column": INTS, "at_lam": INTS,
+    "product_slot": INTS, "product_first": INTS, "product_second": INTS, "product_weight": FLOATS,
+    "column_start": INTS, "row": INTS, "update_start": INTS, "update_slot": INTS, "inverse_mass": FLOATS,
+    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS,
+}  # fmt: skip
+"""J M^-1 J^T and its factors by flat lists (`stiffmbs.solve.eliminated`)."""
+
+
 SCHEME: Layout = {
     "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
     "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
@@ -61,7 +72,7 @@ SCHEME: Layout = {
 """The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
 
 EXPLICIT: Layout = {
-    "mechanics": INTS, "scheme": INTS, "n": INT, "project": INT, "tolerance": FLOATS,
+    "mechanics": INTS, "eliminated": INTS, "eliminates": INT, "scheme": INTS, "n": INT, "project": INT, "tolerance": FLOATS,
     "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS,
     "t": FLOATS, "t_before": FLOATS, "h": FLOATS, "last_error": FLOATS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,

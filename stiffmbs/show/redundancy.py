@@ -5,9 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..analyse.contradictions import Contradiction
+from ..analyse.finding import LoopFinding
 from ..analyse.overconstraint import Overconstraint, directions, listed, overconstraints
-from ..analyse.redundancy import LoopFinding, Redundancy
+from ..analyse.redundancy import Redundancy
 from ..compile.system import System
+from ..errors import AssemblyError
+
+
+def refuse_contradictions(redundancy: Redundancy) -> None:
+    """Stop before a run that has no solution.
+
+    Raises
+    ------
+    AssemblyError
+        When equations contradict each other, or the start is a singular pose.
+    """
+    for sentence in (*contradiction_sentences(redundancy), *singular_sentence(redundancy)):
+        raise AssemblyError(sentence)
 
 
 def overconstraint_sentences(case: Overconstraint) -> Iterator[str]:

@@ -11,17 +11,18 @@ import numpy as np
 from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
 from ..analyse.redundancy import Redundancy, examine
+from ..analyse.requests import requests
 from ..compile.system import System, compile_model
 from ..describe.model import Model, ModelData
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..errors import AssemblyError, InputError
 from ..solve import SOLVERS
+from ..solve.auto import choose
 from ..solve.explicit import ADAPTIVE
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.trajectory import Grid, Trajectory, Watch
-from .redundancy import contradiction_sentences, note_sentences, singular_sentence
 from .solution import Solution
 
 DEFAULT_POINTS = 1001
@@ -53,6 +54,7 @@ class Job:
     redundancy: Redundancy
     mechanics: Mechanics
     start: InitialValues
+    choice: str = ""
 
     def integrate(self, watch: Watch | None = None) -> Trajectory:
         """Integrate from the start; see `stiffmbs.solve.trajectory`."""
@@ -63,11 +65,16 @@ class Job:
 def prepare(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
     found = examined(model, settings, **changes)
-    for sentence in (*contradiction_sentences(found.redundancy), *singular_sentence(found.redundancy)):
-        raise AssemblyError(sentence)
+    if found.redundancy.findings:
+        from .redundancy import refuse_contradictions
+
+        refuse_contradictions(found.redundancy)
     mechanics = found.mechanics()
     start = initial_values(mechanics, found.grid.start)
-    return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start)
+    settings, choice = found.settings, ""
+    if settings.solver == "auto":
+        settings, choice = choose(mechanics, settings, found.grid.start)
+    return Job(found.data, settings, found.grid, found.redundancy, mechanics, start, choice)
 
 
 def examined(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Examined:
@@ -121,8 +128,8 @@ def run(
         statistics["drift"] = float(rows.drift.max())
     return Solution(
         name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=trajectory.outcome,
-        message=trajectory.message, notes=(*note_sentences(job.redundancy), *_notes(job.start, rows, trajectory)), solver=statistics,
-        step_times=trajectory.step_times, not_unique=job.redundancy.not_unique,
+        message=trajectory.message, notes=tuple(_notes(job, rows, trajectory)), solver=statistics,
+        history=trajectory.history, not_unique=job.redundancy.not_unique,
     )  # fmt: skip
 
 
@@ -166,6 +173,7 @@ def channels_of(system: System, rows: OutputRows) -> dict[str, np.ndarray]:
         for state, names in zip((rows.q, rows.u, rows.acceleration), BODY_CHANNELS, strict=True):
             for offset, name in enumerate(names):
                 channels[f"{body}.{name}"] = state[:, 3 * k + offset]
+    channels |= requests(system, rows.values)
     channels |= reactions(system, rows.values)
     kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
     channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
@@ -174,9 +182,15 @@ def channels_of(system: System, rows: OutputRows) -> dict[str, np.ndarray]:
     return channels
 
 
-def _notes(start: InitialValues, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
-    if start.moved:
-        yield start.sentence()
+def _notes(job: Job, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
+    if job.choice:
+        yield job.choice
+    if job.redundancy.findings:
+        from .redundancy import note_sentences
+
+        yield from note_sentences(job.redundancy)
+    if job.start.moved:
+        yield job.start.sentence()
     if len(rows.t) < len(trajectory.t):
         t = trajectory.t[len(rows.t)]
         yield f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..solve.trajectory import Outcome
+from ..solve.trajectory import History, Outcome
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,8 +31,8 @@ class Solution(Mapping[str, np.ndarray]):
         What the user should know besides: moves at the assembly, warnings.
     solver : dict
         Name, steps, residuals, jacobians, seconds.
-    step_times : ndarray
-        Ends of the solver's own steps, where it tells them.
+    history : History
+        The solver's own steps and their orders, where it tells them.
     not_unique : tuple of str
         Channels of reactions that rigid bodies do not determine; what they hold is one of many possible values.
     """
@@ -44,8 +44,13 @@ class Solution(Mapping[str, np.ndarray]):
     message: str
     notes: tuple[str, ...]
     solver: dict[str, Any]
-    step_times: np.ndarray
+    history: History
     not_unique: tuple[str, ...] = ()
+
+    @property
+    def step_times(self) -> np.ndarray:
+        """Ends of the solver's own steps, s, where it tells them."""
+        return self.history.t
 
     @property
     def t(self) -> np.ndarray:

@@ -16,10 +16,12 @@ from .formulations import FORMULATIONS
 from .initial import InitialValues
 from .mechanics import Mechanics
 from .native_engine import NativeEngine
+from .newton import newton_tolerance
 from .relaxation import relax
 from .restart import restarted
 from .sundae import SundaeEngine
 from .sundials.libraries import available
+from .sundials.ordering import narrowed
 from .tolerances import absolute_tolerances
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
@@ -45,7 +47,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     begun = time.perf_counter()
     try:
         for reached in integrator.run(start, grid):
-            rows.extend(reached.times, *integrator.split(reached.rows))
+            rows.extend(reached.times, *np.split(reached.rows, [system.n_q], axis=1))
             watch(reached.t)
             if reached.failure:
                 outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {reached.failure}"
@@ -62,7 +64,7 @@ class _Integrator:
 
     def __init__(self, mechanics: Mechanics, settings: RunSettings) -> None:
         self.mechanics, self.settings = mechanics, settings
-        self.equations = Equations(FORMULATIONS[settings.formulation](settings), mechanics.system)
+        self.equations = narrowed(Equations(FORMULATIONS[settings.formulation](settings), mechanics.system))
         self.engine = self._engine()
         self._events = self._corners = 0
 
@@ -85,8 +87,8 @@ class _Integrator:
         return self.settings.rtol * correction, atol * correction
 
     def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """q and u from vectors of unknowns."""
-        return y[..., self.equations.at["q"]], y[..., self.equations.at["u"]]
+        """q and u from a vector of unknowns."""
+        return y[self.equations.at["q"]], y[self.equations.at["u"]]
 
     def run(self, start: InitialValues, grid: Grid) -> Iterator[Reached]:
         """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
@@ -119,7 +121,7 @@ class _Integrator:
         multipliers = yp if self.equations.formulation.integrated else y
         multipliers[at["lam"][solved]] = start.lam[solved]
         relax(self.mechanics, self.settings, t)
-        self.engine.begin(t, y, yp)
+        self.engine.begin(t, y, yp, newton_tolerance(self.mechanics, self.settings, t))
 
     def statistics(self) -> dict[str, int | float]:
         """IDA's counters, and how often it started anew."""

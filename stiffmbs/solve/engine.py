@@ -17,10 +17,11 @@ class Reached:
 
     Attributes
     ----------
-    times, rows : ndarrays, shapes (k,), (k, n)
-        Instants asked for on the way (or ends of steps), and the unknowns there.
-    t, y : float, ndarray
-        Where it is now.
+    times, rows : ndarrays, shapes (k,), (k, n_q + n_u)
+        Instants asked for on the way (or ends of steps), and q and u there.
+    t : float
+    y : ndarray, shape (n,)
+        Where it is now, with all unknowns.
     at_event : bool
         Whether a switch stopped it.
     failure : str
@@ -38,8 +39,8 @@ class Reached:
 class Engine(Protocol):
     """A driver of IDA."""
 
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray) -> None:
-        """Start, or start anew, at consistent values."""
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float) -> None:
+        """Start, or start anew, at consistent values; Newton's iteration may leave a part of the tolerance."""
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""

@@ -95,8 +95,9 @@ def _gap_sentence(mechanics: Mechanics, t: float) -> str:
 
 def _dependent_sentence(mechanics: Mechanics) -> str:
     state, system = mechanics.state, mechanics.system
-    jacobian = state.matrix("motion", "J")
-    joint, equation = system.equations[_most_dependent_row(jacobian)]
+    solved_for = np.flatnonzero(system.active)
+    jacobian = state.matrix("motion", "J")[solved_for]
+    joint, equation = system.equations[solved_for[_most_dependent_row(jacobian)]]
     return (
         f"the constraint equations depend on each other at the start: joint '{joint}' (equation {equation}) repeats "
         "what other joints already hold, so its reaction has no unique value"

@@ -14,10 +14,6 @@ from .sundials.status import Status
 from .trajectory import History
 
 ROWS_OF_STEPS = 1000
-NEWTON, NEWTON_AT = 1e-6, 1e-8
-"""Part of the tolerance that Newton's iteration may leave, for tolerances down to the second number; more for tighter
-ones, as numbers end.  IDA's own 0.33 lets one iteration pass whose remainder, times a stiffness of 1e9 N/m, is a force
-that shakes the next steps: 5 000 steps where this takes 200, and no more residuals on soft scenes."""
 RENEWAL, RENEWED_UP_TO = 0.05, 90
 """Change of cj at which the iteration matrix is made anew, for so many unknowns: there a matrix costs no more than a
 residual (a third fewer residuals than with IDA's own 0.25)."""
@@ -37,13 +33,14 @@ class NativeEngine:
     """
 
     def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None:
-        newton = NEWTON * max(1.0, NEWTON_AT / rtol)
+        reported = np.concatenate([equations.at["q"], equations.at["u"]])
         renewal = RENEWAL if equations.n <= RENEWED_UP_TO else None
-        self._ida = NativeIda(equations, state, rtol, atol, max_step=max_step, newton=newton, renewal=renewal)
-        self._n = equations.n
+        self._ida = NativeIda(equations, state, rtol, atol, max_step=max_step, renewal=renewal, reported=reported)
+        self._width = len(reported)
 
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray) -> None:
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float) -> None:
         """Start, or start anew, at consistent values."""
+        self._ida.leave_to_newton(newton)
         self._ida.begin(t, y, yp)
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
@@ -51,7 +48,7 @@ class NativeEngine:
         status, served = Status.GOING, 0
         while status is Status.GOING:
             times = times[served:]
-            rows = np.empty((len(times), self._n))
+            rows = np.empty((len(times), self._width))
             served, status = self._ida.advance(times, stop, rows)
             yield self._reached(times[:served], rows[:served], status)
 
@@ -59,7 +56,7 @@ class NativeEngine:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
         status = Status.GOING
         while status is Status.GOING:
-            times, rows = np.empty(ROWS_OF_STEPS), np.empty((ROWS_OF_STEPS, self._n))
+            times, rows = np.empty(ROWS_OF_STEPS), np.empty((ROWS_OF_STEPS, self._width))
             served, status = self._ida.steps(stop, times, rows)
             yield self._reached(times[:served], rows[:served], status)
 

@@ -121,6 +121,7 @@ class SundaeEngine:
         from sksundae.ida import IDA as SundialsIda
 
         self.equations = equations
+        self._reported = np.concatenate([equations.at["q"], equations.at["u"]])
         dense = equations.n <= DENSE_UP_TO
         self.callbacks = Callbacks(equations, state, dense)
         options: dict[str, Any] = {"linsolver": "dense"} if dense else self._sparse()
@@ -143,8 +144,8 @@ class SundaeEngine:
         pattern = csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.equations.n,) * 2)
         return {"linsolver": "sparse", "sparsity": pattern}
 
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray) -> None:
-        """Start, or start anew, at consistent values."""
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float) -> None:
+        """Start, or start anew, at consistent values; scikit-sundae keeps IDA's own tolerance of Newton's iteration."""
         for name, count in self._since.items():
             self._before[name] += count
         self.callbacks.begin(t)
@@ -173,7 +174,7 @@ class SundaeEngine:
         at_event = result.status == ROOT_FOUND
         rows = 1 if asked_for and not failure and not at_event else 0
         times, y = np.array([result.t])[:rows], np.asarray(result.y)
-        return Reached(times, y[None, :][:rows], result.t, y, at_event, failure)
+        return Reached(times, y[None, self._reported][:rows], result.t, y, at_event, failure)
 
     def statistics(self) -> dict[str, int | float]:
         """Counters since the first start."""

@@ -10,7 +10,7 @@ from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 
-from ..layout import EQUATIONS, EXPLICIT, FACTORS, IDA, MECHANICS, SCHEME, STATE, Layout
+from ..layout import ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, MECHANICS, SCHEME, STATE, Layout
 
 compiled = njit(error_model="numpy")
 """Marks a function for use in compiled routines: a division by zero gives infinity, nothing raises."""
@@ -76,3 +76,4 @@ ida_view = view_of("Ida", IDA)
 mechanics_view = view_of("Mechanics", MECHANICS)
 scheme_view = view_of("Scheme", SCHEME)
 explicit_view = view_of("Explicit", EXPLICIT)
+eliminated_view = view_of("Eliminated", ELIMINATED)

@@ -54,22 +54,12 @@ class Contact(Friction):
         return self
 
     @staticmethod
-    def normal(e: Symbolic) -> Any:
-        """Unit vector out of the surface, at the point of contact."""
-        if e.surface == "line":
-            return e.j.normal
-        d = (e.i.point - e.j.point) / e.distance(e.i.point, e.j.point)
-        return d if e.surface == "circle" else -d
-
-    @staticmethod
     def gap(e: Symbolic) -> Any:
         """Distance of the surfaces, m; below zero where they overlap."""
         if e.surface == "line":
             return (e.i.point - e.j.point).dot(e.j.normal) - e.radius
         distance = e.distance(e.i.point, e.j.point)
-        return (
-            distance - e.radius - e.surface_radius if e.surface == "circle" else e.surface_radius - e.radius - distance
-        )
+        return (distance - e.surface_radius if e.surface == "circle" else e.surface_radius - distance) - e.radius
 
     @staticmethod
     def pressure(e: Symbolic) -> Any:
@@ -84,20 +74,27 @@ class Contact(Friction):
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         pressure = Contact.pressure(e)
         pairs = [(pressure, Contact.gap(e))]
-        return pairs + (Contact.rubbing(e, pressure) if e.friction is not None else [])
+        if e.friction is None:
+            return pairs
+        sliding = Contact.sliding(e)
+        v = sum(weight * e.rate(coordinate) for weight, coordinate in sliding)
+        friction = -Friction.coefficient(e, v) * pressure
+        return pairs + [(friction * weight, coordinate) for weight, coordinate in sliding]
 
     @staticmethod
-    def rubbing(e: Symbolic, pressure: Any) -> list[tuple[Any, Any]]:
-        """Friction at the point of contact, which is `radius` from i and `arm` from j, both along the normal."""
-        normal = Contact.normal(e)
+    def sliding(e: Symbolic) -> list[tuple[Any, Any]]:
+        """Weights and coordinates: the sum of weight times rate is the sliding speed at the point of contact.
+
+        That point is `radius` from i and the rest of the distance from j, both along the normal.
+        """
         d = e.i.point - e.j.point
-        tangent = (normal[1], -normal[0])
-        arm = d.dot(normal) - e.radius
-        sliding = sum(t * e.rate(part) for t, part in zip(tangent, d, strict=True))
-        v = sliding + e.radius * e.rate(e.i.angle) + arm * e.rate(e.j.angle)
-        force = -Friction.coefficient(e, v) * pressure
-        along = [(force * t, part) for t, part in zip(tangent, d, strict=True)]
-        return [*along, (force * e.radius, e.i.angle), (force * arm, e.j.angle)]
+        if e.surface == "line":
+            return [(1, d.dot(e.j.axis) + e.radius * (e.i.angle - e.j.angle))]
+        distance = e.distance(e.i.point, e.j.point)
+        outward = 1 if e.surface == "circle" else -1
+        arm = outward * distance - e.radius
+        across = outward / distance
+        return [(across * d[1], d[0]), (-across * d[0], d[1]), (e.radius, e.i.angle), (arm, e.j.angle)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:

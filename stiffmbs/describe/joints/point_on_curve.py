@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from ..element import Joint, Symbolic
@@ -15,16 +16,16 @@ from ..marker import Marker
 from ..table import Table
 
 TURN = 2 * math.pi
-CLOSED = 1e-4
-"""Jump of the radius, or of its slope, over its size, from which a cam counts as open; tells it from rounding."""
+CLOSED = 1e-9
+"""Change of the radius in a full turn, over the radius, from which a cam counts as open; tells it from rounding."""
 
 
 class PointOnCurve(Joint):
     """Point-follower: the point of marker i stays on a curve fixed to marker j.
 
     In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta.  The curve is a slot
-    ``y`` = Y(x), with y - Y(x) = 0, or a cam ``radius`` = R(theta), with rho - R(theta) = 0.  R repeats after a full
-    turn, so that it does not matter where theta jumps from pi to -pi; a formula sees theta between these two.
+    ``y`` = Y(x), with y - Y(x) = 0, or a cam ``radius`` = R(theta), with rho - R(theta) = 0.  R has to repeat after
+    every turn, so that it does not matter where the arctangent jumps, nor how often the cam has turned.
     Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
     The curve should have no corners.  The reaction is across the curve, without friction, and may pull: the point
@@ -41,7 +42,7 @@ class PointOnCurve(Joint):
         None, description="Y(x), m: a formula of x or a table"
     )
     radius: Annotated[Formula | Table, FormulaOf(("angle",), time=False, table=True)] | None = Field(
-        None, description="R(theta), m: a formula of angle, or a periodic table from any angle to one turn on"
+        None, description="R(theta), m: a formula of sin(angle) and cos(angle), or a periodic table over one turn"
     )
 
     @field_validator("radius")
@@ -67,24 +68,22 @@ class PointOnCurve(Joint):
     @staticmethod
     def position(e: Symbolic) -> Any:
         d = e.i.point - e.j.point
-        x, y = d.dot(e.j.axis), d.dot(e.j.normal)
         if e.y is not None:
-            return [y - e.y(x)]
+            return [d.dot(e.j.normal) - e.y(d.dot(e.j.axis))]
         from sympy import atan2
 
-        return [e.distance(e.i.point, e.j.point) - e.radius(atan2(y, x))]
+        return [e.distance(e.i.point, e.j.point) - e.radius(atan2(d[1], d[0]) - e.j.angle)]
 
 
 def _refuse_open(radius: Formula) -> None:
-    """Refuse a formula of the polar angle that does not meet itself, with its slope, after a full turn."""
-    step = 1e-6
-    before, end, start, after = (
-        formula_value(radius, angle=angle) for angle in (math.pi - step, math.pi, -math.pi, step - math.pi)
-    )
-    size = max(abs(start), abs(end))
-    jump, kink = abs(end - start), abs((end - before) - (after - start)) / step
-    if jump > CLOSED * size or kink > CLOSED * size:
-        raise ValueError(
-            f"found '{radius.text}', which is {start:.6g} at angle -pi and {end:.6g} at pi"
-            f"{', with different slopes' if jump <= CLOSED * size else ''}, expected a curve that closes smoothly"
-        )
+    """Refuse a formula of the polar angle that is another one turn on, or two turns back."""
+    for angle in np.linspace(-TURN, TURN, 50):
+        here = formula_value(radius, angle=angle)
+        for turns in (-2, 1):
+            there = formula_value(radius, angle=angle + turns * TURN)
+            if abs(there - here) > CLOSED * abs(here):
+                raise ValueError(
+                    f"found '{radius.text}', which is {here:.6g} at angle {angle:.6g} and {there:.6g} at "
+                    f"{angle + turns * TURN:.6g}, expected a formula that repeats every turn (of sin(angle) and "
+                    "cos(angle)), or a periodic table"
+                )

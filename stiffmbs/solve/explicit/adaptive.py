@@ -50,7 +50,7 @@ def solve_adaptively(
         outcome, message = Outcome.STOPPED, f"stopped at t = {work.t:.9g} s: {REASONS[status]}"
     elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
         message = f"{message}; {stiff_sentence(work)}"
-    statistics: dict[str, int | float] = {name: work.count(name) for name in ("steps", "rejected", "accelerations")}
+    statistics: dict[str, int | float] = {n: work.count(n) for n in ("steps", "rejected", "accelerations")}
     statistics["seconds"] = time.perf_counter() - begun
     history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
     return Trajectory(*rows.stored, outcome, message, statistics, history)

@@ -93,6 +93,11 @@ DOP853 = Scheme(
         },
     ),
     exponent=1 / 8,
+    memory=0.04,
     stability=6.1,
 )  # fmt: skip
-"""Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed. 1993), ch. II.5 and II.6, and the code DOP853."""
+"""Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed. 1993), ch. II.5 and II.6, and the code DOP853.
+
+Its step control has a memory here (DOP853's default has none): a fifth of the steps were rejected without, a tenth
+with it, for fewer evaluations at a smaller error (measured on a chain of 10 and the cart-pendulum).
+"""

@@ -27,5 +27,5 @@ DOPRI5 = Scheme(
     memory=0.04,
     stability=3.25,
 )  # fmt: skip
-"""Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19; interpolant, step control and the limit of stability as in
+"""Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19; interpolant, step control and limit of stability as in
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed. 1993), ch. II.4 to II.6 and the code DOPRI5."""

@@ -40,14 +40,15 @@ class Integration:
         n = self._n_q + len(start.u)
         self.room = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
         self.step_times: list[np.ndarray] = []
-        self._scheme = _arrays_of(scheme)
+        self._scheme, self._eliminated = _arrays_of(scheme), mechanics.eliminated
         y, stages = np.concatenate([start.q, start.u]), np.zeros((scheme.extended, n))
         stages[scheme.stages] = np.concatenate([start.u, start.acceleration])
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         counters = ("dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
         self._arrays: dict[str, Any] = {
-            "mechanics": mechanics.table, "scheme": packed(SCHEME, self._scheme), "n": n,
+            "mechanics": mechanics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
+            "scheme": packed(SCHEME, self._scheme), "n": n,
             "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
             "rtol": np.array([settings.rtol]), "atol": np.concatenate([atol, atol]),
             "longest": np.array([settings.max_step or np.inf]),

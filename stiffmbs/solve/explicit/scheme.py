@@ -13,10 +13,10 @@ Row = Mapping[int, float]
 
 @dataclass(frozen=True)
 class Scheme:
-    """Butcher's table of an explicit Runge-Kutta scheme whose weights are its last row but the extra stages.
+    """Butcher's table of an explicit Runge-Kutta scheme.
 
-    Stage i is k_i = f(t + c_i h, y + h sum_j a_ij k_j).  Stage `stages` is taken at the step's end with the weights
-    as its row, and is the first of the next step; stages behind it serve the interpolant alone.
+    Stage i is k_i = f(t + c_i h, y + h sum_j a_ij k_j).  The stage with the number `stages` is taken at the step's
+    end: its row holds the weights, and it is the first of the next step.  Those behind it serve the interpolant alone.
 
     Attributes
     ----------

@@ -18,9 +18,12 @@ STOP_RETURN, ROOT_RETURN = 1, 2
 """IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
 RETURNED, INTERNAL, SIZE = range(3)
 """Marks: the time of the returned state, the time that IDA has reached inside, the size of its last step."""
-SERVED, RECORDED, ORDER = range(3)
-"""Counts: output points served, steps in the history, order of the last step."""
+SERVED, RECORDED, ORDER, TINY = range(4)
+"""Counts: output points served, steps in the history, order of the last step, tiny steps in succession."""
 HISTORY_WIDTH = 3
+STALLED = -101
+MOST_TINY, TINY_STEP = 100, 2e-14
+"""IDA would go on forever with steps below the precision of time: this many below this part of t are the end."""
 
 native_ida_view = view_of("NativeIda", NATIVE_IDA)
 
@@ -105,7 +108,7 @@ def switches(t, yy, yp, g, user_data):
     load(s, equations_view(c.equations), _array(c, yy), _array(c, yp))
     values = evaluate(s, SWITCH, t)
     for k in range(c.n_switches):
-        g[k] = values[c.switches[k]]
+        g[k] = values[k]
     return int32(OK if _finite(g, c.n_switches) else RECOVERABLE)
 
 
@@ -115,15 +118,21 @@ def _stepped(c, toward):
     before = c.mark[INTERNAL]
     flag = call_int(c.solve, (c.memory, toward, c.mark, c.y, c.yp, int32(ONE_STEP)))
     call_int(c.time_of, (c.memory, shifted(c.mark, INTERNAL)))
+    call_int(c.step_of, (c.memory, shifted(c.mark, SIZE)))
     if c.mark[INTERNAL] != before and flag >= 0:
         call_int(c.order_of, (c.memory, shifted(c.count, ORDER)))
-        call_int(c.step_of, (c.memory, shifted(c.mark, SIZE)))
         row = HISTORY_WIDTH * c.count[RECORDED]
         c.history[row] = c.mark[INTERNAL]
         c.history[row + 1] = float(c.count[ORDER])
         c.history[row + 2] = c.mark[SIZE]
         c.count[RECORDED] += 1
-    return flag
+    return STALLED if flag >= 0 and _stalled(c) else flag
+
+
+@compiled
+def _stalled(c):
+    c.count[TINY] = c.count[TINY] + 1 if abs(c.mark[SIZE]) < TINY_STEP * abs(c.mark[INTERNAL]) else 0
+    return c.count[TINY] >= MOST_TINY
 
 
 @compiled

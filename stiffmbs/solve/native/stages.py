@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, factors_view, shifted
+from stiffmbs.compile.native.access import compiled, eliminated_view, factors_view, shifted
+from stiffmbs.solve.native.eliminated import eliminated_accelerations
 from stiffmbs.solve.native.mechanics import to_accelerations
 
 
@@ -41,11 +42,16 @@ def load_state(s, y):
 @compiled
 def rates(x, s, m, stage, t):
     """k_stage = (q', u') at the state at hand; 0 or a negative status."""
-    status = to_accelerations(s, m, t)
     k = shifted(x.k, stage * x.n)
     copied(k, s.u, s.n_q)
-    copied(shifted(k, s.n_q), factors_view(m.acceleration_factors).b, s.n_u)
     x.accelerations[0] += 1
+    if x.eliminates:
+        r = eliminated_view(x.eliminated)
+        if eliminated_accelerations(r, s, t):
+            copied(shifted(k, s.n_q), r.a, s.n_u)
+            return 0
+    status = to_accelerations(s, m, t)
+    copied(shifted(k, s.n_q), factors_view(m.acceleration_factors).b, s.n_u)
     return status
 
 

@@ -9,33 +9,24 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.layout import NATIVE_IDA, packed
 from ...compile.routines import Routine
 from ...compile.state import State
+from .connection import INTERNAL, MODULE, MOST_STEPS, RETURNED, SERVED, TINY, Connection
 from .history import History
 from .matrices import Matrix, chosen
 from .session import Session
 from .statistics import Statistics
 from .status import Status, failure_sentence
 
-_MODULE = "stiffmbs.solve.native.ida_loop"
-RESIDUAL = Routine(_MODULE, "residual", "int32(float64, int64, int64, int64, int64*)")
-JACOBIAN = Routine(
-    _MODULE, "jacobian", "int32(float64, float64, int64, int64, int64, int64, int64*, int64, int64, int64)"
-)
-SWITCHES = Routine(_MODULE, "switches", "int32(float64, int64, int64, float64*, int64*)")
-ADVANCE = Routine(_MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
-STEPS = Routine(_MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
+ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
+STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
-RETURNED, INTERNAL, SIZE = range(3)
-SERVED, RECORDED, ORDER = range(3)
 STOP_RETURN, ROOT_RETURN = 1, 2
-"""As in `stiffmbs.solve.native.ida_loop`."""
-
+"""IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
 LONGEST_CALL = 0.1
 """Time, s, after which a call returns, for progress and interruption."""
-FIRST_CALL, MOST_STEPS = 64, 4096
-"""Steps of the first call, before the time of a step is known, and of any call."""
+FIRST_CALL = 64
+"""Steps of the first call, before the time of a step is known."""
 
 
 class NativeIda:
@@ -106,87 +97,38 @@ class NativeIda:
     ) -> None:
         n = equations.n
         self.matrix = matrix or chosen(n, *equations.pattern)
-        self._session = Session(self.matrix.libraries())
-        self._finalizer = weakref.finalize(self, self._session.close)
-        self._state = state
-        self.y, self.yp, self._output = np.zeros(n), np.zeros(n), np.zeros(n)
-        self._reported = np.arange(n) if reported is None else np.ascontiguousarray(reported, dtype=np.int64)
-        self._mark, self._count = np.zeros(3), np.zeros(3, dtype=np.int64)
-        self.history = History()
+        session = Session(self.matrix.libraries())
+        self._finalizer = weakref.finalize(self, session.close)
+        self._ida = ida = Connection(
+            equations, state, self.matrix, np.arange(n) if reported is None else reported, session
+        )
+        self.y, self.yp, self.n_switches = ida.y, ida.yp, ida.n_switches
+        self._statistics = Statistics(session.libraries, ida.memory)
         self._pace, self._flag, self._begun = FIRST_CALL, 0, False
-        self._connect(equations)
-        self._statistics = Statistics(self._session.libraries, self._memory)
-        self._set_tolerances(rtol, atol, suppressed)
-        self._set(max_step=max_step, max_order=max_order, newton=newton, renewal=renewal)
-
-    def _connect(self, equations: Equations) -> None:
-        """Make the objects of SUNDIALS and give them the compiled functions and their table."""
-        session, s = self._session, self._session.libraries
-        self._y, self._yp, self._at_output = (session.vector(v) for v in (self.y, self.yp, self._output))
-        system = equations.system
-        self._assembled = self.matrix.assembled(session, self._y)
-        self._memory = session.ida()
-        self._equations_table, self._slots = equations.table(self._assembled.slots)
-        self._switches = np.ascontiguousarray(system.term("switch", "switch").source, dtype=np.int64)
-        self.n_switches = len(self._switches)
-        for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set):
-            self._state.load(term_set)
-        if self.n_switches:
-            self._state.load("switch")
-        self._table = packed(NATIVE_IDA, self._fields())
-        self._must(s.IDAInit(self._memory, RESIDUAL.address(), 0.0, self._y, self._yp))
-        self._must(s.IDASetUserData(self._memory, self._table.ctypes.data))
-        self._must(s.IDASetLinearSolver(self._memory, self._assembled.solver, self._assembled.matrix))
-        self._must(s.IDASetJacFn(self._memory, JACOBIAN.address()))
-        if self.n_switches:
-            self._must(s.IDARootInit(self._memory, self.n_switches, SWITCHES.address()))
-            self._must(s.IDASetNoInactiveRootWarn(self._memory))
-
-    def _fields(self) -> dict[str, Any]:
-        s = self._session.libraries
-        return {
-            "state": self._state.table, "equations": self._equations_table, "array_of": s.address("N_VGetArrayPointer"),
-            "matrix": self._assembled.values, "pattern": self._assembled.pattern,
-            "n_switches": self.n_switches, "switches": self._switches,
-            "memory": self._memory, "y": self._y, "yp": self._yp, "at_output": self._at_output, "output": self._output,
-            "n_reported": len(self._reported), "reported": self._reported,
-            "solve": s.address("IDASolve"), "interpolate": s.address("IDAGetDky"),
-            "time_of": s.address("IDAGetCurrentTime"), "order_of": s.address("IDAGetLastOrder"),
-            "step_of": s.address("IDAGetLastStep"),
-            "mark": self._mark, "count": self._count, "history": self.history.room(MOST_STEPS),
-        }  # fmt: skip
-
-    def _set_tolerances(self, rtol: float, atol: np.ndarray, suppressed: np.ndarray | None) -> None:
-        s, n = self._session.libraries, len(self.y)
-        if np.shape(atol) != (n,):
-            raise ValueError(f"atol: found shape {np.shape(atol)}, expected ({n},)")
-        self._atol = np.array(atol, dtype=float)
-        self._must(s.IDASVtolerances(self._memory, rtol, self._session.vector(self._atol)))
-        self._counts_in_error_test = np.ones(n)
+        ida.set_tolerances(rtol, atol)
+        self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
         if suppressed is not None:
-            self._counts_in_error_test[suppressed] = 0.0
-            self._must(s.IDASetId(self._memory, self._session.vector(self._counts_in_error_test)))
-            self._must(s.IDASetSuppressAlg(self._memory, 1))
-
-    def _set(self, max_step: float, max_order: int, newton: float | None, renewal: float | None) -> None:
-        s = self._session.libraries
-        self._must(s.IDASetMaxStep(self._memory, max_step))
-        self._must(s.IDASetMaxOrd(self._memory, max_order))
-        self._must(s.IDASetMaxNumSteps(self._memory, -1))  # calls are of one step each
+            ida.suppress(~self._tested)
+        ida.ask("IDASetMaxStep", max_step)
+        ida.ask("IDASetMaxOrd", max_order)
         if newton is not None:
-            self._must(s.IDASetNonlinConvCoef(self._memory, newton))
+            ida.ask("IDASetNonlinConvCoef", newton)
         if renewal is not None:
-            self._must(s.IDASetDeltaCjLSetup(self._memory, renewal))
-
-    @staticmethod
-    def _must(flag: int) -> None:
-        if flag < 0:
-            raise ValueError(failure_sentence(flag))
+            ida.ask("IDASetDeltaCjLSetup", renewal)
 
     @property
     def t(self) -> float:
         """Time of the solution in `y`, s."""
-        return float(self._mark[RETURNED])
+        return float(self._ida.mark[RETURNED])
+
+    @property
+    def history(self) -> History:
+        """Time, order and size of each step."""
+        return self._ida.history
+
+    def leave_to_newton(self, part: float) -> None:
+        """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
+        self._ida.ask("IDASetNonlinConvCoef", part)
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0) -> None:
         """Start, or start again, from consistent values.
@@ -198,13 +140,13 @@ class NativeIda:
         first_step : float
             Size of the first step, s; 0 lets IDA choose it.
         """
-        s = self._session.libraries
         if self._begun:
             self._statistics.keep()
         self.y[:], self.yp[:] = y, yp
-        self._must(s.IDAReInit(self._memory, t, self._y, self._yp))
-        self._must(s.IDASetInitStep(self._memory, first_step))
-        self._mark[[RETURNED, INTERNAL]] = t
+        self._ida.ask("IDAReInit", t, self._ida.y_vector, self._ida.yp_vector)
+        self._ida.ask("IDASetInitStep", first_step)
+        self._ida.mark[[RETURNED, INTERNAL]] = t
+        self._ida.count[TINY] = 0
         self.history.begin(t)
         self._begun, self._flag = True, 0
 
@@ -233,14 +175,10 @@ class NativeIda:
         times = np.ascontiguousarray(times, dtype=float)
         for rows in (y_out,) if yp_out is None else (y_out, yp_out):
             self._check_rows(rows, len(times))
-        self._stop_at(stop)
+        self._ida.ask("IDASetStopTime", stop)
         derivatives = 0 if yp_out is None else yp_out.ctypes.data
-        begun = time.perf_counter()
-        self._flag = ADVANCE.load()(
-            len(times), times.ctypes.data, stop, self._pace, y_out.ctypes.data, derivatives, self._table.ctypes.data
-        )
-        self._note(time.perf_counter() - begun)
-        return int(self._count[SERVED]), self._status()
+        self._run(ADVANCE, len(times), times.ctypes.data, stop, self._pace, y_out.ctypes.data, derivatives)
+        return int(self._ida.count[SERVED]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
         """Go on towards `stop` and report each of IDA's own steps; returns as `advance` does, or when `t_out` is full.
@@ -252,26 +190,20 @@ class NativeIda:
         y_out : ndarray, shape (rows, number of reported unknowns)
         """
         self._check_rows(y_out, len(t_out))
-        self._stop_at(stop)
-        begun = time.perf_counter()
-        self._flag = STEPS.load()(
-            min(self._pace, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data, self._table.ctypes.data
-        )
-        self._note(time.perf_counter() - begun)
-        return int(self._count[SERVED]), self._status()
+        self._ida.ask("IDASetStopTime", stop)
+        self._run(STEPS, min(self._pace, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data)
+        return int(self._ida.count[SERVED]), self._status()
 
     def _check_rows(self, rows: np.ndarray, count: int) -> None:
-        expected = (count, len(self._reported))
+        expected = (count, len(self._ida.reported))
         if rows.shape != expected or rows.dtype != np.float64 or not rows.flags.c_contiguous:
             raise ValueError(f"output rows: found {rows.dtype} of shape {rows.shape}, expected float64 of {expected}")
 
-    def _stop_at(self, stop: float) -> None:
-        self._must(self._session.libraries.IDASetStopTime(self._memory, stop))
-
-    def _note(self, seconds: float) -> None:
-        """Keep the history of a call, and set the number of steps of the next."""
-        recorded = int(self._count[RECORDED])
-        self.history.add(recorded)
+    def _run(self, loop: Routine, *arguments: Any) -> None:
+        """Call a compiled loop, and set the number of steps of the next call by the time this one took."""
+        begun = time.perf_counter()
+        self._flag = self._ida.run(loop, *arguments)
+        seconds = time.perf_counter() - begun
         wanted = self._pace * LONGEST_CALL / max(seconds, 1e-9)
         self._pace = int(np.clip(wanted, 1, min(MOST_STEPS, 8 * self._pace)))
 
@@ -287,7 +219,7 @@ class NativeIda:
     def roots(self) -> np.ndarray:
         """After `Status.ROOT`: for each switch +1 or -1 where it rose or fell through zero, else 0."""
         found = np.zeros(self.n_switches, dtype=np.intc)
-        self._must(self._session.libraries.IDAGetRootInfo(self._memory, found.ctypes.data))
+        self._ida.ask("IDAGetRootInfo", found.ctypes.data)
         return found
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
@@ -298,8 +230,7 @@ class NativeIda:
         ValueError
             When the time or the order of the derivative is beyond the last step's.
         """
-        self._must(self._session.libraries.IDAGetDky(self._memory, t, derivative, self._at_output))
-        return self._output.copy()
+        return self._ida.answer("IDAGetDky", t, derivative)
 
     def statistics(self) -> dict[str, int]:
         """Counters since the first beginning, and the order of the last step."""
@@ -307,11 +238,8 @@ class NativeIda:
 
     def worst(self) -> tuple[int, float]:
         """The unknown with the largest estimated error in the last step, and that error in units of its tolerance."""
-        s, errors, weights = self._session.libraries, np.empty(len(self.y)), np.empty(len(self.y))
-        for read, target in ((s.IDAGetEstLocalErrors, errors), (s.IDAGetErrWeights, weights)):
-            self._must(read(self._memory, self._at_output))
-            target[:] = self._output
-        weighted = np.abs(errors) * weights * self._counts_in_error_test
+        errors, weights = (self._ida.answer(name) for name in ("IDAGetEstLocalErrors", "IDAGetErrWeights"))
+        weighted = np.abs(errors) * weights * self._tested
         k = int(np.argmax(weighted))
         return k, float(weighted[k])
 

@@ -7,6 +7,8 @@ import importlib.util
 import os
 import re
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -60,6 +62,23 @@ class Libraries:
         address = ctypes.cast(self._found(name), ctypes.c_void_p).value
         assert address is not None
         return address
+
+    @contextmanager
+    def on_one_thread(self) -> Iterator[None]:
+        """Keep OpenMP, which SuperLU_MT uses, from starting threads of its own that only wait for one another.
+
+        Measured: on a machine with other work to do they make one small factorization last 15 ms instead of 0.03.
+        """
+        chosen = next((lib for lib in self.loaded if hasattr(lib, "omp_set_num_threads")), None)
+        if chosen is None:
+            yield
+            return
+        before = chosen.omp_get_max_threads()
+        chosen.omp_set_num_threads(1)  # of the calling thread alone
+        try:
+            yield
+        finally:
+            chosen.omp_set_num_threads(before)
 
     @property
     def index_dtype(self) -> np.dtype[Any]:

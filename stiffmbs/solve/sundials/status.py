@@ -31,8 +31,9 @@ FAILURES = {
     -24: "an error weight became zero: the absolute tolerances must be greater than zero",
     -25: "the derivative asked for is of higher order than the last step",
     -26: "the time asked for is outside the last step",
+    -101: "the steps have shrunk to the precision of time: no solution was found beyond this instant",
 }
-"""IDA's flags below zero (ida.h) in words; a switch that is not finite and a matrix that cannot be factored are among them."""
+"""IDA's flags below zero (ida.h) in words, and that of the loop (`stiffmbs.solve.native.ida_loop.STALLED`)."""
 
 
 def failure_sentence(flag: int) -> str:
