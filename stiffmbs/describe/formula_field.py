@@ -206,7 +206,7 @@ class FormulaOf:
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         names = [*self.variables, *(["t"] if self.time else []), *(["coordinates"] if self.coordinates else [])]
         text = {"type": "string", "description": f"a formula of {', '.join(names) or 'numbers'}"}
-        table = [Table.model_json_schema()] if self.table else []
+        table = [handler(Table.__pydantic_core_schema__)] if self.table else []
         return {"anyOf": [text, {"type": "number"}, *table]}
 
 
