@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, WithJsonSchema, field_validator
 
 from ..element import Joint, Symbolic
 from ..formula_field import OfPosition
+
+
+_FORMULA = {"type": "string", "description": "a formula of coordinates and t"}
+ONE_OR_MORE = WithJsonSchema({"anyOf": [_FORMULA, {"type": "array", "items": _FORMULA, "minItems": 1}]})
 
 
 class ConstraintEquation(Joint):
@@ -19,7 +23,9 @@ class ConstraintEquation(Joint):
     kind: ClassVar[str] = "equation"
 
     type: Literal["equation"] = "equation"
-    zero: tuple[OfPosition, ...] = Field(min_length=1, description="formulas that the joint keeps at zero")
+    zero: Annotated[tuple[OfPosition, ...], ONE_OR_MORE] = Field(
+        min_length=1, description="a formula, or several, that the joint keeps at zero"
+    )
 
     @field_validator("zero", mode="before")
     @classmethod
