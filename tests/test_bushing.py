@@ -69,6 +69,14 @@ def test_preload_is_balanced_where_the_deformation_says():
     np.testing.assert_allclose(found, [c * 10 + s * 20, s * 10 - c * 20, 3.0], rtol=1e-12)
 
 
+@pytest.mark.parametrize("axes", ["j", "ground"])
+def test_a_preloaded_bushing_keeps_energy(axes):
+    model = bushed(0.02, -0.03, 0.1, stiffness=COUPLED.tolist(), preload=(10, -20, 3), axes=axes)
+    solution = stiffmbs.run(model, duration=1, **FINE)
+    assert np.ptp(solution["energy.kinetic"]) > 0.1
+    assert solution.energy_drift() < 1e-7
+
+
 def test_bushing_by_curves_keeps_energy_and_is_stiffer_where_they_say():
     law = {"table": [[-0.1, -300], [0, 0], [0.1, 300]], "lines": True}
     model = bushed(0.02, -0.03, 0.1, stiffness=(1, 1, 1), law_x="1e6*s^3 - s", law_y=law, law_angle="40*s")

@@ -50,7 +50,13 @@ def compiled_source(source: str, name: str, signature: str) -> Compiled:
         exec(compile(source, f"<{name}>", "exec"), namespace)  # the text is made by this package from equations
         return namespace[name]
 
-    return _loaded(store.key_of(source, signature), define, signature)
+    return _loaded(store.key_of(source, _spline_text(), signature), define, signature)
+
+
+@cache
+def _spline_text() -> str:
+    """The text of what generated sources call."""
+    return (Path(__file__).parent / "native" / "spline.py").read_text(encoding="utf-8")
 
 
 @cache
