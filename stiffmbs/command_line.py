@@ -36,15 +36,16 @@ def _settings(_: click.Context, __: click.Parameter, values: tuple[str, ...]) ->
 @click.option(
     "-o", "--output", "output", type=click.Path(path_type=Path), help="Write every channel: .csv, .npz or .nc."
 )
+@click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
 @click.option("--rtol", help="Relative tolerance of bdf.")
 @click.option("--duration", help="Time to solve, s.")
-@click.option("--solver", help="bdf or projected.")
+@click.option("--solver", help="bdf, projected, kinematic or auto.")
 @click.option(
     "--set", "changes", multiple=True, callback=_settings, metavar="PATH=VALUE", help="Change a value of the scene."
 )
 def run(
-    scene: str, output: Path | None, as_json: bool, rtol: str | None, duration: str | None, solver: str | None,
+    scene: str, output: Path | None, figure: Path | None, as_json: bool, rtol: str | None, duration: str | None, solver: str | None,
     changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Solve SCENE and show the range of every joint force.
@@ -56,11 +57,15 @@ def run(
     try:
         if output is not None:
             _files().check_output(output)
+        if figure is not None:
+            _drawing().check_figure(figure)
         loaded = load_scene(scene, changes)
         solution = _solved(scene, loaded)
     except StiffmbsError as error:
         _refuse(scene, error, as_json)
     results = _write(scene, output, as_json, solution)
+    if figure is not None:
+        _draw(scene, figure, solution, loaded, as_json)
     _show(scene, solution, results, as_json)
     sys.exit(0 if solution.outcome.name == "DONE" else STOPPED_EARLY)
 
@@ -69,6 +74,19 @@ def _files() -> Any:
     from .show import files
 
     return files
+
+
+def _drawing() -> Any:
+    from .show import figure
+
+    return figure
+
+
+def _draw(scene: str, path: Path, solution: Any, loaded: Scene, as_json: bool) -> None:
+    try:
+        _drawing().draw(path, solution, loaded.figure)
+    except StiffmbsError as error:
+        _refuse(scene, error, as_json)
 
 
 def _solved(path: str, scene: Scene) -> Any:
