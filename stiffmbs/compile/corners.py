@@ -7,17 +7,16 @@ loses its order.
 from __future__ import annotations
 
 import ast
-import itertools
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import partial, reduce
+from typing import Any
 
 import numpy as np
 
 from ..describe.element import Element
-from ..describe.formula import UNIT
+from ..describe.formula import UNIT, evaluate
 from ..describe.formula_field import TIME, Formula, FormulaOf, is_measure, reading_order
-from ..describe.formula_value import formula_value
 from ..describe.table import Table
 from .system import System
 
@@ -117,30 +116,52 @@ def _depends_on_time_alone(node: ast.expr, formula: Formula) -> bool:
     return used
 
 
-def _at(formula: Formula, condition: ast.expr, t: float) -> float:
-    return formula_value(formula, condition, t=t)
+def _at(formula: Formula, condition: ast.expr, t: np.ndarray) -> np.ndarray:
+    """A condition's values at many instants."""
+    values = evaluate(condition, lambda name: t if name == TIME else formula.values[name], _OF_ARRAYS)
+    return np.broadcast_to(np.asarray(values, dtype=float), t.shape)
 
 
-def _zeros(condition: Callable[[float], float], start: float, end: float) -> Iterator[float]:
-    """Zeros of a condition in t: exact where it is a straight line, else between samples that differ in sign."""
-    at_start, at_end, at_middle = condition(start), condition(end), condition((start + end) / 2)
-    scale = max(abs(at_start), abs(at_end))
-    if abs(at_middle - (at_start + at_end) / 2) <= 1e-12 * scale and _is_straight(condition, start, end, scale):
-        if at_start != at_end:
-            yield start + (end - start) * at_start / (at_start - at_end)
-        return
-    from scipy.optimize import brentq
+def _step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
+    return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
 
+
+def _step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
+    return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
+
+
+_SAME_NAME = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign")
+_OF_ARRAYS: dict[str, Callable[..., Any]] = {
+    **{name: getattr(np, name) for name in _SAME_NAME},
+    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2,
+    "min": lambda *values: reduce(np.minimum, values), "max": lambda *values: reduce(np.maximum, values),
+    "step": _step, "step5": _step5,
+}  # fmt: skip
+
+
+def _zeros(condition: Callable[[np.ndarray], np.ndarray], start: float, end: float) -> Iterator[float]:
+    """Zeros of a condition in t: exact where it is a straight line, else bisected between samples of different sign."""
     times = np.linspace(start, end, SAMPLES)
-    values = [condition(t) for t in times]
-    for (t, a), (after, b) in itertools.pairwise(zip(times, values, strict=True)):
-        if a == 0:
-            yield float(t)
-        elif a * b < 0:
-            yield float(brentq(condition, t, after, xtol=1e-14 * max(1.0, abs(end))))
+    with np.errstate(all="ignore"):
+        values = condition(times)
+        first, last = values[0], values[-1]
+        straight = first + (last - first) * np.linspace(0, 1, SAMPLES)
+        if np.all(np.abs(values - straight) <= 1e-12 * max(abs(first), abs(last))):
+            if first != last:
+                yield start + (end - start) * first / (first - last)
+            return
+        yield from times[values == 0]
+        for k in np.flatnonzero(values[:-1] * values[1:] < 0):
+            yield _bisected(condition, times[k], times[k + 1])
 
 
-def _is_straight(condition: Callable[[float], float], start: float, end: float, scale: float) -> bool:
-    a, b = condition(start), condition(end)
-    parts = (0.137, 0.381, 0.733)
-    return all(abs(condition(start + p * (end - start)) - (a + p * (b - a))) <= 1e-12 * scale for p in parts)
+def _bisected(condition: Callable[[np.ndarray], np.ndarray], low: float, high: float) -> float:
+    rising = condition(np.array([high]))[0] > 0
+    while low < (middle := (low + high) / 2) < high:
+        if (condition(np.array([middle]))[0] > 0) == rising:
+            high = middle
+        else:
+            low = middle
+    return high

@@ -89,7 +89,7 @@ def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity
     expanded: dict[Any, Any] = {}
     for name, entry in entries.items():
         if not (isinstance(entry, dict) and "for" in entry):
-            expanded[name] = entry
+            expanded[name] = _filled(f"{section}.{name}", entry, parameters)
             continue
         where = f"{section}.{name}"
         pattern = {key: value for key, value in entry.items() if key != "for"}
@@ -121,7 +121,8 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
     return variable, round(first), round(last)
 
 
-def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str) -> Any:
+def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str = "") -> Any:
+    """A value with ``{...}``, and a loop's variable where it stands alone, replaced by numbers."""
     if isinstance(value, dict):
         return {key: _filled(where, item, names, variable) for key, item in value.items()}
     if isinstance(value, list):
@@ -136,5 +137,8 @@ def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str
             raise InputError(f"{where}: {error}") from None
         return str(round(result)) if result == round(result) else repr(result)
 
+    filled = _BRACES.sub(number, value)
+    if not variable:
+        return filled
     alone = rf"(?<![\w.]){variable}(?![\w.])"
-    return re.sub(alone, f"({round(names[variable].value)})", _BRACES.sub(number, value))
+    return re.sub(alone, f"({round(names[variable].value)})", filled)

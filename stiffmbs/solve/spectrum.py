@@ -8,8 +8,9 @@ import numpy as np
 
 from .mechanics import Mechanics
 
-NEGLIGIBLE = 1e-9
-"""Part of the largest eigenvalue below which another counts as a rigid motion."""
+NEGLIGIBLE = 1e-5
+"""Part of the largest eigenvalue below which another counts as a rigid motion (a double zero is found to the square
+root of the rounding)."""
 
 
 @dataclass(frozen=True)
