@@ -1,7 +1,5 @@
 """A bushing in place of a redundant joint: unique reactions, and the rigid motion in the limit."""
 
-import itertools
-
 import numpy as np
 import pytest
 
@@ -12,9 +10,9 @@ STIFFNESSES = (1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10)
 
 
 def parallelogram(stiffness=None, damping_ratio=0.1):
-    """A coupler on two cranks, and on a third one between them by a bushing, where a stiffness is given."""
+    """A coupler hanging on two cranks, and on a third one between them by a bushing, where a stiffness is given."""
     model = Model("parallelogram", gravity=(0, -9.81))
-    angle = np.radians(60)
+    angle = np.radians(-60)
     c, s = np.cos(angle), np.sin(angle)
     model.add("coupler", Body(mass=2, inertia=1, position=(1 + c, s)))
     for name, x in (("a", 0.0), ("b", 1.0), ("c", 2.0)):
@@ -45,7 +43,7 @@ def rigid():
     pull = -9.81 * (3 * 0.5 + 2) / (3 / 3 + 2)
     t = np.linspace(0, 2, 201)
     return solve_ivp(
-        lambda t, y: [y[1], pull * np.cos(y[0])], (0, 2), [np.pi / 3, 0], "DOP853", t, rtol=1e-12, atol=1e-12
+        lambda t, y: [y[1], pull * np.cos(y[0])], (0, 2), [-np.pi / 3, 0], "DOP853", t, rtol=1e-12, atol=1e-12
     ).y[0]
 
 
@@ -56,8 +54,8 @@ def test_step_count_hardly_grows_over_six_decades_of_stiffness(runs):
 
 def test_motion_converges_to_the_rigid_one(runs, rigid):
     errors = [np.max(np.abs(solution["a.angle"] - rigid)) for solution in runs.values()]
-    assert max(errors) < 1e-4, errors
-    assert max(errors[-2:]) < 2e-5, errors
+    assert max(errors) < 3e-5, errors
+    assert errors[-1] < 1e-6, errors
     soft = (1e4, 1e5, 1e6)
     runs = [stiffmbs.run(parallelogram(k, 1.0), duration=2.0, points=201, rtol=1e-9) for k in soft]
     errors = [np.max(np.abs(solution["a.angle"] - rigid)) for solution in runs]
@@ -65,12 +63,12 @@ def test_motion_converges_to_the_rigid_one(runs, rigid):
     assert errors[2] < errors[1] / 5
 
 
-def test_reactions_are_unique_and_converge(rigid):
-    """At rest on the cranks' start: each bushing force is one number, and settles as the stiffness grows."""
+def test_reactions_are_unique_and_settle():
+    """In mid-swing each bushing force is one number, which no longer changes as the stiffness grows."""
     tight = [
-        stiffmbs.run(parallelogram(k, damping_ratio=1.0), duration=1.0, points=3, rtol=1e-9) for k in (1e5, 1e6, 1e7)
+        stiffmbs.run(parallelogram(k, damping_ratio=1.0), duration=1.0, points=3, rtol=1e-10) for k in (1e4, 1e5, 1e6)
     ]
+    assert all(solution.not_unique == () for solution in tight)
     forces = np.array([[solution["bushing.fx"][1], solution["bushing.fy"][1]] for solution in tight])
-    first, second = (np.linalg.norm(b - a) for a, b in itertools.pairwise(forces))
-    assert second < first / 3
-    assert np.linalg.norm(forces[-1]) > 0.1
+    assert np.max(np.ptp(forces, axis=0)) < 1e-3
+    assert np.linalg.norm(forces[-1]) > 0.05

@@ -35,7 +35,7 @@ EQUATIONS: Layout = {
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
 FACTORS: Layout = {
-    "n": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "order": INTS,
+    "n": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS, "order": INTS,
     "l_start": INTS, "l_row": INTS, "l": FLOATS, "u_start": INTS, "u_row": INTS, "u": FLOATS,
     "pivot": INTS, "work": FLOATS, "b": FLOATS, "previous": FLOATS, "stack": INTS, "x": FLOATS,
 }  # fmt: skip

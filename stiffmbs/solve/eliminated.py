@@ -32,7 +32,7 @@ class Eliminated:
     def __init__(self, state: State) -> None:
         system = state.system
         equations = Equations(ACCELERATIONS, system)
-        multipliers = elimination_order(equations)
+        multipliers, _ = elimination_order(equations)
         multipliers = multipliers[multipliers >= system.n_u]
         self._position = np.full(equations.n, ABSENT)
         self._position[multipliers] = np.arange(len(multipliers))

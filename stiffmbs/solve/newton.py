@@ -14,8 +14,8 @@ SOFT = 1e4
 """1/s^2, the square of a rate, times the part that may be left: what remains in a position makes a force through the
 stiffness, and the force a velocity, which has to stay below the tolerance too.  Measured on a bushing of 1e9 N/m on
 1 kg: 5 000 steps with 0.33, 200 with this."""
-NUMBERS_END = 1e-14
-"""Least part of a coordinate that can be told from zero."""
+NUMBERS_END = 1e-13
+"""Least part of a coordinate that the iteration can settle, through iteration matrices as ill-conditioned as they get."""
 
 
 def newton_tolerance(mechanics: Mechanics, settings: RunSettings, t: float) -> float:

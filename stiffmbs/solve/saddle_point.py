@@ -44,6 +44,10 @@ VELOCITY_STEP = Formulation(
 """[M J^T; J 0] [du; w] = [0; -V]: the smallest correction in the mass matrix."""
 
 
+ROOM_FOR_PIVOTING = 4
+"""Times the fill without pivoting that the factors may grow to when pivots leave the diagonal."""
+
+
 class SaddlePoint:
     """One block system with its factors, ready for compiled code.
 
@@ -59,13 +63,13 @@ class SaddlePoint:
         self.equations_table, self._slots = self.equations.table()
         n = self.equations.n
         rows, columns = self.equations.pattern
-        order = elimination_order(self.equations)
-        room = max(8 * (len(rows) + n), min(n * n, 4096)) + n
+        order, fill = elimination_order(self.equations)
+        room = ROOM_FOR_PIVOTING * fill + min(n * n, 4096) + n
         ints, floats = (lambda k: np.zeros(k, dtype=np.int64)), np.zeros
         self._arrays = {
             "n": n, "capacity": room, "ready": ints(1),
             "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64),
-            "a_row": rows.astype(np.int64), "a": floats(len(rows)), "order": order,
+            "a_row": rows.astype(np.int64), "a": floats(len(rows)), "scale": np.ones(n), "order": order,
             "l_start": ints(n + 1), "l_row": ints(room), "l": floats(room),
             "u_start": ints(n + 1), "u_row": ints(room), "u": floats(room),
             "pivot": ints(n), "work": floats(n), "b": floats(n), "previous": floats(n), "stack": ints(4 * n), "x": floats(n),
@@ -73,11 +77,16 @@ class SaddlePoint:
         self.factors_table = packed(FACTORS, self._arrays)
 
 
-def elimination_order(equations: Equations) -> np.ndarray:
+def elimination_order(equations: Equations) -> tuple[np.ndarray, int]:
     """An order of elimination of a block system's unknowns with little fill: minimum degree on bodies and joints.
 
     Bodies and joints are eliminated whole; a joint waits until one of its bodies is gone, as its own diagonal
     block is zero before.
+
+    Returns
+    -------
+    ndarray of int, int
+        The unknowns in their order, and the entries that each triangle then has if pivots stay on the diagonal.
     """
     import heapq
 
@@ -99,7 +108,9 @@ def elimination_order(equations: Equations) -> np.ndarray:
     queue = [(len(neighbours[k]), k) for k in range(n_bodies)]
     heapq.heapify(queue)
     gone = [False] * len(neighbours)
+    size = [PLANAR] * n_bodies + [count for _, count, _ in joints]
     order: list[int] = []
+    fill = 0
     while queue:
         degree, node = heapq.heappop(queue)
         if gone[node] or degree != len(neighbours[node]):
@@ -111,9 +122,10 @@ def elimination_order(equations: Equations) -> np.ndarray:
             first, count, _ = joints[node - n_bodies]
             order += [at for at in at_multiplier[first : first + count] if at != ABSENT]
         around = neighbours[node]
+        fill += size[node] * (size[node] + sum(size[other] for other in around))
         for other in around:
             neighbours[other] |= around
             neighbours[other] -= {node, other}
         for other in around:
             heapq.heappush(queue, (len(neighbours[other]), other))
-    return np.array(order, dtype=np.int64)
+    return np.array(order, dtype=np.int64), fill

@@ -8,6 +8,8 @@ it gives up and the pivots are sought anew, so that the fixed order is only ever
 
 from __future__ import annotations
 
+from math import sqrt
+
 from .access import compiled
 
 KEEP_DIAGONAL = 0.1
@@ -153,10 +155,49 @@ def refactor(f):
 
 
 @compiled
+def _equilibrate(f):
+    """Scales for a block matrix [D J^T; J 0]: 1/sqrt(D) for its first unknowns, rows of unit length for its multipliers.
+
+    Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill.
+    """
+    for column in range(f.n):
+        f.scale[column] = 0.0
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            if f.a_row[p] == column and f.a[p] > 0.0:
+                f.scale[column] = 1.0 / sqrt(f.a[p])
+    for column in range(f.n):
+        if f.scale[column] == 0.0:
+            length = 0.0
+            for p in range(f.a_start[column], f.a_start[column + 1]):
+                part = f.a[p] * max(f.scale[f.a_row[p]], 0.0)
+                length += part * part
+            f.scale[column] = -1.0 / sqrt(length) if 0.0 < length < float("inf") else -1.0
+    for k in range(f.n):
+        f.scale[k] = abs(f.scale[k])
+
+
+@compiled
+def _scale(f):
+    for column in range(f.n):
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            f.a[p] *= f.scale[f.a_row[p]] * f.scale[column]
+
+
+@compiled
 def factored(f):
-    """Factors by the known pivots where they serve, else by new ones."""
-    if f.ready[0] and refactor(f) == DONE:
-        return DONE
+    """Factors of the scaled matrix, by the known scales and pivots where they serve, else by new ones.
+
+    The matrix in `f` is overwritten by the scaled one.
+    """
+    if f.ready[0]:
+        _scale(f)
+        if refactor(f) == DONE:
+            return DONE
+        for column in range(f.n):
+            for p in range(f.a_start[column], f.a_start[column + 1]):
+                f.a[p] /= f.scale[f.a_row[p]] * f.scale[column]
+    _equilibrate(f)
+    _scale(f)
     return factor(f)
 
 
@@ -165,7 +206,7 @@ def solve(f, b):
     """Overwrite b by the solution of A x = b."""
     n = f.n
     for k in range(n):
-        f.x[f.pivot[k]] = b[k]
+        f.x[f.pivot[k]] = f.scale[k] * b[k]
     for k in range(n):
         value = f.x[k]
         for p in range(f.l_start[k] + 1, f.l_start[k + 1]):
@@ -177,4 +218,4 @@ def solve(f, b):
         for p in range(f.u_start[k], last):
             f.x[f.u_row[p]] -= f.u[p] * value
     for k in range(n):
-        b[f.order[k]] = f.x[k]
+        b[f.order[k]] = f.scale[f.order[k]] * f.x[k]

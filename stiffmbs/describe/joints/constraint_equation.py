@@ -9,7 +9,6 @@ from pydantic import Field, WithJsonSchema, field_validator
 from ..element import Joint, Symbolic
 from ..formula_field import OfPosition
 
-
 _FORMULA = {"type": "string", "description": "a formula of coordinates and t"}
 ONE_OR_MORE = WithJsonSchema({"anyOf": [_FORMULA, {"type": "array", "items": _FORMULA, "minItems": 1}]})
 
