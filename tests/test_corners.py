@@ -84,3 +84,12 @@ def test_the_result_does_not_depend_on_output_points():
     for other in (many, own):
         assert other["sled.x"][-1] == pytest.approx(few["sled.x"][-1], abs=1e-7)
         assert np.all(np.diff(other.time) > 0)
+
+
+def test_an_output_time_may_be_a_rounding_behind_a_corner():
+    """0.01 s * 70 is above 0.7 s by one rounding: the row there is that of the corner, and the run goes on."""
+    assert 0.01 * 70 > 0.7
+    model = sled("step(t, 0.2, 0, 0.7, 4)")
+    solution = stiffmbs.run(model, duration=1.0, output=0.01, rtol=1e-8, solver="bdf")
+    assert len(solution.t) == 101
+    assert solution["sled.vx"][[70, 100]] == pytest.approx([0.5, 1.1], rel=1e-6)  # 4 N / 2 kg, half the ramp's 0.5 s
