@@ -191,6 +191,8 @@ def _notes(job: Job, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
         yield from note_sentences(job.redundancy)
     if job.start.moved:
         yield job.start.sentence()
+    if trajectory.note:
+        yield trajectory.note
     if len(rows.t) < len(trajectory.t):
         t = trajectory.t[len(rows.t)]
         yield f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"

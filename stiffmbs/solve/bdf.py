@@ -56,7 +56,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {**integrator.statistics(), "seconds": time.perf_counter() - begun}
-    return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history())
+    return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history(), integrator.note)
 
 
 def _just_after(t: float) -> float:
@@ -70,15 +70,17 @@ class _Integrator:
     def __init__(self, mechanics: Mechanics, settings: RunSettings) -> None:
         self.mechanics, self.settings = mechanics, settings
         self.equations = narrowed(Equations(FORMULATIONS[settings.formulation](settings), mechanics.system))
+        self.note = ""
         self.engine = self._engine()
         self._events = self._corners = 0
 
     def _engine(self) -> Engine:
         """The native driver where SUNDIALS' libraries are as it needs them, else scikit-sundae's callbacks."""
         state, limits = self.mechanics.state, (*self._tolerances(), self.settings.max_step)
-        native, _ = available()
+        native, reason = available()
         if native:
             return NativeEngine(self.equations, state, *limits)
+        self.note = f"IDA runs through scikit-sundae's callbacks, which is slower: {reason}"
         return SundaeEngine(self.equations, state, *limits)
 
     def _tolerances(self) -> tuple[float, np.ndarray]:

@@ -67,6 +67,8 @@ class Trajectory:
         ``steps``, ``seconds`` and what else the solver counts.
     history : History
         The solver's own steps, as far as it tells them.
+    note : str
+        What the user should know besides; empty for nothing.
     """
 
     t: np.ndarray
@@ -76,6 +78,7 @@ class Trajectory:
     message: str
     statistics: dict[str, int | float]
     history: History = field(default_factory=lambda: History(np.empty(0), np.empty(0, dtype=int)))
+    note: str = ""
 
     @property
     def step_times(self) -> np.ndarray:
