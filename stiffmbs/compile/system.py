@@ -163,7 +163,8 @@ class System:
             self._group_entries(g, group, int(self.places[term_set][g, 1 + k]), name, axes)
             for g, group in enumerate(self.groups)
         ]
-        source, row, column = (np.concatenate([part[i] for part in parts]) for i in range(3))
+        nothing = np.empty(0, dtype=np.int64)  # of a scene without joints, forces and weight
+        source, row, column = (np.concatenate([nothing, *(part[i] for part in parts)]) for i in range(3))
         inside = (row < self._extent(axes[0])) & (column < (self._extent(axes[1]) if len(axes) > 1 else 1))
         return Term(source[inside], row[inside], column[inside])
 
