@@ -9,6 +9,9 @@ from pydantic import Field, model_validator
 from . import si
 from .fields import Described, Measured
 
+MOST_OUTPUTS = 10_000_000
+"""Output times of a run; a body and a joint take 2 GB at so many."""
+
 
 class RunSettings(Described):
     """Duration, output and solver of a run.
@@ -72,4 +75,9 @@ class RunSettings(Described):
             raise ValueError("found both 'output' and 'points', expected one of them")
         if isinstance(self.points, int) and self.points < 2:
             raise ValueError(f"points: found {self.points}, expected 2 or more")
+        asked = self.duration / self.output if self.output is not None else self.points
+        if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
+            raise ValueError(
+                f"found {asked:.3g} output times, expected at most {MOST_OUTPUTS:.0e}: they are kept in memory"
+            )
         return self
