@@ -71,8 +71,10 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
     console.print(f"{solution.name or scene}: {start:g} s to {end:g} s, {solution.message}", highlight=False)
     for note in solution.notes:
         console.print(f"note: {note}", highlight=False)
-    console.print("force and torque on the first body, least .. greatest (N, N m):", highlight=False)
-    console.print(_force_table(solution))
+    table = _force_table(solution)
+    if table.row_count:
+        console.print("force and torque on the first body, least .. greatest (N, N m):", highlight=False)
+        console.print(table)
     if solution.not_unique:
         console.print(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values", highlight=False)
     total = solution.channels["energy.total"]
