@@ -50,7 +50,17 @@ def compiled_source(source: str, name: str, signature: str) -> Compiled:
         exec(compile(source, f"<{name}>", "exec"), namespace)  # the text is made by this package from equations
         return namespace[name]
 
-    return _loaded(store.key_of(source, _spline_text(), signature), define, signature)
+    return _loaded(source_key(source, signature), define, signature)
+
+
+def source_key(source: str, signature: str) -> str:
+    """The cache's name for a function from generated source."""
+    return store.key_of(source, _spline_text(), signature)
+
+
+def routine_key(module: str, name: str, signature: str) -> str:
+    """The cache's name for a routine."""
+    return store.key_of(_native_text(), module, name, signature)
 
 
 @cache
@@ -67,14 +77,14 @@ def compiled_routine(module: str, name: str, signature: str) -> Compiled:
         function = getattr(importlib.import_module(module), name)
         return getattr(function, "py_func", function)
 
-    return _loaded(store.key_of(_native_text(), module, name, signature), define, signature)
+    return _loaded(routine_key(module, name, signature), define, signature)
 
 
 @cache
 def _native_text() -> str:
     """The text of all native modules and of what they are laid out by: a routine may be built of any of them."""
     package = Path(__file__).parent.parent
-    files = sorted(package.glob("*/native/*.py"))
+    files = [*sorted(package.glob("*/native/*.py")), package / "compile" / "layout.py"]
     return "\0".join(path.read_text(encoding="utf-8") for path in files)
 
 

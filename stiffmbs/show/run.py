@@ -12,6 +12,7 @@ from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
 from ..analyse.redundancy import Redundancy, examine
 from ..analyse.requests import requests
+from ..compile.ahead import compile_ahead
 from ..compile.system import System, compile_model
 from ..describe.model import Model, ModelData
 from ..describe.scene import Scene
@@ -22,6 +23,7 @@ from ..solve.auto import choose
 from ..solve.explicit import ADAPTIVE
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
+from ..solve.requirements import required
 from ..solve.trajectory import Grid, Trajectory, Watch
 from .solution import Solution
 
@@ -86,7 +88,9 @@ def examined(model: Model | ModelData, settings: RunSettings | None = None, **ch
             raise InputError(f"give_way: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
     order = [*(name for name in data.joints if name not in chosen.give_way), *chosen.give_way]
     grid = output_grid(chosen)
-    return Examined(data, chosen, grid, examine(compile_model(data), grid.start, chosen.duration, order))
+    system = compile_model(data)
+    compile_ahead(system, *required(chosen))
+    return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
 
 
 def run(

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..compile.layout import MECHANICS, packed
-from ..compile.routines import Routine
+from ..compile.routines import TERMS, Routine
 from ..compile.state import State
 from ..compile.system import System
 from .eliminated import Eliminated
@@ -24,8 +24,8 @@ OUTPUT_POINTS = Routine(
     "int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
 )
 
-SINGULAR, NO_CONVERGENCE, NOT_FINITE = -1, -2, -3
-"""Statuses of the compiled routines."""
+ROUTINES = (TERMS, ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS)
+"""What every run needs."""
 
 POSITION_TOLERANCE = 1e-12
 """Largest violation that a projection onto the positions leaves, in the equations' own units (m, rad)."""
@@ -42,6 +42,8 @@ class OutputRows:
         The values of the output terms (`stiffmbs.compile.terms`).
     position_violation, velocity_violation, drift : ndarrays
         Largest violation of a joint, the norm over its equations, in C and in J u + C_t, and in C before projection.
+    status : int
+        Why the instant after the last row has no solution (`stiffmbs.solve.failures`); 0 where all have one.
     """
 
     t: np.ndarray
@@ -53,6 +55,7 @@ class OutputRows:
     position_violation: np.ndarray
     velocity_violation: np.ndarray
     drift: np.ndarray
+    status: int
 
 
 class Mechanics:
@@ -78,7 +81,7 @@ class Mechanics:
         self._positions = SaddlePoint(POSITION_STEP, self.state)
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
         self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
-        self._largest = np.zeros(1)
+        self._status = np.zeros(1, dtype=np.int64)
         self.table = packed(
             MECHANICS,
             {
@@ -89,7 +92,7 @@ class Mechanics:
                 "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
-                "largest": self._largest,
+                "status": self._status,
             },
         )
 
@@ -103,15 +106,15 @@ class Mechanics:
         return self.table.ctypes.data
 
     def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
-        """Move positions by Newton's smallest moves until |C| <= tolerance; the number of moves or a status."""
+        """Move positions by Newton's smallest moves until |C| <= tolerance; the number of moves, or a failure."""
         return ASSEMBLE.load()(t, tolerance, most, self._at)
 
     def correct_velocities(self, t: float) -> int:
-        """The smallest correction of u in the mass matrix that satisfies J u + C_t = 0; 0 or a status."""
+        """The smallest correction of u in the mass matrix that satisfies J u + C_t = 0; 0 or a failure."""
         return CORRECT_VELOCITIES.load()(t, self._at)
 
     def accelerate(self, t: float) -> tuple[int, np.ndarray]:
-        """Status and u' from the block system; the multipliers are in the state's lam."""
+        """0 or a failure (`stiffmbs.solve.native.statuses`), and u' from the block system; the multipliers are in the state's lam."""
         acceleration = np.empty(self.system.n_u)
         return ACCELERATE.load()(t, acceleration.ctypes.data, self._at), acceleration
 
@@ -135,4 +138,4 @@ class Mechanics:
         tolerance = POSITION_TOLERANCE
         done = OUTPUT_POINTS.load()(count, t.ctypes.data, project, tolerance, n_output, *addresses, self._at)
         q, u, acceleration, lam, values, largest = (array[:done] for array in rows)
-        return OutputRows(t[:done], q, u, acceleration, lam, values, *largest.T)
+        return OutputRows(t[:done], q, u, acceleration, lam, values, *largest.T, int(self._status[0]))
