@@ -70,4 +70,4 @@ def check_names(names: Mapping[str, object], what: str) -> None:
     for name in names:
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             shown = "no name" if name in (None, "") else f"the name {name!r}"
-            raise ValueError(f"found a {what} with {shown}, expected letters, digits and _ not starting with a digit")
+            raise ValueError(f"found {what} with {shown}, expected letters, digits and _ not starting with a digit")
