@@ -44,9 +44,9 @@ FACTORS: Layout = {
 
 MECHANICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
-    "accelerations": INTS, "acceleration_factors": INTS, "largest": FLOATS,
+    "accelerations": INTS, "acceleration_factors": INTS, "status": INTS,
 }  # fmt: skip
-"""The tables of one state and its three block systems; `largest` receives what a step reports besides its status."""
+"""The tables of one state and its three block systems; `status` receives why no more instants could be reported."""
 
 
 IDA: Layout = {"state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT, "n_switches": INT}

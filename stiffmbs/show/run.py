@@ -21,6 +21,7 @@ from ..errors import AssemblyError, InputError
 from ..solve import SOLVERS
 from ..solve.auto import choose
 from ..solve.explicit import ADAPTIVE
+from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.requirements import required
@@ -126,7 +127,7 @@ def run(
     project = _near_constraints(job.settings)
     rows = job.mechanics.report(trajectory.t, trajectory.q, trajectory.u, project=project)
     if not len(rows.t):
-        raise AssemblyError("no accelerations could be computed at the start: the equations depend on each other there")
+        raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
     statistics = {"name": job.settings.solver, **trajectory.statistics}
     if project:
         statistics["drift"] = float(rows.drift.max())
@@ -199,4 +200,4 @@ def _notes(job: Job, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
         yield trajectory.note
     if len(rows.t) < len(trajectory.t):
         t = trajectory.t[len(rows.t)]
-        yield f"from t = {t:.9g} s on no reactions could be computed, the constraint equations depend on each other there"
+        yield f"from t = {t:.9g} s on no accelerations and reactions could be computed: {FAILURES[rows.status]}"

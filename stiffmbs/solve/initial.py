@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AssemblyError
+from .failures import FAILURES
 from .mechanics import POSITION_TOLERANCE, Mechanics
+from .native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
 
 POSITIONS, VELOCITIES = ("x", "y", "angle"), ("vx", "vy", "omega")
 WORTH_TELLING = 1e-9
@@ -57,20 +59,20 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
     Raises
     ------
     AssemblyError
-        When no assembled position is found (names the joint with the largest gap) or the equations are dependent.
+        When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
+        friction and reactions find no balance.
     """
     system, state = mechanics.system, mechanics.state
     q0, u0 = system.q.copy(), system.u.copy()
     status = mechanics.assemble(t)
     if status < 0:
-        raise AssemblyError(_gap_sentence(mechanics, t))
-    if mechanics.correct_velocities(t) < 0:
-        raise AssemblyError(_dependent_sentence(mechanics))
+        raise AssemblyError(_sentence(mechanics, NO_CONVERGENCE if status == SINGULAR else status, t))
+    status = mechanics.correct_velocities(t)
+    if status < 0:
+        raise AssemblyError(_sentence(mechanics, status, t))
     status, acceleration = mechanics.accelerate(t)
     if status < 0:
-        raise AssemblyError(_dependent_sentence(mechanics))
-    if not np.all(np.isfinite(acceleration)):
-        raise AssemblyError(_undefined_sentence(mechanics, t))
+        raise AssemblyError(_sentence(mechanics, status, t))
     changes = ((state.q - q0, POSITIONS), (state.u - u0, VELOCITIES))
     moved = tuple(
         (system.bodies[k // 3], labels[k % 3], float(change[k]))
@@ -78,6 +80,24 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
         for k in np.flatnonzero(np.abs(change) > WORTH_TELLING)
     )
     return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam[: system.n_c].copy(), moved)
+
+
+def _sentence(mechanics: Mechanics, status: int, t: float) -> str:
+    """Why there is no consistent start, with the element that is to blame."""
+    if status == NO_CONVERGENCE:
+        return _gap_sentence(mechanics, t)
+    if status == SINGULAR:
+        return _dependent_sentence(mechanics)
+    if status == NO_BALANCE:
+        return _balance_sentence(mechanics)
+    if status == NOT_FINITE:
+        return _undefined_sentence(mechanics, t)
+    return f"no consistent start was found: {FAILURES[status]}"
+
+
+def _balance_sentence(mechanics: Mechanics) -> str:
+    rubbing = [n for group in mechanics.system.groups if group.record.patterns.get("f_lam") for n in group.names]
+    return f"the start has no accelerations: {FAILURES[NO_BALANCE]}, expected less of it in {', '.join(rubbing)}"
 
 
 def _gap_sentence(mechanics: Mechanics, t: float) -> str:

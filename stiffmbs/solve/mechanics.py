@@ -138,4 +138,5 @@ class Mechanics:
         tolerance = POSITION_TOLERANCE
         done = OUTPUT_POINTS.load()(count, t.ctypes.data, project, tolerance, n_output, *addresses, self._at)
         q, u, acceleration, lam, values, largest = (array[:done] for array in rows)
-        return OutputRows(t[:done], q, u, acceleration, lam, values, *largest.T, int(self._status[0]))
+        position, velocity, drift = largest.T
+        return OutputRows(t[:done], q, u, acceleration, lam, values, position, velocity, drift, int(self._status[0]))

@@ -5,23 +5,37 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import SolverError
+from .failures import FAILURES
 from .initial import InitialValues
 from .mechanics import Mechanics
 
 
-def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> InitialValues:
+def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
     """Consistent values near given ones: projected onto the constraints, with new accelerations and multipliers.
+
+    Parameters
+    ----------
+    t : float
+        s.
+    q, u : ndarrays, shapes (n_q,), (n_u,)
+    project : bool
+        Whether q and u are first brought back to the constraints.
 
     Raises
     ------
     SolverError
-        When the constraints cannot be satisfied or are dependent there.
+        When the constraints cannot be satisfied or are dependent there, or accelerations are not determined.
     """
     state = mechanics.state
     state.q[:], state.u[:] = q, u
-    if mechanics.assemble(t) < 0 or mechanics.correct_velocities(t) < 0:
-        raise SolverError(f"no consistent values were found to start anew at t = {t:.9g} s")
+    if project:
+        _go_on(mechanics.assemble(t), t)
+        _go_on(mechanics.correct_velocities(t), t)
     status, acceleration = mechanics.accelerate(t)
-    if status < 0:
-        raise SolverError(f"no accelerations were found to start anew at t = {t:.9g} s")
+    _go_on(status, t)
     return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), ())
+
+
+def _go_on(status: int, t: float) -> None:
+    if status < 0:
+        raise SolverError(f"no consistent values were found to start anew at t = {t:.9g} s: {FAILURES[status]}")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..mechanics import NO_CONVERGENCE, NOT_FINITE, SINGULAR
+from ..failures import FAILURES
+from ..native.statuses import NOT_FINITE
 from .integration import Integration
 
 STEP_TOO_SMALL, STIFF = -4, -5
@@ -10,8 +11,7 @@ STEP_TOO_SMALL, STIFF = -4, -5
 
 _USE_BDF = "the scene is stiff, and solver bdf would be the choice"
 REASONS = {
-    SINGULAR: "the constraint equations have become dependent on each other",
-    NO_CONVERGENCE: "the positions could not be brought back to the constraints",
+    **FAILURES,
     NOT_FINITE: "the motion has grown beyond all numbers; the step is too long for the stiffness of the scene",
     STEP_TOO_SMALL: "the step that the tolerance asks for has become too small: the motion has a singularity there, or "
     + _USE_BDF,

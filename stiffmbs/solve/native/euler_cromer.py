@@ -6,13 +6,12 @@ from math import isfinite
 
 from stiffmbs.compile.native.access import compiled, factors_view, mechanics_view, state_view
 from stiffmbs.solve.native.mechanics import (
-    NOT_FINITE,
+    MOST_MOVES,
     to_accelerations,
     to_position_constraints,
     to_velocity_constraints,
 )
-
-MOST_MOVES = 20
+from stiffmbs.solve.native.statuses import NOT_FINITE
 
 
 @compiled

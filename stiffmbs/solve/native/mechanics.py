@@ -14,11 +14,14 @@ from stiffmbs.compile.native.access import (
     state_view,
 )
 from stiffmbs.compile.native.evaluate import ACCELERATION, MOTION, OUTPUT, POSITION, add_entries, add_products, evaluate
-from stiffmbs.compile.native.factors import DONE, factored, solve
+from stiffmbs.compile.native.factors import DONE, FULL, factored, solve
+from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_ROOM, NOT_FINITE, SINGULAR
 
-SINGULAR, NO_CONVERGENCE, NOT_FINITE = -1, -2, -3
+MOST_MOVES = 20
+"""Newton's moves back to the constraints, from a state that was near them."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
+"""Change of the multipliers, in parts of the largest, at which they are in balance with the friction that they press."""
 
 
 @compiled
@@ -45,15 +48,18 @@ def _largest_gap(s, violation):
 
 @compiled
 def _solved(s, equations, factors, values):
-    """Fill in, factor and solve one block system; the solution is in the factors' `b`."""
+    """Fill in, factor and solve one block system; 0, with the solution in the factors' `b`, or a failure."""
     e = equations_view(equations)
     f = factors_view(factors)
     add_entries(e, values, 0.0, f.a)
-    if factored(f) != DONE:
-        return False
+    outcome = factored(f)
+    if outcome == FULL:
+        return NO_ROOM
+    if outcome != DONE:
+        return SINGULAR if isfinite(_largest(f.a, f.a_start[f.n])) else NOT_FINITE
     add_products(e, values, f.previous, f.previous, f.b)
     solve(f, f.b)
-    return True
+    return 0 if isfinite(_largest(f.b, f.n)) else NOT_FINITE
 
 
 @compiled
@@ -62,13 +68,13 @@ def to_position_constraints(s, m, t, tolerance, most):
     for move in range(most):
         values = evaluate(s, POSITION, t)
         gap = _largest(values, s.n_c)
-        m.largest[0] = gap
         if gap <= tolerance:
             return move
         if not isfinite(gap):
             return NOT_FINITE
-        if not _solved(s, m.positions, m.position_factors, values):
-            return SINGULAR
+        status = _solved(s, m.positions, m.position_factors, values)
+        if status < 0:
+            return status
         step = factors_view(m.position_factors).b
         for k in range(s.n_q):
             s.q[k] += step[k]
@@ -79,8 +85,9 @@ def to_position_constraints(s, m, t, tolerance, most):
 def to_velocity_constraints(s, m, t):
     """The smallest correction of u in the mass matrix that brings J u + C_t to zero."""
     values = evaluate(s, MOTION, t)
-    if not _solved(s, m.velocities, m.velocity_factors, values):
-        return SINGULAR
+    status = _solved(s, m.velocities, m.velocity_factors, values)
+    if status < 0:
+        return status
     step = factors_view(m.velocity_factors).b
     for k in range(s.n_u):
         s.u[k] += step[k]
@@ -100,8 +107,9 @@ def to_accelerations(s, m, t):
         for k in range(s.n_c):
             if e.at_lam[k] >= 0:
                 f.previous[e.at_lam[k]] = s.lam[k]
-        if not _solved(s, m.accelerations, m.acceleration_factors, evaluate(s, ACCELERATION, t)):
-            return SINGULAR
+        status = _solved(s, m.accelerations, m.acceleration_factors, evaluate(s, ACCELERATION, t))
+        if status < 0:
+            return NO_BALANCE if iterated and status == SINGULAR else status
         change = 0.0
         largest = 0.0
         for k in range(s.n_c):
@@ -111,11 +119,11 @@ def to_accelerations(s, m, t):
             s.lam[k] = new
         if not iterated or change <= FRICTION_TOLERANCE * largest:
             return 0
-    return NO_CONVERGENCE
+    return NO_BALANCE
 
 
 def assemble(t, tolerance, most, mechanics):
-    """`to_position_constraints` from Python; largest[0] is the gap left."""
+    """`to_position_constraints` from Python."""
     m = mechanics_view(mechanics)
     return to_position_constraints(state_view(m.state), m, t, tolerance, most)
 
@@ -142,11 +150,12 @@ def _output_point(s, m, t, project, tolerance, largest):
     largest[2] = 0.0
     if project:
         largest[2] = _largest_gap(s, evaluate(s, POSITION, t))
-        status = to_position_constraints(s, m, t, tolerance, 20)
+        status = to_position_constraints(s, m, t, tolerance, MOST_MOVES)
         if status < 0:
             return status
-        if to_velocity_constraints(s, m, t) < 0:
-            return SINGULAR
+        status = to_velocity_constraints(s, m, t)
+        if status < 0:
+            return status
     values = evaluate(s, MOTION, t)
     largest[0] = _largest_gap(s, values)
     largest[1] = _largest_gap(s, shifted(values, s.n_c))
@@ -162,7 +171,8 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
 
     q and u (rows of n_q, n_u) are brought back to the constraints where `project` asks for it; written are u', lam,
     the values of the output terms, and in `largest` three numbers a row: the violations of positions and of
-    velocities (largest of a joint), and of positions before the projection.
+    velocities (largest of a joint), and of positions before the projection.  Where an instant has no solution, the
+    mechanics' `status` holds why.
     """
     m = mechanics_view(mechanics)
     s = state_view(m.state)
@@ -171,7 +181,8 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
             s.q[k] = q[row * s.n_q + k]
         for k in range(s.n_u):
             s.u[k] = u[row * s.n_u + k]
-        if _output_point(s, m, times[row], project, tolerance, shifted(largest, 3 * row)) < 0:
+        m.status[0] = _output_point(s, m, times[row], project, tolerance, shifted(largest, 3 * row))
+        if m.status[0] < 0:
             return row
         solution = factors_view(m.acceleration_factors).b
         values = floats(s.values[OUTPUT])

@@ -6,8 +6,9 @@ from math import isfinite, sqrt
 
 from stiffmbs.compile.native.access import compiled, explicit_view, mechanics_view, scheme_view, shifted, state_view
 from stiffmbs.solve.native.interpolant import store_rows, store_step
-from stiffmbs.solve.native.mechanics import NOT_FINITE, to_position_constraints, to_velocity_constraints
+from stiffmbs.solve.native.mechanics import MOST_MOVES, to_position_constraints, to_velocity_constraints
 from stiffmbs.solve.native.stages import add_stages, copied, load_state, rates, take_stage, weighted
+from stiffmbs.solve.native.statuses import NOT_FINITE
 
 STEP_TOO_SMALL, STIFF = -4, -5
 PAUSED, AT_END = 0, 1
@@ -16,7 +17,6 @@ STRETCHED = 1.01
 """The last step may be this much longer than asked for, so that no tiny one is left."""
 STIFF_PART, ENOUGH_STEPS, TOO_MANY_STEPS = 0.1, 100_000, 1e8
 """A run is given up when this part of its steps was held back by stability, after so many, with so many ahead."""
-MOST_MOVES = 20
 
 
 @compiled
