@@ -21,13 +21,16 @@ PULSE = "100*(step(t, 8, 0, 8.001, 1) - step(t, 8.009, 0, 8.01, 1))"
 
 
 @pytest.mark.parametrize("at_rest", ["free", "on a spring"])
-def test_a_short_pulse_after_a_long_rest_is_seen(at_rest):
+@pytest.mark.parametrize(
+    "how", [{}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "projected", "scheme": "dop853"}], ids=str
+)
+def test_a_short_pulse_after_a_long_rest_is_seen(at_rest, how):
     """100 N for 9 ms in all on 2 kg at t = 8 s, at a loose tolerance and with no step limit."""
     model = sled(PULSE)
     if at_rest == "on a spring":
         far = stiffmbs.Marker(body="ground", point=(-1, 0))
         model.add("spring", SpringDamper(i="sled", j=far, stiffness=2.0, free_length=1))
-    solution = stiffmbs.run(model, duration=10.0, points=11, rtol=1e-4)
+    solution = stiffmbs.run(model, duration=10.0, points=11, rtol=1e-4, **how)
     assert np.max(np.abs(solution["sled.x"][:8])) < 1e-12
     gained = 0.9 / 2
     total = solution["energy.kinetic"][-1] + (solution["energy.potential"][-1] if at_rest != "free" else 0)

@@ -6,10 +6,13 @@ import time
 
 import numpy as np
 
+from ...compile.corners import corner_times
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
+from ...errors import SolverError
 from ..initial import InitialValues
 from ..mechanics import Mechanics
+from ..restart import restarted
 from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
 from .integration import Integration
@@ -17,7 +20,8 @@ from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
 
 ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64*)")
-AT_END = 1
+PAUSED, AT_END = 0, 1
+"""Statuses of a call: to be called again, and done."""
 WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
 
@@ -27,7 +31,8 @@ def solve_adaptively(
 ) -> Trajectory:
     """Integrate with a scheme that estimates its error; the contract is in `stiffmbs.solve.trajectory`.
 
-    Steps are not cut by output times: states there come from the scheme's interpolant.
+    Steps are not cut by output times: states there come from the scheme's interpolant.  They are cut by corners in
+    time, which long steps of a motion at rest would jump over.
     """
     system = mechanics.system
     work = Integration(scheme, mechanics, start, grid, settings)
@@ -35,15 +40,25 @@ def solve_adaptively(
     own_steps = grid.times is None
     if own_steps:
         rows.append(grid.start, start.q, start.u)
-    outcome, message, status = Outcome.DONE, Outcome.DONE.value, 0
+    outcome, message, status = Outcome.DONE, Outcome.DONE.value, AT_END
     advance = ADVANCE.load()
+    corners = corner_times(system, grid.start, grid.end)
     begun = time.perf_counter()
-    work.h = first_step(scheme, mechanics, start, grid, settings)
     try:
-        while status == 0:
-            status = advance(grid.end, work.room, own_steps, work.at)
-            work.collect(rows)
-            watch(work.t)
+        for stop in (*corners, grid.end):
+            work.h = first_step(scheme, mechanics, start, work.t, grid.end, settings)
+            status = PAUSED
+            while status == PAUSED:
+                status = advance(stop, work.room, own_steps, work.at)
+                work.collect(rows)
+                watch(work.t)
+            if status < 0:
+                break
+            if stop < grid.end:
+                start = restarted(mechanics, stop, work.q, work.u, settings.projection)
+                work.begin(start)
+    except SolverError as error:
+        outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     if status < 0:
@@ -51,12 +66,15 @@ def solve_adaptively(
     elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
         message = f"{message}; {stiff_sentence(work)}"
     statistics: dict[str, int | float] = {n: work.count(n) for n in ("steps", "rejected", "accelerations")}
+    statistics["corners"] = int(np.sum(corners < work.t))
     statistics["seconds"] = time.perf_counter() - begun
     history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
     return Trajectory(*rows.stored, outcome, message, statistics, history)
 
 
-def first_step(scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings) -> float:
+def first_step(
+    scheme: Scheme, mechanics: Mechanics, start: InitialValues, t: float, end: float, settings: RunSettings
+) -> float:
     """A first step whose error will be small (Hairer, Norsett, Wanner I, ch. II.4, "starting step size"), s."""
     atol = np.tile(absolute_tolerances(mechanics.system, settings), 2)
     y, rate = np.concatenate([start.q, start.u]), np.concatenate([start.u, start.acceleration])
@@ -68,10 +86,10 @@ def first_step(scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid:
     of_state, of_rate = size(y), size(rate)
     h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 else 1e-6
     mechanics.state.q[:], mechanics.state.u[:] = start.q + h * start.u, start.u + h * start.acceleration
-    status, acceleration = mechanics.accelerate(grid.start + h)
+    status, acceleration = mechanics.accelerate(t + h)
     change = size(np.concatenate([mechanics.state.u, acceleration]) - rate) / h
     largest = max(of_rate, change)
     if status < 0 or not np.isfinite(largest):
         return h
     longer = (0.01 / largest) ** (1 / scheme.order) if largest > 1e-15 else max(1e-6, 1e-3 * h)
-    return min(100 * h, longer, grid.end - grid.start)
+    return min(100 * h, longer, end - t)

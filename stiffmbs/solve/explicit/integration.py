@@ -41,8 +41,7 @@ class Integration:
         self.room = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
         self.step_times: list[np.ndarray] = []
         self._scheme, self._eliminated = _arrays_of(scheme), mechanics.eliminated
-        y, stages = np.concatenate([start.q, start.u]), np.zeros((scheme.extended, n))
-        stages[scheme.stages] = np.concatenate([start.u, start.acceleration])
+        self._end = scheme.stages
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         counters = ("dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
@@ -55,7 +54,7 @@ class Integration:
             "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
             "t": np.array([grid.start]), "t_before": np.array([grid.start]),
             "h": np.array([settings.step]), "last_error": np.array([SMALLEST_ERROR]),
-            "y": y, "y_before": y.copy(), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
+            "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
             **{name: np.zeros(1, dtype=np.int64) for name in counters},
             "n_times": len(times), "times": times,
@@ -63,6 +62,7 @@ class Integration:
             "ends": np.empty(self.room),
         }  # fmt: skip
         self._table = packed(EXPLICIT, self._arrays)
+        self.begin(start)
 
     @property
     def at(self) -> int:
@@ -92,6 +92,12 @@ class Integration:
     def u(self) -> np.ndarray:
         """Velocities reached."""
         return self._arrays["y"][self._n_q :]
+
+    def begin(self, start: InitialValues) -> None:
+        """Go on from consistent values at the time reached."""
+        self.q[:], self.u[:] = start.q, start.u
+        self._arrays["k"][self._end] = np.concatenate([start.u, start.acceleration])
+        self._arrays["last_error"][0] = SMALLEST_ERROR
 
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
