@@ -131,3 +131,21 @@ def test_bdf_gives_the_same_motion_and_moment(examples):
     integrated = stiffmbs.run(scene, points=181, solver="bdf", rtol=1e-9)
     np.testing.assert_allclose(integrated["slider.x"], kinematic["slider.x"], atol=1e-8)
     np.testing.assert_allclose(integrated["motor.torque"], kinematic["motor.torque"], atol=1e-4)
+
+
+def test_a_drive_with_kinks_is_no_lock():
+    """Velocities jump at the points of a table of straight lines; an output time may be one of them."""
+    way, at = [0.0, 0.5, 0.1, 0.1, 0.7], [0.0, 1.0, 2.0, 3.0, 4.0]
+    scene = f"""
+bodies: {{sled: {{mass: 1, inertia: 1}}}}
+joints:
+  rail: {{type: prismatic, i: sled, j: ground}}
+  motor: {{type: drive, joint: rail, position: {{table: {[list(point) for point in zip(at, way, strict=True)]}, lines: true}}}}
+run: {{duration: 4, points: 41, solver: kinematic}}
+"""
+    solution = stiffmbs.run(stiffmbs.read_scene(scene))
+    assert solution.outcome.name == "DONE", solution.message
+    np.testing.assert_allclose(solution["sled.x"], np.interp(solution.time, at, way), atol=1e-14)
+    between = np.abs(solution.time - np.round(solution.time)) > 0.01
+    rates = np.diff(way)[np.minimum(solution.time.astype(int), 3)]
+    np.testing.assert_allclose(solution["sled.vx"][between], rates[between], atol=1e-14)

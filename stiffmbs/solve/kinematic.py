@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 
+from ..compile.corners import corner_times
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .initial import InitialValues
@@ -19,6 +20,7 @@ LARGEST_TURN = 0.5
 SHORTEST = 1e-10
 """Part of the duration below which a step that still fails means that the mechanism locks."""
 MOST_MOVES = 12
+"""Newton's moves of one step; a step that asks for more was too long."""
 
 
 def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
@@ -26,7 +28,8 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
 
     Each step predicts q + h u + h^2/2 u' and corrects it by Newton; it is halved until positions and velocities come
     out near their prediction, so that the solution cannot jump to another branch.  A mechanism that locks (a dead
-    centre under its drive) stops there with a message that names instant and pose.
+    centre under its drive) stops there with a message that names instant and pose.  At corners of the drives in time,
+    where velocities may jump, they are taken anew.
 
     Raises
     ------
@@ -40,9 +43,14 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start))
+    corners = iter((*corner_times(system, grid.start, grid.end), np.inf))
+    corner = next(corners)
     rows.append(times[0], motion.q, motion.u)
     try:
         for t in times[1:]:
+            while corner <= t:
+                motion.go_past(corner)
+                corner = next(corners)
             motion.go_to(t)
             rows.append(t, motion.q, motion.u)
             watch(t)
@@ -89,6 +97,15 @@ class _Motion:
             else:
                 raise SolverError(self._locked())
 
+    def go_past(self, corner: float) -> None:
+        """Follow the motion to just before a corner, and take velocities and accelerations anew just behind it."""
+        self.go_to(corner - self._shortest)
+        state, t = self._mechanics.state, corner + self._shortest
+        state.q[:], state.u[:] = self.q, self.u
+        failed = self._mechanics.assemble(t, most=MOST_MOVES) < 0 or self._mechanics.correct_velocities(t) < 0
+        if failed or not self._take(t):
+            raise SolverError(self._locked())
+
     def _step(self, t: float, h: float) -> bool:
         """Try one step; whether positions and velocities came out near their prediction."""
         state, mechanics = self._mechanics.state, self._mechanics
@@ -100,20 +117,26 @@ class _Motion:
         size = max(np.linalg.norm(self.u), np.linalg.norm(state.u))
         if np.linalg.norm(state.u - predicted_u) > LARGEST_TURN * size + 1e-9:
             return False
-        self._polish(t)
-        status, acceleration = mechanics.accelerate(t)
-        if status < 0:
+        if not self._take(t):
             return False
-        self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration
         self.steps, self.moves = self.steps + 1, self.moves + moves
         return True
+
+    def _take(self, t: float) -> bool:
+        """Make the state at hand, with its accelerations, the one that is reached; whether it has them."""
+        state = self._mechanics.state
+        self._polish(t)
+        status, acceleration = self._mechanics.accelerate(t)
+        if status == 0:
+            self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration
+        return status == 0
 
     def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
         own = np.linalg.norm(h * self.u) + np.linalg.norm(h * h / 2 * self.a)
         return bool(np.linalg.norm(q - predicted) <= LARGEST_SURPRISE * own + 1e-9)
 
     def _polish(self, t: float) -> None:
-        """Take positions to rounding, and velocities with them."""
+        """Take positions to rounding, by two more moves whether they get there or not, and velocities with them."""
         self._mechanics.assemble(t, tolerance=0.0, most=2)
         self._mechanics.correct_velocities(t)
 
