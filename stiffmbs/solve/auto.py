@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.system import PLANAR
 from ..describe.settings import RunSettings
 from .mechanics import Mechanics
 from .spectrum import spectrum
@@ -32,7 +33,7 @@ def choose(mechanics: Mechanics, settings: RunSettings, t: float) -> tuple[RunSe
     if system.n_u > MOST_VELOCITIES:
         return _with(settings, "bdf"), f"auto chose bdf: {system.n_u} velocities are too many for a dense spectrum"
     found = spectrum(mechanics, t)
-    motion = max(found.slowest, _rate_of_motion(mechanics), 1.0 / settings.duration)
+    motion = max(found.slowest, _rate_of_motion(mechanics, t), 1.0 / settings.duration)
     ratio = found.fastest / motion
     facts = (
         f"the fastest rate is {found.fastest:.3g} 1/s (damping ratio {found.damping:.2g}), "
@@ -47,10 +48,10 @@ def _with(settings: RunSettings, solver: str) -> RunSettings:
     return settings.model_copy(update={"solver": solver, "scheme": "dop853"})
 
 
-def _rate_of_motion(mechanics: Mechanics) -> float:
+def _rate_of_motion(mechanics: Mechanics, t: float) -> float:
     """How fast the coordinates change at the start for their size, 1/s."""
-    u, acceleration = mechanics.state.u, mechanics.accelerate(0.0)[1]
+    u, acceleration = mechanics.state.u, mechanics.accelerate(t)[1]
     size = max(mechanics.system.size, 1e-300)
-    speeds = np.abs(u) / np.tile([size, size, 1.0], len(u) // 3)
-    pulls = np.abs(acceleration) / np.tile([size, size, 1.0], len(u) // 3)
+    speeds = np.abs(u) / np.tile([size, size, 1.0], len(u) // PLANAR)
+    pulls = np.abs(acceleration) / np.tile([size, size, 1.0], len(u) // PLANAR)
     return float(max(speeds.max(initial=0.0), np.sqrt(pulls.max(initial=0.0))))
