@@ -82,3 +82,13 @@ def test_a_force_that_is_not_finite_at_the_start_is_named():
     model.add("root", ConstraintEquation(zero="sqrt(bar.x - 2)"))
     with pytest.raises(AssemblyError, match=r"root"):
         stiffmbs.run(model)
+
+
+@pytest.mark.filterwarnings("error")
+def test_an_equation_with_an_infinite_derivative_at_the_start_is_named():
+    """The gap of sqrt(x) - y is zero at the origin, its derivative is not finite there."""
+    model = Model()
+    model.add("bar", Body(mass=1, inertia=0.1))
+    model.add("root", ConstraintEquation(zero="sqrt(bar.x) - bar.y"))
+    with pytest.raises(AssemblyError, match=r"'root' has no finite value"):
+        stiffmbs.run(model)

@@ -8,6 +8,7 @@ import stiffmbs
 from stiffmbs import (
     AppliedForce,
     AppliedTorque,
+    AssemblyError,
     Body,
     Fixed,
     InputError,
@@ -173,3 +174,14 @@ def test_bad_input_is_refused_in_one_sentence(joint, fields, sentence):
     model.add("joint", joint(i="block", j="ground"))
     with pytest.raises(InputError, match=sentence):
         model.add("rubbing", JointFriction(**{"joint": "joint", "friction": 0.1} | fields))
+
+
+def test_a_jam_is_put_down_to_friction():
+    """A guide of length l at the arm h jams where mu exceeds l/(2 h): no balance, though the equations are independent."""
+    model = Model(gravity=(0, -G))
+    model.add("block", Body(mass=1, inertia=0.01, velocity=(-0.5, 0)))
+    below = {"point": (0, -1)}
+    model.add("guide", Prismatic(i=Marker(body="block", **below), j=Marker(body="ground", **below)))
+    model.add("rubbing", JointFriction(joint="guide", friction=0.5, length=0.01))
+    with pytest.raises(AssemblyError, match=r"friction and the reactions.*no unique balance.*rubbing"):
+        stiffmbs.run(model, duration=0.1)

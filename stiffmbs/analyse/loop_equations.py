@@ -95,7 +95,8 @@ class LoopEquations:
         state.u[self.loop.columns] = 0.0
         state.evaluate("motion", t)
         C = rows * self._vector("C")
-        C_q, J = (rows[:, None] * self._matrix(name) * self._column_scale for name in ("C_q", "J"))
+        with np.errstate(invalid="ignore"):  # where equations are not defined; the caller looks for finite numbers
+            C_q, J = (rows[:, None] * self._matrix(name) * self._column_scale for name in ("C_q", "J"))
         return Pose(q, t, float(np.abs(C).max()), C, C_q, J, rows * self._vector("V"))
 
     def moved(self, q: np.ndarray, move: np.ndarray) -> np.ndarray:

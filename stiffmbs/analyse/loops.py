@@ -99,9 +99,9 @@ def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tupl
     J[:, row, column] = values
     J[:, :, PLANAR - 1 :: PLANAR] /= system.size
     norms = np.linalg.norm(J, axis=2, keepdims=True)
-    J /= np.where(norms > 0, norms, 1.0)
-    parts = J.reshape(group.count, count, group.kind.n_bodies, PLANAR).transpose(0, 2, 1, 3)
     with np.errstate(invalid="ignore"):  # a joint that is not defined at this pose holds nothing for sure
+        J /= np.where(norms > 0, norms, 1.0)
+        parts = J.reshape(group.count, count, group.kind.n_bodies, PLANAR).transpose(0, 2, 1, 3)
         independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > FULL_RANK
     numbers = group.index[:, : 2 * group.kind.n_bodies : 2] // PLANAR
     for e, name in enumerate(group.names):
