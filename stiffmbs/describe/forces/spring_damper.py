@@ -7,12 +7,13 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field
 
 from .. import si
-from ..element import Force, Symbolic
+from ..element import Symbolic
 from ..formula_field import OfDeflection, OfRate
 from ..marker import Marker
+from .spring import Spring
 
 
-class SpringDamper(Force):
+class SpringDamper(Spring):
     """Line spring and damper, linear or by curves, along the line between two points.
 
     With the deflection s = L - L0 and its rate v = L' the tension is
@@ -40,15 +41,9 @@ class SpringDamper(Force):
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         length = e.distance(e.i.point, e.j.point)
-        s, v = length - e.free_length, e.rate(length)
-        tension = e.stiffness * s + e.damping * v + e.preload
-        tension += e.spring_law(s) if e.spring_law is not None else 0
-        tension += e.damper_law(v) if e.damper_law is not None else 0
-        return [(-tension, length)]
+        return [(-Spring.pull(e, length - e.free_length, e.rate(length)), length)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
         length = e.distance(e.i.point, e.j.point)
-        s = length - e.free_length
-        of_law = e.integral(e.spring_law, s) if e.spring_law is not None else 0
-        return e.stiffness * s**2 / 2 + e.preload * length + of_law if of_law is not None else 0
+        return Spring.stored(e, length - e.free_length, length)

@@ -7,12 +7,13 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field
 
 from .. import si
-from ..element import Force, Symbolic
+from ..element import Symbolic
 from ..formula_field import OfDeflection, OfRate
 from ..marker import Marker
+from .spring import Spring
 
 
-class TorsionSpring(Force):
+class TorsionSpring(Spring):
     """Rotational spring and damper, linear or by curves, on the angle of marker i against marker j.
 
     With the deflection s = angle - free_angle and its rate v the moment
@@ -39,15 +40,9 @@ class TorsionSpring(Force):
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         angle = e.i.angle - e.j.angle
-        s, v = angle - e.free_angle, e.rate(angle)
-        moment = e.stiffness * s + e.damping * v + e.preload
-        moment += e.spring_law(s) if e.spring_law is not None else 0
-        moment += e.damper_law(v) if e.damper_law is not None else 0
-        return [(-moment, angle)]
+        return [(-Spring.pull(e, angle - e.free_angle, e.rate(angle)), angle)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
         angle = e.i.angle - e.j.angle
-        s = angle - e.free_angle
-        of_law = e.integral(e.spring_law, s) if e.spring_law is not None else 0
-        return e.stiffness * s**2 / 2 + e.preload * angle + of_law if of_law is not None else 0
+        return Spring.stored(e, angle - e.free_angle, angle)
