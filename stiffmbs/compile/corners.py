@@ -17,12 +17,14 @@ import numpy as np
 from ..describe.element import Element
 from ..describe.formula import UNIT, evaluate
 from ..describe.formula_field import TIME, Formula, FormulaOf, is_measure, reading_order
+from ..describe.formula_value import step5_value, step_value
 from ..describe.table import Table
 from .system import System
 
 SAMPLES = 4001
 """Instants at which a corner's condition is looked at where it is no straight line in t."""
 FLAT = 1e-12
+"""Change between two points of a table, in parts of its largest value, up to which it is flat there."""
 
 
 def corner_times(system: System, start: float, end: float) -> np.ndarray:
@@ -122,22 +124,12 @@ def _at(formula: Formula, condition: ast.expr, t: np.ndarray) -> np.ndarray:
     return np.broadcast_to(np.asarray(values, dtype=float), t.shape)
 
 
-def _step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
-    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
-    return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
-
-
-def _step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
-    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
-    return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
-
-
 _SAME_NAME = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign")
 _OF_ARRAYS: dict[str, Callable[..., Any]] = {
     **{name: getattr(np, name) for name in _SAME_NAME},
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2,
     "min": lambda *values: reduce(np.minimum, values), "max": lambda *values: reduce(np.maximum, values),
-    "step": _step, "step5": _step5,
+    "step": step_value, "step5": step5_value,
 }  # fmt: skip
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable
+from typing import Any
+
+import numpy as np
 
 from .formula import evaluate
 from .formula_field import Formula
@@ -30,15 +33,15 @@ def formula_value(formula: Formula, node: ast.expr | None = None, **variables: f
     return evaluate(tree, names, _FUNCTIONS, lambda n: Quantity(float(n))).value
 
 
-def step_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
-    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic that is flat at both ends."""
-    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
+def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    """Adams' STEP, of numbers or arrays: from h0 at x0 to h1 at x1 by a cubic that is flat at both ends."""
+    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
     return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
 
 
-def step5_value(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
-    """Adams' STEP5: from h0 at x0 to h1 at x1 by a quintic without slope and curvature at both ends."""
-    z = min(max((x - x0) / (x1 - x0), 0.0), 1.0)
+def step5_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    """Adams' STEP5, of numbers or arrays: from h0 at x0 to h1 at x1 by a quintic without slope and curvature at both ends."""
+    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
     return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
 
 
