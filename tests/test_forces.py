@@ -225,3 +225,12 @@ def test_derivatives_of_what_random_elements_leave_out(model):
     assert_close(term(state, "tangent", "f_q"), force)
     assert_close(term(state, "tangent", "f_u"), derivative(lambda: term(state, "motion", "f"), state.u))
     assert_close(term(state, "tangent", "f_lam"), derivative(lambda: term(state, "motion", "f"), state.lam))
+
+
+@pytest.mark.parametrize("formula", ["1/0*t", "step(1, 1, 0, 1, 1)", "sqrt(-1)*t", "log(0) + t", "exp(1e4)*t"])
+def test_a_constant_without_a_value_is_refused_by_name(formula):
+    model = Model()
+    model.add("ball", Body(mass=1, inertia=1))
+    model.add("push", AppliedForce(i="ball", force=(formula, 0)))
+    with pytest.raises(InputError, match=r"^push: found '.*', which has"):
+        stiffmbs.run(model, duration=0.1)

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ..describe.element import Element
+from ..describe.formula import FormulaError
 from ..describe.marker import GROUND
 from ..describe.model import ModelData
 from ..errors import InputError
@@ -224,7 +225,10 @@ def compile_model(model: ModelData) -> System:
     offset = {name: PLANAR * k for k, name in enumerate(bodies)} | {GROUND: PLANAR * len(bodies)}
     sorted_elements: dict[Kind, list[_Member]] = {}
     for name, element in model.elements():
-        kind, data = sorted_out(element, model)
+        try:
+            kind, data = sorted_out(element, model)
+        except FormulaError as error:
+            raise InputError(f"{name}: {error}") from None
         sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
     records = {kind: _record(kind, members[0].name) for kind, members in sorted_elements.items()}
     rows, equations, holonomic = _rows(sorted_elements, records)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .formula import evaluate
+from .formula import FormulaError, evaluate
 from .formula_field import Formula
 from .quantity import FUNCTIONS, Quantity
 
@@ -24,13 +24,25 @@ def formula_value(formula: Formula, node: ast.expr | None = None, **variables: f
         The part to evaluate; the whole formula by default.
     **variables
         Values of time (``t``) and of the formula's variables, where it uses them.
+
+    Raises
+    ------
+    FormulaError
+        When it divides by zero, overflows, or has no real value.
     """
 
     def names(name: str) -> Quantity:
         return Quantity(variables[name] if name in variables else formula.values[name])
 
     tree = formula.tree if node is None else node
-    return evaluate(tree, names, _FUNCTIONS, lambda n: Quantity(float(n))).value
+    try:
+        value = evaluate(tree, names, _FUNCTIONS, lambda n: Quantity(float(n))).value
+    except (ArithmeticError, ValueError) as error:
+        reason = str(error).removeprefix("found ") if isinstance(error, FormulaError) else "no finite real value"
+        raise FormulaError(f"found '{ast.unparse(tree)}' in '{formula.text}', which has {reason}") from None
+    if not math.isfinite(value):
+        raise FormulaError(f"found '{ast.unparse(tree)}' in '{formula.text}', which has no finite value")
+    return float(value)
 
 
 def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
