@@ -38,7 +38,7 @@ def _settings(_: click.Context, __: click.Parameter, values: tuple[str, ...]) ->
 )
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
-@click.option("--rtol", help="Relative tolerance of bdf.")
+@click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes.")
 @click.option("--duration", help="Time to solve, s.")
 @click.option("--solver", help="bdf, projected, kinematic or auto.")
 @click.option(

@@ -1,1 +1,1 @@
-"""What a motion means: energies and reactions."""
+"""What equations and motions mean: redundancy and degrees of freedom, reactions, energies, requests."""

@@ -13,10 +13,13 @@ from .loops import Loop
 CLOSED = 1e-11
 """Largest violation, in parts of the loop's size, of a pose that counts as assembled."""
 MOST_STEPS = 40
+"""Steps of an assembly; where equations agree a few are enough."""
 LONGEST_STEP = 1.0
+"""Longest move of one step (arms, rad), so that assembly stays near the pose described."""
 STATIONARY = 1e-9
 """Slope of |C|, in parts of itself, below which equations that disagree come no closer to holding."""
 LEAST_DAMPING = 1e-13
+"""Keeps C_q C_q^T regular where equations are redundant; far below the squares of singular values that count."""
 LEAST_NORM = 1e-9
 """A row is scaled as if it were at least this part of the others: one that vanishes must not be blown up."""
 

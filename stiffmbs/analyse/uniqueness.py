@@ -15,6 +15,7 @@ from .reactions import reactions
 CHANGES = 1e-6
 """Change of a reaction, in parts of the largest, from which on it is not unique."""
 SAME_DIRECTION = 1e-5
+"""Angle, rad, and part of a force across it, up to which a direction counts as the same."""
 SPEED = 1.0
 """Velocity (arms and rad per second) at which forces that hang on reactions are looked at: friction has none at rest."""
 

@@ -56,8 +56,8 @@ class ElementData:
         By slot; the first is the one on which the reaction is reported.
     numbers : list of float
         Kernel parameters, in the order in which the kind's equations meet them.
-    tables : list of ndarray
-        Spline data; the number that stands for a table is its offset behind the numbers.
+    tables : list of (int, ndarray)
+        Which of the numbers stands for a table, by its offset in `flat`, and the table's spline data.
     joints : list of str
         Joints whose multipliers the equations use.
     """
@@ -143,6 +143,7 @@ class _FormulaShape(ast.NodeTransformer):
         self.measures: list[tuple[str, tuple[Marker, ...]]] = []
 
     def shape(self) -> Shape:
+        """The formula's shape; its numbers and markers are appended to the data."""
         tree = self.visit(ast.parse(ast.unparse(self.formula.tree), mode="eval").body)
         self.data.numbers += self.numbers
         measures = tuple(

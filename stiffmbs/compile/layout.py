@@ -13,7 +13,7 @@ import numpy as np
 
 Layout = Mapping[str, str]
 
-INTS, FLOATS, INT, FLOAT = "ints", "floats", "int", "float"
+INTS, FLOATS, INT = "ints", "floats", "int"
 
 STATE: Layout = {
     "n_q": INT, "n_u": INT, "n_c": INT,
@@ -103,8 +103,6 @@ def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
         value = values[name]
         if kind == INT:
             table[column] = int(value)
-        elif kind == FLOAT:
-            table[column : column + 1].view(np.float64)[0] = value
         else:
             assert isinstance(value, np.ndarray) and value.flags.c_contiguous, name
             assert value.dtype == (np.int64 if kind == INTS else np.float64), name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .layout import STATE, packed
+from .layout import CALL, STATE, packed
 from .routines import TERMS
 from .system import PLANAR, System
 from .terms import TERM_AXES, TERM_SETS
@@ -62,7 +62,7 @@ class State:
             for g, group in enumerate(system.groups)
             if (kernel := system.kernel(term_set, group)) is not None
         ]  # fmt: skip
-        self._calls[term_set] = np.array(calls, dtype=np.int64).reshape(-1, 5)
+        self._calls[term_set] = np.array(calls, dtype=np.int64).reshape(-1, len(CALL))
         room = np.zeros(system.n_values(term_set))
         self.values[term_set] = np.concatenate([room, system.mass, self._relaxations, [1.0]])
         self._n_calls[k] = len(calls)

@@ -53,6 +53,7 @@ class Group:
 
     @property
     def count(self) -> int:
+        """Number of elements."""
         return len(self.names)
 
 
@@ -137,7 +138,7 @@ class System:
         return places
 
     def n_values(self, term_set: str) -> int:
-        """Number of values that the kernels of a set write; the mass entries and a one stand behind them."""
+        """Number of values that the kernels of a set write; the constants stand behind them."""
         return sum(
             group.count * len(group.record.patterns.get(term, ()))
             for group in self.groups

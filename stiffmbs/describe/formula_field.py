@@ -119,11 +119,11 @@ def measured_markers(node: ast.AST) -> tuple[Marker, ...]:
 
 @dataclass(frozen=True)
 class FormulaOf:
-    """Marks a field as a formula: ``Annotated[Formula, FormulaOf("s", coordinates=False)]``.
+    """Marks a field as a formula: ``Annotated[Formula, FormulaOf(("s",), time=False)]``.
 
     Parameters
     ----------
-    variables : str
+    variables : tuple of str
         Names with a meaning of the field's own.
     time, coordinates, velocities, table : bool
         Whether t, body coordinates and measures, and their rates may occur, and a table may stand in its place.

@@ -26,8 +26,8 @@ from .tolerances import absolute_tolerances
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 OUT_OF_THE_ERROR_TEST = 1e15
-"""Absolute tolerance of multipliers, which scikit-sundae cannot suppress in the error test (measured: without this
-the index-2 problems fail; with it the tolerance has to be corrected for the unknowns that still count in the norm)."""
+"""Absolute tolerance of multipliers: huge, so that they count neither in the error test, where index-2 problems would
+fail, nor in Newton's convergence test, where IDA's own suppression leaves them (Andrews' mechanism then stops)."""
 
 MARGIN = 0.3
 """Part of the tolerance asked for that IDA is given, as the errors of many steps add up (measured with the native

@@ -8,6 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
+from ..compile.equations import Equations
+from ..compile.state import State
 from .trajectory import History
 
 
@@ -37,7 +39,22 @@ class Reached:
 
 
 class Engine(Protocol):
-    """A driver of IDA."""
+    """A driver of IDA.
+
+    Parameters
+    ----------
+    equations : Equations
+        In the order that suits the driver's matrices.
+    state : State
+        The working memory of residual and Jacobian.
+    rtol : float
+    atol : ndarray, shape (n,)
+        Of each unknown; huge for those that are left out of the error test.
+    max_step : float
+        s; 0 for none.
+    """
+
+    def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None: ...
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float) -> None:
         """Start, or start anew, at consistent values; Newton's iteration may leave a part of the tolerance."""

@@ -14,6 +14,7 @@ from .sundials.status import Status
 from .trajectory import History
 
 ROWS_OF_STEPS = 1000
+"""Room for rows in one call that reports every step."""
 MANY_FAILURES, EASED, EASIEST = 0.2, 100.0, 0.33
 """Part of the steps in which Newton's iteration may fail before less is asked of it, by that factor, up to that part."""
 RENEWAL, RENEWED_UP_TO = 0.05, 90
@@ -22,17 +23,7 @@ residual (a third fewer residuals than with IDA's own 0.25)."""
 
 
 class NativeEngine:
-    """`NativeIda` as `stiffmbs.solve.engine.Engine` wants it.
-
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-    rtol : float
-    atol : ndarray, shape (n,)
-    max_step : float
-        s; 0 for none.
-    """
+    """IDA through its C interface (`NativeIda`); the contract is in `stiffmbs.solve.engine.Engine`."""
 
     def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None:
         reported = np.concatenate([equations.at["q"], equations.at["u"]])

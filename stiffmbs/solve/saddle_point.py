@@ -5,11 +5,14 @@ All three are [D J^T; J 0] [x; w] = [a; b], solved by one sparse LU whose patter
 
 from __future__ import annotations
 
+import heapq
+
 import numpy as np
 
 from ..compile.equations import ABSENT, Block, Equations, Formulation, Product
 from ..compile.layout import FACTORS, packed
 from ..compile.state import State
+from ..compile.system import PLANAR
 
 _SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
 
@@ -88,10 +91,6 @@ def elimination_order(equations: Equations) -> tuple[np.ndarray, int]:
     ndarray of int, int
         The unknowns in their order, and the entries that each triangle then has if pivots stay on the diagonal.
     """
-    import heapq
-
-    from ..compile.system import PLANAR
-
     system = equations.system
     at_u, at_multiplier = (equations.at[name] for name in equations.formulation.unknowns)
     n_bodies = len(system.bodies)

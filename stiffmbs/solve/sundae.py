@@ -13,6 +13,7 @@ from ..compile.layout import IDA, packed
 from ..compile.routines import Routine
 from ..compile.state import State
 from .engine import Reached
+from .sundials.matrices import DENSE_UP_TO
 from .trajectory import History
 
 _MODULE = "stiffmbs.solve.native.ida_callbacks"
@@ -20,9 +21,8 @@ RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int6
 JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
 SWITCHES = Routine(_MODULE, "switches", "void(float64, int64, int64, int64, int64*)")
 
-DENSE_UP_TO = 90
-"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
 HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
+"""Numbers before the first time in the history (as in `stiffmbs.solve.native.ida_callbacks`), and times kept."""
 MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
 ROOT_FOUND = 2
 """IDA's status for a step that ended at a root."""
@@ -105,17 +105,7 @@ class Callbacks:
 
 
 class SundaeEngine:
-    """IDA through scikit-sundae, as `stiffmbs.solve.engine.Engine` wants it.
-
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-    rtol : float
-    atol : ndarray, shape (n,)
-    max_step : float
-        s; 0 for none.
-    """
+    """IDA through scikit-sundae; the contract is in `stiffmbs.solve.engine.Engine`."""
 
     def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None:
         from sksundae.ida import IDA as SundialsIda

@@ -47,7 +47,7 @@ def shifted(typing_context, pointer, count):
 
 @intrinsic
 def call_kernel(typing_context, kernel, count, index, number, t, q, u, a, lam, mu, place, value):
-    """Call a kernel (`stiffmbs.compile.generate.KERNEL_SIGNATURE`) by its address."""
+    """Call a kernel (`stiffmbs.compile.terms.KERNEL_SIGNATURE`) by its address."""
     arguments_type = (kernel, count, index, number, t, q, u, a, lam, mu, place, value)
 
     def code(context, builder, signature, arguments):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from ..layout import CALL
 from .access import call_kernel, compiled, floats, ints, state_view
 
 POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH = range(6)
-CALL_WIDTH = 5
+CALL_WIDTH = len(CALL)
 
 
 @compiled

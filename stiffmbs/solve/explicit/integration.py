@@ -19,7 +19,7 @@ SHORTEST_PART = 1e-12
 MOST_STEPS, MOST_VALUES = 1024, 300_000
 """Of one call of compiled code: steps, and numbers in the rows that it stores, so that it returns soon."""
 SMALLEST_ERROR = 1e-4
-"""What the step control remembers of an error at the least (as in DOPRI5)."""
+"""What the step control remembers before its first step (as in DOPRI5)."""
 
 
 class Integration:

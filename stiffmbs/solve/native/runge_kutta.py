@@ -12,6 +12,8 @@ from stiffmbs.solve.native.statuses import NOT_FINITE
 
 STEP_TOO_SMALL, STIFF = -4, -5
 PAUSED, AT_END = 0, 1
+SMALLEST_ERROR = 1e-4
+"""What the step control remembers of an error at the least (as in DOPRI5)."""
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
 STRETCHED = 1.01
 """The last step may be this much longer than asked for, so that no tiny one is left."""
@@ -142,7 +144,7 @@ def _step(x, c, s, m, end):
             if status == 0:
                 x.t[0] = t_new
                 x.h[0] = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
-                x.last_error[0] = max(error, 1e-4)
+                x.last_error[0] = max(error, SMALLEST_ERROR)
                 _watch_stiffness(x, c, h)
                 return 0
         x.rejected[0] += 1
