@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..describe.figure import Figure
 from ..errors import InputError
+from .files import refuse_path
 from .solution import Solution
 
 ENDINGS = (".png", ".svg", ".pdf")
@@ -20,10 +21,7 @@ def check_figure(path: Path) -> None:
     InputError
         For an unknown ending, a missing folder, or a missing matplotlib.
     """
-    if path.suffix not in ENDINGS:
-        raise InputError(f"--figure {path}: found the ending '{path.suffix}', expected one of {', '.join(ENDINGS)}")
-    if not path.parent.is_dir():
-        raise InputError(f"--figure {path}: found no folder '{path.parent}', expected one that exists")
+    refuse_path("--figure", path, ENDINGS)
     if find_spec("matplotlib") is None:
         raise InputError(f"--figure {path}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
 

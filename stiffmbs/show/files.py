@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -50,17 +51,27 @@ def check_output(path: Path) -> None:
     InputError
         For an unknown ending, a missing folder, or a missing package.
     """
-    if path.suffix not in WRITERS:
-        raise InputError(f"-o {path}: found the ending '{path.suffix}', expected one of {', '.join(WRITERS)}")
-    if not path.parent.is_dir():
-        raise InputError(f"-o {path}: found no folder '{path.parent}', expected one that exists")
-    if path.is_dir() or not os.access(path.parent, os.W_OK):
-        raise InputError(f"-o {path}: found a place that cannot be written to, expected a file in a writable folder")
-    if path.suffix == ".nc":
-        from importlib.util import find_spec
+    refuse_path("-o", path, WRITERS)
+    if path.suffix == ".nc" and find_spec("xarray") is None:
+        raise InputError(f"-o {path}: found no xarray, expected it installed: pip install 'stiffmbs[netcdf]'")
 
-        if find_spec("xarray") is None:
-            raise InputError(f"-o {path}: found no xarray, expected it installed: pip install 'stiffmbs[netcdf]'")
+
+def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
+    """Refuse a file of an unknown ending, or in a folder that is not there or cannot be written to.
+
+    Raises
+    ------
+    InputError
+        Names the option.
+    """
+    if path.suffix not in endings:
+        raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
+    if not path.parent.is_dir():
+        raise InputError(f"{option} {path}: found no folder '{path.parent}', expected one that exists")
+    if path.is_dir() or not os.access(path.parent, os.W_OK):
+        raise InputError(
+            f"{option} {path}: found a place that cannot be written to, expected a file in a writable folder"
+        )
 
 
 def write(path: Path, solution: Solution) -> None:
