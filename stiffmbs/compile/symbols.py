@@ -78,9 +78,11 @@ class _Builder:
         raise TypeError(f"no such shape: {shape}")
 
     def marker(self, name: str, slot: int) -> Frame:
+        """A frame with new symbols for its numbers."""
         return Frame(self.frames[slot], tuple(self.fresh(f"{name}_{part}") for part in MARKER_NUMBERS))
 
     def joint(self, name: str, element: Any, fields: tuple[tuple[str, Shape], ...], slot: int) -> SymbolicElement:
+        """A joint that is referred to: its own fields, its coordinate, and symbols for its multipliers."""
         own = {field_name: self.made(f"{name}_{field_name}", shape) for field_name, shape in fields}
         joint: Any = SymbolicElement(self.frames, own)
         count = len(list(element.position(joint))) + len(list(element.velocity(joint)))
@@ -91,6 +93,7 @@ class _Builder:
         return joint
 
     def formula(self, name: str, text: str, n_variables: int, n_numbers: int, measures: tuple[Any, ...]) -> Any:
+        """A formula's expression, or a function of its variables where it has such."""
         numbers = [self.fresh(f"{name}_p") for _ in range(n_numbers)]
         measured = [
             self.measure(measure, [self.marker(f"{name}_{k}", slot) for k, (_, slot) in enumerate(shapes)])

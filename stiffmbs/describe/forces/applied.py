@@ -39,6 +39,7 @@ class AppliedForce(Force):
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        """The components on the point's coordinates in ground axes, or relative to j along j's axes."""
         along, across = e.force
         fx, fy = along * e.i.axis + across * e.i.normal if e.axes == "body" else (along, across)
         if e.j is None:

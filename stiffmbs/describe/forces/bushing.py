@@ -96,6 +96,7 @@ class Bushing(Force):
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        """preload - K s - C s' - law(s) on each deformation."""
         s = Bushing.deformation(e)
         elastic, viscous = _product(e.stiffness, s), _product(e.damping, [e.rate(part) for part in s])
         laws = [law(part) if law is not None else 0 for law, part in zip(_laws(e), s, strict=True)]
@@ -103,6 +104,7 @@ class Bushing(Force):
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
+        """1/2 s^T K s - preload . s and the integrals of the laws; zero where one has no simple integral."""
         s = Bushing.deformation(e)
         elastic = _product(e.stiffness, s)
         of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]

@@ -72,6 +72,7 @@ class Contact(Friction):
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        """N on the gap, and -mu(v) N on the sliding of the point of contact."""
         pressure = Contact.pressure(e)
         pairs = [(pressure, Contact.gap(e))]
         if e.friction is None:

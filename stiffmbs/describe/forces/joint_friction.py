@@ -43,6 +43,7 @@ class JointFriction(Friction):
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        """-mu(v) N, times R at a pin, on the joint's coordinate."""
         coordinate = e.joint.coordinate
         arm = e.radius if e.joint.kind == "revolute" else 1
         v = arm * e.rate(coordinate)

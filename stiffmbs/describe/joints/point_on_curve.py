@@ -67,6 +67,7 @@ class PointOnCurve(Joint):
 
     @staticmethod
     def position(e: Symbolic) -> Any:
+        """y - Y(x) of a slot, rho - R(theta) of a cam, in the axes of marker j."""
         d = e.i.point - e.j.point
         if e.y is not None:
             return [d.dot(e.j.normal) - e.y(d.dot(e.j.axis))]

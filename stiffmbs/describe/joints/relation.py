@@ -34,6 +34,7 @@ class Relation(Joint):
     offset: si.Anything | None = None
 
     def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """Joints without a coordinate or of the wrong kind, one joint named twice, two joints without a common carrier."""
         yield from unfit_joints(self, joints, self.wanted)
         (_, first), (field, second) = self.parts(JointName)
         if first == second:

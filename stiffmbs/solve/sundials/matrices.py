@@ -76,6 +76,7 @@ class Dense:
         return f"dense matrix of {self.n} unknowns"
 
     def assembled(self, session: Session, y: int) -> Assembled:
+        """A SUNDenseMatrix with SUNLinSol_Dense."""
         s = session.libraries
         matrix = session.keep(s.SUNDenseMatrix(self.n, self.n, session.context), s.SUNMatDestroy, "a matrix")
         solver = session.keep(s.SUNLinSol_Dense(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
@@ -109,6 +110,7 @@ class Banded:
         return f"banded matrix of {self.n} unknowns, {self.lower} diagonals below and {self.upper} above"
 
     def assembled(self, session: Session, y: int) -> Assembled:
+        """A SUNBandMatrix with SUNLinSol_Band."""
         s = session.libraries
         made = s.SUNBandMatrix(self.n, self.upper, self.lower, session.context)
         matrix = session.keep(made, s.SUNMatDestroy, "a matrix")
@@ -133,6 +135,7 @@ class Sparse:
         return f"sparse matrix of {self.n} unknowns with {len(self.rows)} entries"
 
     def assembled(self, session: Session, y: int) -> Assembled:
+        """A SUNSparseMatrix with SUNLinSol_SuperLUMT; its pattern is written anew with every matrix."""
         s = session.libraries
         entries = len(self.rows)
         made = s.SUNSparseMatrix(self.n, self.n, entries, COMPRESSED_COLUMNS, session.context)
