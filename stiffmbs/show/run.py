@@ -25,7 +25,7 @@ from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.requirements import required
-from ..solve.trajectory import Grid, Trajectory, Watch
+from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from .solution import Solution
 
 DEFAULT_POINTS = 1001
@@ -131,11 +131,20 @@ def run(
     statistics = {"name": job.settings.solver, **trajectory.statistics}
     if project:
         statistics["drift"] = float(rows.drift.max())
+    outcome, message = _ending(rows, trajectory)
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=trajectory.outcome,
-        message=trajectory.message, notes=tuple(_notes(job, rows, trajectory)), solver=statistics,
+        name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=outcome,
+        message=message, notes=tuple(_notes(job, trajectory)), solver=statistics,
         history=trajectory.history, not_unique=job.redundancy.not_unique,
     )  # fmt: skip
+
+
+def _ending(rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
+    """How the run ended, and the sentence for it: also stopped where states have no accelerations and reactions."""
+    if len(rows.t) == len(trajectory.t):
+        return trajectory.outcome, trajectory.message
+    t = trajectory.t[len(rows.t)]
+    return Outcome.STOPPED, f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
 
 
 def _near_constraints(settings: RunSettings) -> bool:
@@ -187,7 +196,7 @@ def channels_of(system: System, rows: OutputRows) -> dict[str, np.ndarray]:
     return channels
 
 
-def _notes(job: Job, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
+def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
     if job.choice:
         yield job.choice
     if job.redundancy.findings:
@@ -198,6 +207,3 @@ def _notes(job: Job, rows: OutputRows, trajectory: Trajectory) -> Iterator[str]:
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    if len(rows.t) < len(trajectory.t):
-        t = trajectory.t[len(rows.t)]
-        yield f"from t = {t:.9g} s on no accelerations and reactions could be computed: {FAILURES[rows.status]}"
