@@ -28,7 +28,7 @@ ROUTINES = (TERMS, ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS)
 """What every run needs."""
 
 POSITION_TOLERANCE = 1e-12
-"""Largest violation that a projection onto the positions leaves, in the equations' own units (m, rad)."""
+"""Largest violation that a projection onto the positions leaves, in the equations' own units (m, rad), but for rounding."""
 
 
 @dataclass(frozen=True)

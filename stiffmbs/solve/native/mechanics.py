@@ -19,6 +19,8 @@ from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_ROOM, 
 
 MOST_MOVES = 20
 """Newton's moves back to the constraints, from a state that was near them."""
+ROUNDING = 9e-16
+"""Part of the largest coordinate that no violation can be told below: four roundings."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
 """Change of the multipliers, in parts of the largest, at which they are in balance with the friction that they press."""
@@ -64,11 +66,11 @@ def _solved(s, equations, factors, values):
 
 @compiled
 def to_position_constraints(s, m, t, tolerance, most):
-    """Newton's smallest moves until |C| <= tolerance; the number of moves, or a negative status."""
+    """Newton's smallest moves until |C| <= tolerance, or rounding; the number of moves, or a negative status."""
     for move in range(most):
         values = evaluate(s, POSITION, t)
         gap = _largest(values, s.n_c)
-        if gap <= tolerance:
+        if gap <= max(tolerance, ROUNDING * _largest(s.q, s.n_q)):
             return move
         if not isfinite(gap):
             return NOT_FINITE
