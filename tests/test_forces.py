@@ -234,3 +234,14 @@ def test_a_constant_without_a_value_is_refused_by_name(formula):
     model.add("push", AppliedForce(i="ball", force=(formula, 0)))
     with pytest.raises(InputError, match=r"^push: found '.*', which has"):
         stiffmbs.run(model, duration=0.1)
+
+
+def test_a_run_that_stops_names_the_body():
+    """x'' = x^2 goes to infinity in a finite time; the other body has no part in it."""
+    model = Model()
+    model.add("idle", Body(mass=1, inertia=1))
+    model.add("runaway", Body(mass=1, inertia=1, position=(1, 0), velocity=(1, 0)))
+    model.add("push", AppliedForce(i="runaway", force=("runaway.x^2", 0)))
+    solution = stiffmbs.run(model, duration=20.0, points=21)
+    assert solution.outcome.name == "STOPPED"
+    assert "largest error was in runaway.vx" in solution.message

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.system import PLANAR
 from ..errors import AssemblyError
 from .failures import FAILURES
 from .mechanics import POSITION_TOLERANCE, Mechanics
 from .native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
 
 POSITIONS, VELOCITIES = ("x", "y", "angle"), ("vx", "vy", "omega")
+"""What a body's coordinates and velocities are called."""
 WORTH_TELLING = 1e-9
 """Moves of a coordinate (m, rad, m/s, rad/s) below this are not mentioned."""
 
@@ -75,7 +77,7 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
         raise AssemblyError(_sentence(mechanics, status, t))
     changes = ((state.q - q0, POSITIONS), (state.u - u0, VELOCITIES))
     moved = tuple(
-        (system.bodies[k // 3], labels[k % 3], float(change[k]))
+        (system.bodies[k // PLANAR], labels[k % PLANAR], float(change[k]))
         for change, labels in changes
         for k in np.flatnonzero(np.abs(change) > WORTH_TELLING)
     )

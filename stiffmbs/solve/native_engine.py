@@ -8,7 +8,9 @@ import numpy as np
 
 from ..compile.equations import Equations
 from ..compile.state import State
+from ..compile.system import PLANAR
 from .engine import Reached
+from .initial import POSITIONS, VELOCITIES
 from .sundials.ida import NativeIda
 from .sundials.status import Status
 from .trajectory import History
@@ -29,7 +31,7 @@ class NativeEngine:
         reported = np.concatenate([equations.at["q"], equations.at["u"]])
         renewal = RENEWAL if equations.n <= RENEWED_UP_TO else None
         self._ida = NativeIda(equations, state, rtol, atol, max_step=max_step, renewal=renewal, reported=reported)
-        self._width = len(reported)
+        self._width, self._equations = len(reported), equations
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
@@ -71,8 +73,19 @@ class NativeEngine:
                 self._ease_newton()
 
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
-        failure = self._ida.failure() if status is Status.FAILED else ""
+        failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
         return Reached(times, rows, self._ida.t, self._ida.y, status is Status.ROOT, failure)
+
+    def _worst(self) -> str:
+        """Where the last step's error, or the last correction of Newton's iteration, was largest; nothing where that is not known."""
+        unknown, size = self._ida.worst()
+        if not 0.0 < size < np.inf:
+            return ""
+        at, bodies = self._equations.at, self._equations.system.bodies
+        for name, labels in (("q", POSITIONS), ("u", VELOCITIES)):
+            for k in np.flatnonzero(at[name] == unknown):
+                return f"; the largest error was in {bodies[k // PLANAR]}.{labels[k % PLANAR]}"
+        return ""
 
     def statistics(self) -> dict[str, int | float]:
         """Counters since the first start."""
