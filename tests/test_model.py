@@ -82,6 +82,13 @@ def test_wrong_fields_are_refused_when_made():
         stiffmbs.run(Model())
 
 
+@pytest.mark.parametrize("given", [None, "scene.yaml", {}])
+def test_only_models_and_scenes_are_run(given):
+    for use in (stiffmbs.run, stiffmbs.check):
+        with pytest.raises(InputError, match="expected a Model, or a Scene"):
+            use(given)
+
+
 def test_unknown_channels_are_told_with_their_neighbours():
     solution = stiffmbs.run(cart_pendulum(), duration=0.01)
     with pytest.raises(InputError, match=r"rail.fz.*rail.fx"):

@@ -83,6 +83,8 @@ def prepare(model: Model | ModelData, settings: RunSettings | None = None, **cha
 def examined(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Examined:
     """Compile a model and look for redundant equations; parameters and errors as for `run`."""
     data = model.data() if isinstance(model, Model) else model
+    if not isinstance(data, ModelData):
+        raise InputError(f"found {model!r}, expected a Model, or a Scene as stiffmbs.load_scene reads it from a file")
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
     for name in chosen.give_way:
         if name not in data.joints:
