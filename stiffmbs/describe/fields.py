@@ -153,7 +153,7 @@ def _reason(fault: Any) -> str:
         case "literal_error" | "enum":
             return f"found {found!r}, expected {context['expected']}"
         case "tuple_type" | "list_type":
-            return f"found {found!r}, expected a list of numbers in brackets"
+            return f"found {found!r}, expected a list in brackets"
         case "dict_type" | "model_type" | "model_attributes_type":
             return f"found {found!r}, expected a mapping of keys to values"
         case _:
