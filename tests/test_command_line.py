@@ -117,6 +117,7 @@ BAD = {
     "rtol out of range": ("run.rtol=2", "run.rtol", "found 2"),
     "two grids": ("run.output=0.1", "run", "'points'"),
     "more output than memory": ("run.points=100000000", "1e+08 output times", "at most 1e+07"),
+    "unit meant as a request": ("requests={h: cart.x, twice: 2*h}", "requests", "'h' in '2*h'", "a unit and a request"),
     "no such place": ("bodies.cart.mass.unit=3", "bodies.cart.mass"),
     "no bodies": ("bodies={}", "bodies", "no body"),
     "reserved name": ("bodies.ground={mass: 1, inertia: 1}", "ground", "reserved"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from functools import reduce
 from operator import or_
@@ -19,6 +20,7 @@ from .forces.weight import Weight
 from .formula import UNIT
 from .formula_field import TIME, Formula, OfMotion
 from .marker import GROUND, Marker, Placement
+from .quantity import UNITS
 from .request import Request
 
 JOINTS = kinds(joints, Joint)
@@ -59,6 +61,20 @@ class ModelData(Described):
             for name in named:
                 if name in RESERVED:
                     raise ValueError(f"found the name '{name}', which is reserved, expected another")
+        return named
+
+    @field_validator("requests", mode="before")
+    @classmethod
+    def _no_unit_meant_as_a_request(cls, named: Any) -> Any:
+        if isinstance(named, dict):
+            units = "|".join(re.escape(name) for name in named if name in UNITS)
+            for text in named.values():
+                used = re.search(rf"(?<![\w.])({units})(?![\w.(])", text) if units and isinstance(text, str) else None
+                if used:
+                    name = used.group()
+                    raise ValueError(
+                        f"found '{name}' in '{text}', which is a unit and a request, expected one or the other"
+                    )
         return named
 
     @model_validator(mode="after")
