@@ -87,5 +87,6 @@ def _key(kind: Kind) -> str | None:
 def _compile_text() -> str:
     from importlib.metadata import version
 
-    files = sorted(Path(__file__).parent.glob("*.py"))
+    rooms = (Path(__file__).parent, Path(__file__).parent.parent / "describe")
+    files = [path for room in rooms for path in sorted(room.glob("*.py"))]
     return "\0".join([version("sympy"), *(path.read_text(encoding="utf-8") for path in files)])

@@ -209,3 +209,5 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
+    if job.settings.solver == "projected" and job.mechanics.system.n_values("switch"):
+        yield "projected does not locate the corners that forces have in the state (contacts, step, abs); bdf does"

@@ -24,6 +24,8 @@ ROUNDING = 9e-16
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
 """Change of the multipliers, in parts of the largest, at which they are in balance with the friction that they press."""
+ROUNDED_OFF = 1e-9
+"""Change that is taken for balance all the same when no iteration brings it further down."""
 
 
 @compiled
@@ -121,7 +123,7 @@ def to_accelerations(s, m, t):
             s.lam[k] = new
         if not iterated or change <= FRICTION_TOLERANCE * largest:
             return 0
-    return NO_BALANCE
+    return 0 if change <= ROUNDED_OFF * largest else NO_BALANCE
 
 
 def assemble(t, tolerance, most, mechanics):
