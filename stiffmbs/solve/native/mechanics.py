@@ -23,7 +23,7 @@ ROUNDING = 9e-16
 """Part of the largest coordinate that no violation can be told below: four roundings."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
-"""Change of the multipliers, in parts of the largest, at which they are in balance with the friction that they press."""
+"""Change of the multipliers, in parts of the largest of them and of the applied forces, at which they are in balance with the friction that they press."""
 ROUNDED_OFF = 1e-9
 """Change that is taken for balance all the same when no iteration brings it further down."""
 
@@ -99,6 +99,16 @@ def to_velocity_constraints(s, m, t):
 
 
 @compiled
+def _largest_force(s, e, values):
+    """The largest applied force: multipliers that vanish beside it need no digits of their own."""
+    largest = 0.0
+    for k in range(e.n_plain):
+        if e.r_row[k] < s.n_u:
+            largest = max(largest, abs(values[e.r_source[k]]))
+    return largest
+
+
+@compiled
 def to_accelerations(s, m, t):
     """Accelerations (in the factors' `b`) and multipliers (in lam) at the current state.
 
@@ -111,11 +121,12 @@ def to_accelerations(s, m, t):
         for k in range(s.n_c):
             if e.at_lam[k] >= 0:
                 f.previous[e.at_lam[k]] = s.lam[k]
-        status = _solved(s, m.accelerations, m.acceleration_factors, evaluate(s, ACCELERATION, t))
+        values = evaluate(s, ACCELERATION, t)
+        status = _solved(s, m.accelerations, m.acceleration_factors, values)
         if status < 0:
             return NO_BALANCE if iterated and status == SINGULAR else status
         change = 0.0
-        largest = 0.0
+        largest = _largest_force(s, e, values) if iterated else 0.0
         for k in range(s.n_c):
             new = f.b[e.at_lam[k]] if e.at_lam[k] >= 0 else 0.0
             change = max(change, abs(new - s.lam[k]))
