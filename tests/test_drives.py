@@ -191,3 +191,14 @@ def test_scenes_say_the_same_as_python():
         joints:
           motor: {type: drive, coordinate: wheel.angle, position: tt}
         """)
+
+
+def test_a_drive_that_jumps_in_velocity_is_told():
+    """The slope of |t - 0.5| turns round: the blow is in the velocities, and in no force."""
+    model = Model()
+    model.add("sled", Body(mass=1, inertia=1, position=(0.5, 0)))
+    model.add("rail", Prismatic(i="sled", j="ground"))
+    model.add("motor", Drive(joint="rail", position="abs(t - 0.5)"))
+    solution = stiffmbs.run(model, duration=1.0, points=11)
+    np.testing.assert_allclose(solution["sled.x"], np.abs(solution.time - 0.5), atol=1e-6)
+    assert any("t = 0.5" in note and "sled.vx by 2" in note for note in solution.notes)

@@ -59,21 +59,6 @@ def read(key: str) -> bytes | None:
     return content if hashlib.sha256(content).digest() == digest else None
 
 
-def holds(key: str) -> bool:
-    """Whether there is an entry, whole or not."""
-    return (cache_directory() / key).exists()
-
-
-def is_writable() -> bool:
-    """Whether entries can be kept."""
-    directory = cache_directory()
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return False
-    return os.access(directory, os.W_OK)
-
-
 def write(key: str, content: bytes) -> None:
     """Keep an entry; a directory that cannot be written to costs a compilation at the next run and nothing else."""
     directory = cache_directory()

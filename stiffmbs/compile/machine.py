@@ -50,17 +50,7 @@ def compiled_source(source: str, name: str, signature: str) -> Compiled:
         exec(compile(source, f"<{name}>", "exec"), namespace)  # the text is made by this package from equations
         return namespace[name]
 
-    return _loaded(source_key(source, signature), define, signature)
-
-
-def source_key(source: str, signature: str) -> str:
-    """The cache's name for a function from generated source."""
-    return store.key_of(source, _spline_text(), signature)
-
-
-def routine_key(module: str, name: str, signature: str) -> str:
-    """The cache's name for a routine."""
-    return store.key_of(_native_text(), module, name, signature)
+    return _loaded(store.key_of(source, _spline_text(), signature), define, signature)
 
 
 @cache
@@ -77,7 +67,7 @@ def compiled_routine(module: str, name: str, signature: str) -> Compiled:
         function = getattr(importlib.import_module(module), name)
         return getattr(function, "py_func", function)
 
-    return _loaded(routine_key(module, name, signature), define, signature)
+    return _loaded(store.key_of(_native_text(), module, name, signature), define, signature)
 
 
 @cache

@@ -12,7 +12,6 @@ from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
 from ..analyse.redundancy import Redundancy, examine
 from ..analyse.requests import requests
-from ..compile.ahead import compile_ahead
 from ..compile.system import System, compile_model
 from ..describe.model import Model, ModelData
 from ..describe.scene import Scene
@@ -24,7 +23,6 @@ from ..solve.explicit import ADAPTIVE
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
-from ..solve.requirements import required
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from .solution import Solution
 
@@ -92,7 +90,6 @@ def examined(model: Model | ModelData, settings: RunSettings | None = None, **ch
     order = [*(name for name in data.joints if name not in chosen.give_way), *chosen.give_way]
     grid = output_grid(chosen)
     system = compile_model(data)
-    compile_ahead(system, *required(chosen))
     return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
 
 

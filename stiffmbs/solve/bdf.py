@@ -13,7 +13,7 @@ from ..describe.settings import RunSettings
 from ..errors import SolverError
 from .engine import Engine, Reached
 from .formulations import FORMULATIONS
-from .initial import InitialValues
+from .initial import VELOCITIES, InitialValues
 from .mechanics import Mechanics
 from .native_engine import NativeEngine
 from .newton import newton_tolerance
@@ -29,6 +29,8 @@ OUT_OF_THE_ERROR_TEST = 1e15
 """Absolute tolerance of multipliers: huge, so that they count neither in the error test, where index-2 problems would
 fail, nor in Newton's convergence test, where IDA's own suppression leaves them (Andrews' mechanism then stops)."""
 
+WORTH_TELLING = 1e-2
+"""Change of a velocity at a corner, in parts of the largest, that is told."""
 MARGIN = 0.3
 """Part of the tolerance asked for that IDA is given, as the errors of many steps add up (measured with the native
 driver's settings: errors below those of IDA's own settings at the full tolerance, in less time)."""
@@ -109,10 +111,21 @@ class _Integrator:
                     return
                 t = reached.t
                 if t < grid.end:
-                    start = restarted(self.mechanics, t, *self.split(reached.y))
+                    q, u = self.split(reached.y)
+                    start = restarted(self.mechanics, t, q, u)
+                    self._tell_jump(t, start.u - u)
                     yield self._at_once(start, t, grid)
                     self._events += t < stop
                     self._corners += t >= stop
+
+    def _tell_jump(self, t: float, change: np.ndarray) -> None:
+        """Note a change of velocities at a corner that no error of the integrator explains: a drive jumped."""
+        k = int(np.argmax(np.abs(change)))
+        if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self.mechanics.state.u)))):
+            name = f"{self.mechanics.system.bodies[k // 3]}.{VELOCITIES[k % 3]}"
+            self.note = (
+                f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); no force shows that blow"
+            )
 
     def _leg(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
         """Integrate from t to `stop` or to the first event."""

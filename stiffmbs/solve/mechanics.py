@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..compile.layout import MECHANICS, packed
-from ..compile.routines import TERMS, Routine
+from ..compile.routines import Routine
 from ..compile.state import State
 from ..compile.system import System
 from .eliminated import Eliminated
@@ -23,9 +23,6 @@ OUTPUT_POINTS = Routine(
     "output_points",
     "int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
 )
-
-ROUTINES = (TERMS, ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS)
-"""What every run needs."""
 
 POSITION_TOLERANCE = 1e-12
 """Largest violation that a projection onto the positions leaves, in the equations' own units (m, rad), but for rounding."""
