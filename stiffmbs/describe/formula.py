@@ -11,11 +11,14 @@ from __future__ import annotations
 import ast
 import io
 import operator
+import re
 import tokenize
 from collections.abc import Callable, Mapping
 from typing import Any
 
 UNIT = "unit"
+_NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
+"""A number that runs into a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
 LONGEST = 2000
 DEEPEST = 60
 LARGEST_LITERAL = 1e300
@@ -59,9 +62,10 @@ def parse(text: str) -> ast.expr:
 
 def _python_spelling(text: str) -> str:
     """Rewrite ``5 N m/rad`` as ``(5*unit.N*unit.m)/rad`` and ``^`` as ``**``."""
+    spaced = _NUMBER_AND_NAME.sub(r"\1 ", text.strip().replace("^", "**"))
     tokens = [
         t.string
-        for t in tokenize.generate_tokens(io.StringIO(text.strip().replace("^", "**")).readline)
+        for t in tokenize.generate_tokens(io.StringIO(spaced).readline)
         if t.type not in (tokenize.NEWLINE, tokenize.NL, tokenize.ENDMARKER)
     ]
     words: list[str] = []
