@@ -19,7 +19,7 @@ def test_gap_of_the_pin_without_projection(scene, step, gap):
 
 @pytest.mark.parametrize(("step", "gain"), [(1e-3, 3.828), (5e-4, 1.873), (2.5e-4, 0.9265)])
 def test_energy_gained_with_projection(scene, step, gain):
-    """In percent of m g L/2, over all steps but the last, as the chapter's records end."""
+    """In percent of m g L/2, one step before the end, where the text's digits come out (at the end: 3.827, 1.873, 0.9264)."""
     solution = stiffmbs.run(scene, solver="projected", step=step, points="steps")
     total = solution["energy.total"]
     assert 100 * (total[-2] - total[0]) / (1.2 * 9.81 * 0.3) == pytest.approx(gain, abs=6e-4 if gain > 1 else 6e-5)
