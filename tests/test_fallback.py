@@ -33,3 +33,27 @@ def test_own_steps_and_early_stops_work_there_too(examples, without_libraries):
     stopped = stiffmbs.run(scene, rtol=1e-10, formulation="SI2_exact", points=101)
     assert stopped.outcome.name == "STOPPED"
     assert "t = 0.71" in stopped.message
+
+
+def test_interruption_keeps_the_rows_of_an_unfinished_block(examples, without_libraries, monkeypatch):
+    """Output times are handed over by twenties; an interruption in the middle of one loses none of them."""
+    from stiffmbs.solve.sundae import SundaeEngine
+
+    init = SundaeEngine.__init__
+
+    def interrupted(self, *arguments):
+        init(self, *arguments)
+        step, self._ida = self._ida.step, type("Interrupted", (), {"init_step": self._ida.init_step})()
+
+        def until_half_a_second(t, **options):
+            if t > 0.505:
+                raise KeyboardInterrupt
+            return step(t, **options)
+
+        self._ida.step = until_half_a_second
+
+    monkeypatch.setattr(SundaeEngine, "__init__", interrupted)
+    scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
+    solution = stiffmbs.run(scene, duration=1.0, points=101)
+    assert solution.outcome.name == "INTERRUPTED"
+    np.testing.assert_allclose(solution.time, np.arange(51) / 100, atol=1e-12)

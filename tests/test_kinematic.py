@@ -149,3 +149,16 @@ run: {{duration: 4, points: 41, solver: kinematic}}
     between = np.abs(solution.time - np.round(solution.time)) > 0.01
     rates = np.diff(way)[np.minimum(solution.time.astype(int), 3)]
     np.testing.assert_allclose(solution["sled.vx"][between], rates[between], atol=1e-14)
+
+
+def test_a_drive_without_a_value_is_not_called_a_dead_centre():
+    """sqrt(1 - t) has no real value after 1 s; times zero it changes nothing before."""
+    model = Model()
+    model.add("sled", Body(mass=1, inertia=1))
+    model.add("rail", Prismatic(i="sled", j="ground"))
+    model.add("motor", ConstraintEquation(zero="sled.x - t - 0*sqrt(1 - t)"))
+    solution = stiffmbs.run(model, duration=2.0, points=21, solver="kinematic")
+    assert solution.outcome.name == "STOPPED"
+    assert "locks" not in solution.message
+    assert "finite" in solution.message
+    assert solution.time[-1] <= 1.0

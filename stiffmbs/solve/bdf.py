@@ -78,18 +78,18 @@ class _Integrator:
 
     def _engine(self) -> Engine:
         """The native driver where SUNDIALS' libraries are as it needs them, else scikit-sundae's callbacks."""
-        state, limits = self.mechanics.state, (*self._tolerances(), self.settings.max_step)
+        state, longest = self.mechanics.state, self.settings.max_step
         native, reason = available()
         if native:
-            return NativeEngine(self.equations, state, *limits)
+            return NativeEngine(self.equations, state, *self._tolerances(MARGIN), longest)
         self.note = f"IDA runs through scikit-sundae's callbacks, which is slower: {reason}"
-        return SundaeEngine(self.equations, state, *limits)
+        return SundaeEngine(self.equations, state, *self._tolerances(1.0), longest)
 
-    def _tolerances(self) -> tuple[float, np.ndarray]:
+    def _tolerances(self, margin: float) -> tuple[float, np.ndarray]:
         """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts those in the error test."""
         at, system = self.equations.at, self.mechanics.system
         tested = self.equations.formulation.tested
-        correction = MARGIN * np.sqrt(self.equations.n / sum(len(at[name]) for name in tested))
+        correction = margin * np.sqrt(self.equations.n / sum(len(at[name]) for name in tested))
         atol = np.full(self.equations.n, OUT_OF_THE_ERROR_TEST)
         for name in tested:
             atol[at[name]] = absolute_tolerances(system, self.settings)

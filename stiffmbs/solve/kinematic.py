@@ -9,8 +9,10 @@ import numpy as np
 from ..compile.corners import corner_times
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
+from .failures import FAILURES
 from .initial import InitialValues
 from .mechanics import Mechanics
+from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 LARGEST_SURPRISE = 0.05
@@ -78,6 +80,7 @@ class _Motion:
     def __init__(self, mechanics: Mechanics, start: InitialValues, t: float, shortest: float) -> None:
         self._mechanics, self._shortest = mechanics, shortest
         self.t, self.steps, self.moves = t, 0, 0
+        self._status = 0
         self.q, self.u, self.a = start.q, start.u, start.acceleration
         state = mechanics.state
         state.q[:], state.u[:] = start.q, start.u
@@ -95,16 +98,16 @@ class _Motion:
             elif h > self._shortest:
                 h /= 2
             else:
-                raise SolverError(self._locked())
+                raise SolverError(self._stuck())
 
     def go_past(self, corner: float) -> None:
         """Follow the motion to just before a corner, and take velocities and accelerations anew just behind it."""
         self.go_to(corner - self._shortest)
         state, t = self._mechanics.state, corner + self._shortest
         state.q[:], state.u[:] = self.q, self.u
-        failed = self._mechanics.assemble(t, most=MOST_MOVES) < 0 or self._mechanics.correct_velocities(t) < 0
-        if failed or not self._take(t):
-            raise SolverError(self._locked())
+        self._status = min(self._mechanics.assemble(t, most=MOST_MOVES), 0) or self._mechanics.correct_velocities(t)
+        if self._status < 0 or not self._take(t):
+            raise SolverError(self._stuck())
 
     def _step(self, t: float, h: float) -> bool:
         """Try one step; whether positions and velocities came out near their prediction."""
@@ -112,7 +115,11 @@ class _Motion:
         predicted_q, predicted_u = self.q + h * self.u + h * h / 2 * self.a, self.u + h * self.a
         state.q[:], state.u[:] = predicted_q, predicted_u
         moves = mechanics.assemble(t, most=MOST_MOVES)
-        if moves < 0 or not self._near(state.q, predicted_q, h) or mechanics.correct_velocities(t) < 0:
+        self._status = min(moves, 0)
+        if moves < 0 or not self._near(state.q, predicted_q, h):
+            return False
+        self._status = mechanics.correct_velocities(t)
+        if self._status < 0:
             return False
         size = max(np.linalg.norm(self.u), np.linalg.norm(state.u))
         if np.linalg.norm(state.u - predicted_u) > LARGEST_TURN * size + 1e-9:
@@ -126,10 +133,10 @@ class _Motion:
         """Make the state at hand, with its accelerations, the one that is reached; whether it has them."""
         state = self._mechanics.state
         self._polish(t)
-        status, acceleration = self._mechanics.accelerate(t)
-        if status == 0:
+        self._status, acceleration = self._mechanics.accelerate(t)
+        if self._status == 0:
             self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration
-        return status == 0
+        return self._status == 0
 
     def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
         own = np.linalg.norm(h * self.u) + np.linalg.norm(h * h / 2 * self.a)
@@ -139,6 +146,12 @@ class _Motion:
         """Take positions to rounding, by two more moves whether they get there or not, and velocities with them."""
         self._mechanics.assemble(t, tolerance=0.0, most=2)
         self._mechanics.correct_velocities(t)
+
+    def _stuck(self) -> str:
+        """Why even the shortest step fails: the mechanism locks, unless the last try failed for a reason of its own."""
+        if self._status in (NOT_FINITE, NO_BALANCE, NO_ROOM):
+            return f"stopped after t = {self.t:.9g} s: {FAILURES[self._status]}"
+        return self._locked()
 
     def _locked(self) -> str:
         system, state = self._mechanics.system, self._mechanics.state

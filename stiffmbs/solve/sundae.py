@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ SWITCHES = Routine(_MODULE, "switches", "void(float64, int64, int64, int64, int6
 HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
 """Numbers before the first time in the history (as in `stiffmbs.solve.native.ida_callbacks`), and times kept."""
 MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
+TOGETHER = 20
+"""Output times that are handed over together, as a handing over costs more than a step."""
 ROOT_FOUND = 2
 """IDA's status for a step that ended at a root."""
 
@@ -126,6 +129,7 @@ class SundaeEngine:
             )  # fmt: skip
         self._before = {"residuals": 0, "jacobians": 0}
         self._since = {"residuals": 0, "jacobians": 0}
+        self._interrupted = False
 
     def _sparse(self) -> dict[str, Any]:
         from scipy.sparse import csc_matrix
@@ -139,16 +143,35 @@ class SundaeEngine:
         for name, count in self._since.items():
             self._before[name] += count
         self.callbacks.begin(t)
-        self._ida.init_step(t, y, yp)
+        self._last = self._ida.init_step(t, y, yp)
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
-        asked_for = np.append(times, stop) if len(times) == 0 or times[-1] < stop else times
-        for k, time in enumerate(asked_for):
-            reached = self._reached(self._ida.step(time, method="normal", tstop=stop), k < len(times))
+        ends_there = len(times) > 0 and times[-1] == stop
+        for first in range(0, len(times), TOGETHER):
+            reached = self._several(times[first : first + TOGETHER], stop)
             yield reached
+            if self._interrupted:
+                raise KeyboardInterrupt
             if reached.at_event or reached.failure:
                 return
+        if not ends_there:
+            yield self._reached(self._ida.step(stop, method="normal", tstop=stop), False)
+
+    def _several(self, times: np.ndarray, stop: float) -> Reached:
+        """Integrate to the last of a few output times; to what ends it before."""
+        rows, served = np.empty((len(times), len(self._reported))), 0
+        last = self._last
+        try:
+            for time in times:
+                last = self._ida.step(time, method="normal", tstop=stop)
+                if last.status < 0 or last.status == ROOT_FOUND:
+                    break
+                rows[served] = last.y[self._reported]
+                served += 1
+        except KeyboardInterrupt:  # what was computed is handed over first
+            self._interrupted = True
+        return replace(self._reached(last, False), times=times[:served], rows=rows[:served])
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
