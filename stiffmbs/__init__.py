@@ -4,7 +4,8 @@ Examples
 --------
 >>> import stiffmbs
 >>> solution = stiffmbs.run(stiffmbs.load_scene("examples/cart_pendulum.yaml"), rtol=1e-8)
->>> solution["rail.fy"].max()
+>>> print(f"the rail carries {solution['rail.fy'].max():.1f} N at most")
+the rail carries 108.8 N at most
 """
 
 from typing import Any
@@ -24,7 +25,7 @@ _ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES
 
 __all__ = [
     "AssemblyError", "Body", "InputError", "Marker", "Model", "RunSettings", "SolverError", "StiffmbsError",
-    "check", "compile_model", "ground", "load_scene", "read_scene", "run", "scene_schema", *_ELEMENTS,
+    "check", "compile_model", "ground", "load_scene", "read_scene", "run", "scene_schema", "verify", *_ELEMENTS,
 ]  # fmt: skip
 
 
@@ -45,12 +46,16 @@ def __getattr__(name: str) -> Any:
         from .show.run import run
 
         return run
+    if name == "verify":
+        from .show.verify import verify
+
+        return verify
     if name == "check":
         from .show.check import check
 
         return check
     if name == "compile_model":
-        from .compile.system import compile_model
+        from .compile.compile_model import compile_model
 
         return compile_model
     raise AttributeError(f"module 'stiffmbs' has no attribute '{name}'")

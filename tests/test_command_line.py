@@ -1,7 +1,9 @@
 """The command as its users run it: summary, JSON, files, and one sentence for every mistake."""
 
 import csv
+import errno
 import json
+import os
 import subprocess
 import sys
 
@@ -58,6 +60,20 @@ def test_json_is_one_object_on_one_line(in_folder):
                  "energy.kinetic", "energy.potential", "energy.total", "constraint.position", "constraint.velocity"):  # fmt: skip
         assert name in report["channels"]
     assert sorted(path.name for path in in_folder.iterdir()) == ["scene.yaml"]
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected", "auto"])
+def test_json_of_a_run_with_corners_and_events(in_folder, solver):
+    forces = (
+        "forces:\n  push: {type: force, i: cart, force: ['step(t, 0.05, 0, 0.1, 1)', 0]}\n"
+        "  stop: {type: contact, i: bar, j: {body: ground, point: [0, -0.05]}, radius: 0.01, stiffness: 1e5}\n"
+    )
+    (in_folder / "scene.yaml").write_text(SCENE.replace("run:", f"{forces}run:"))
+    result = stiffmbs("run", "scene.yaml", "--json", "--solver", solver, "--set", "run.scheme=dop853")
+    assert result.exit_code == 0, result.output
+    counted = json.loads(result.output)["solver"]
+    assert counted["corners"] == 2
+    assert counted["events"] > 0
 
 
 def test_files_hold_every_channel(in_folder):
@@ -186,6 +202,18 @@ def test_output_that_could_not_be_written_is_refused_before_solving(in_folder):
         result = stiffmbs("run", "scene.yaml", "-o", name)
         assert result.exit_code == 2
         assert_one_sentence(result)
+
+
+def test_files_that_are_missing_in_the_end_show_in_the_exit_status(in_folder, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    asked = stiffmbs("run", "scene.yaml", "-o", "out.csv")
+    assert asked.exit_code == 1
+    assert "not written: out.csv: No space left on device" in asked.output
+    assert stiffmbs("run", "scene.yaml").exit_code == 0
+    assert sorted(path.name for path in in_folder.iterdir()) == ["scene.yaml"]
 
 
 def test_json_also_reports_wrong_input(in_folder):

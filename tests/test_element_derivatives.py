@@ -10,10 +10,17 @@ from stiffmbs.compile.terms import TERM_AXES
 from stiffmbs.describe.element import Joint
 from stiffmbs.solve.formulations import FORMULATIONS
 
-from .random_parts import CASES, add_joints, random_element, refers_to_joints, three_bodies
+from .random_parts import (
+    CASES,
+    add_joints,
+    random_element,
+    refers_to_joints,
+    three_bodies,
+    three_bodies_in_space,
+)
 
 T = 0.37
-STEP = 1e-2
+STEP = 5e-3
 WEIGHTS = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}  # eighth order, centred
 TOLERANCE = 1e-8
 
@@ -44,12 +51,17 @@ def assert_close(found, expected):
     assert np.max(np.abs(found - expected), initial=0) <= TOLERANCE * max(1, np.max(np.abs(expected), initial=0))
 
 
-@pytest.fixture(params=CASES, ids=lambda case: "-".join([case[0].kind, *(f"no_{name}" for name in case[1])]))
+def case_name(case):
+    dimensions, kind, left_out = case
+    return "-".join([*(["space"] if dimensions == 3 else []), kind.kind, *(f"no_{name}" for name in left_out)])
+
+
+@pytest.fixture(params=CASES, ids=case_name)
 def state(request):
     rng = np.random.default_rng(7)
-    model = three_bodies(rng)
-    kind, left_out = request.param
-    element = random_element(kind, rng, left_out)
+    dimensions, kind, left_out = request.param
+    model = three_bodies(rng) if dimensions == 2 else three_bodies_in_space(rng)
+    element = random_element(kind, rng, left_out, dimensions)
     if refers_to_joints(element):
         add_joints(model)
     model.add("element", element)
@@ -58,6 +70,16 @@ def state(request):
     state.mu[:] = rng.uniform(-1, 1, len(state.mu))
     state.is_joint = issubclass(kind, Joint)
     return state
+
+
+def rates(state):
+    """The rates of the coordinates; counters of turns rest, on which nothing depends."""
+    return state.system.of_body.position_rates(state.q, state.u)
+
+
+def rates_of_each_velocity(state):
+    """Z of q' = Z u: in space quaternions have rates of their own."""
+    return np.stack([state.system.of_body.position_rates(state.q, one) for one in np.eye(len(state.u))], axis=-1)
 
 
 def term(state, term_set, name, t=T):
@@ -75,13 +97,17 @@ def test_constraints_and_their_jacobian(state):
 def test_velocity_level_is_the_rate_of_the_position_level(state):
     partial = time_derivative(lambda t: term(state, "motion", "C", t))
     holonomic = state.system.holonomic
-    assert_close(term(state, "motion", "V")[holonomic], (term(state, "motion", "C_q") @ state.u + partial)[holonomic])
+    assert_close(
+        term(state, "motion", "V")[holonomic], (term(state, "motion", "C_q") @ rates(state) + partial)[holonomic]
+    )
+    Z = rates_of_each_velocity(state)
+    assert_close(term(state, "motion", "J")[holonomic], (term(state, "motion", "C_q") @ Z)[holonomic])
     assert_close(term(state, "motion", "J"), derivative(lambda: term(state, "motion", "V"), state.u))
     assert_close(term(state, "tangent", "V_q"), derivative(lambda: term(state, "motion", "V"), state.q))
 
 
 def test_gamma_is_minus_the_rate_of_the_velocity_level_without_accelerations(state):
-    along = derivative(lambda: term(state, "motion", "V"), state.q) @ state.u
+    along = derivative(lambda: term(state, "motion", "V"), state.q) @ rates(state)
     partial = time_derivative(lambda t: term(state, "motion", "V", t))
     assert_close(term(state, "acceleration", "gamma"), -(along + partial))
 
@@ -116,7 +142,15 @@ def test_a_potential_gives_the_force_at_rest(state):
 
     if len(source) == len(system.bodies):
         pytest.skip("this force has no potential")
-    assert_close(term(state, "motion", "f"), -derivative(potential, state.q)[0])
+    assert_close(term(state, "motion", "f"), -derivative(potential, state.q)[0] @ rates_of_each_velocity(state))
+
+
+def test_counters_have_the_rates_of_their_angles(state):
+    if not state.system.n_counters:
+        return
+    turning = derivative(lambda: term(state, "position", "counted"), state.q) @ rates(state)
+    assert_close(term(state, "acceleration", "counting"), turning)
+    assert np.any(turning)
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS.values(), ids=FORMULATIONS.keys())
@@ -128,6 +162,7 @@ def test_iteration_matrix_of_every_formulation(state, formulation):
     equations = Equations(formulation(RunSettings(stabilisation=2.0)), state.system)
     state.relax(rng.uniform(0.1, 1, state.system.n_c), rng.uniform(0.1, 1, state.system.n_c))
     y, yp = rng.uniform(-1, 1, equations.n), rng.uniform(-1, 1, equations.n)
+    y[equations.at["q"]] = state.q + rng.uniform(-0.1, 0.1, len(state.q))
     callbacks = Callbacks(equations, state)
     cj = 3.7
 

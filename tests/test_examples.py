@@ -8,6 +8,7 @@ import stiffmbs
 from .conftest import EXAMPLES
 
 SCENES = sorted(EXAMPLES.glob("*.yaml"))
+OVERCONSTRAINED = ("bricard", "door")
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
@@ -15,9 +16,10 @@ def test_scene_runs_and_has_what_its_figure_shows(path):
     scene = stiffmbs.load_scene(path)
     solution = stiffmbs.run(scene, duration=min(scene.run.duration, 0.2))
     assert solution.outcome.name == "DONE", solution.message
-    assert solution.not_unique == ()
+    assert (solution.not_unique != ()) == (path.stem in OVERCONSTRAINED)
     if scene.figure:
-        for channel in (*scene.figure.y, *([] if scene.figure.x == "time" else [scene.figure.x])):
+        shown = (*scene.figure.y, *([] if scene.figure.x == "time" else [scene.figure.x]))
+        for channel in (*shown, *([scene.figure.z] if scene.figure.z else [])):
             assert np.all(np.isfinite(solution[channel]))
 
 
@@ -68,7 +70,7 @@ def test_a_follower_lifts_off_only_when_the_cam_is_fast(solved):
     fast, slow = solved("cam_follower"), solved("cam_follower", ("rate", "20 rad/s"))
     assert fast["gap"].max() > 1e-4
     assert slow["gap"].max() < 1e-6
-    assert slow["touch.fy"].max() < 0
+    assert slow["touch.fy"][1:].max() < 0  # at the start they touch without force
 
 
 def test_a_crank_is_carried_through_its_dead_centres(solved):

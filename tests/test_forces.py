@@ -179,7 +179,7 @@ REFUSED = [
     (TorsionSpring, {"stiffness": "3 N/m"}, "stiffness: found '3 N/m', .* expected a torsional stiffness in N m/rad"),
     (TorsionSpring, {"damping": "3 N s/m"}, "damping: found '3 N s/m', .* expected a torsional damping"),
     (Bushing, {"stiffness": 5}, "stiffness: found 5, expected a list"),
-    (Bushing, {"stiffness": [1, 2]}, "stiffness.2: found nothing"),
+    (Bushing, {"stiffness": [1, 2]}, "stiffness: found 2 entries, expected 3, or 3 rows"),
     (Bushing, {"stiffness": [1, 2, "3 N"]}, "stiffness.2.2: found '3 N', .* expected a torsional stiffness"),
     (Bushing, {"damping": [[1, 0, 0], [0, 1, "1 N"], [0, 0, 1]]}, "damping.1.2: found '1 N', .* in N s/rad"),
     (Bushing, {"stiffness": [[1, 2, 0], [3, 1, 0], [0, 0, 1]]}, "found 2 in row 1, column 2 and 3 across .* symmetric"),
@@ -245,3 +245,16 @@ def test_a_run_that_stops_names_the_body():
     solution = stiffmbs.run(model, duration=20.0, points=21)
     assert solution.outcome.name == "STOPPED"
     assert "largest error was in runaway.vx" in solution.message
+
+
+@pytest.mark.parametrize("fields", [{"free_length": 1.0}, {"preload": 5.0}])
+def test_a_spring_between_points_at_one_place_is_refused(fields):
+    model = Model()
+    model.add("mass", Body(mass=1, inertia=1))
+    model.add("spring", SpringDamper(i="mass", j="ground", stiffness=10.0, **fields))
+    with pytest.raises(InputError, match=r"forces.spring: found both of its points at one place.*expected them apart"):
+        stiffmbs.run(model, duration=0.1)
+    without = Model()
+    without.add("mass", Body(mass=1, inertia=1))
+    without.add("spring", SpringDamper(i="mass", j="ground", stiffness=10.0))
+    assert stiffmbs.run(without, duration=0.1)["mass.x"][-1] == 0

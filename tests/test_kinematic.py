@@ -120,7 +120,7 @@ def test_freedoms_are_refused():
     model = Model()
     model.add("a", Body(mass=1, inertia=1))
     model.add("rail", Prismatic(i="a", j="ground"))
-    with pytest.raises(InputError, match=r"2 independent position equations for 3 coordinates"):
+    with pytest.raises(InputError, match=r"2 independent position equations for 3 freedoms"):
         stiffmbs.run(model, solver="kinematic")
 
 

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import Body, Model
+from stiffmbs.stress.random_tree import random_tree
 
-from .random_parts import random_element, random_tree, three_bodies
+from .random_parts import random_element, three_bodies
 
 SEEDS = st.integers(0, 2**32 - 1)
 FEW = settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)

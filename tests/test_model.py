@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs import Body, InputError, Model, Prismatic, Revolute, SpringDamper
-from stiffmbs.compile import cache, machine, record
+from stiffmbs import Body, InputError, Marker, Model, Prismatic, Revolute, SpringDamper
+from stiffmbs.compile import machine, record
 
 
 def cart_pendulum():
@@ -119,7 +119,7 @@ def test_dense_and_sparse_solvers_agree_on_a_chain(count, monkeypatch):
     np.testing.assert_allclose(other[f"link{count}.x"], chosen[f"link{count}.x"], atol=1e-6)
 
 
-ROOMS = ("describe", "compile", "solve", "analyse", "show", "bench")
+ROOMS = ("describe", "compile", "solve", "analyse", "show", "bench", "stress")
 PACKAGE = Path(stiffmbs.__file__).parent
 
 
@@ -137,27 +137,41 @@ def test_a_room_imports_from_rooms_to_its_left_alone(path):
         assert set(names) <= allowed, f"{path.name} imports from {names}"
 
 
-def test_cache_survives_damage(tmp_path, monkeypatch):
-    """Half-written and foreign entries are made again; a folder that cannot be written costs nothing but time."""
-    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(tmp_path))
-    cache.write("key", b"content")
-    assert cache.read("key") == b"content"
-    entry = tmp_path / "key"
-    whole = entry.read_bytes()
-    for damaged in (whole[:-1], b"", whole[:20], whole[:-1] + b"x"):
-        entry.write_bytes(damaged)
-        assert cache.read("key") is None
-    assert [path.name for path in tmp_path.iterdir()] == ["key"]
-    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, "/dev/null/nowhere")
-    cache.write("key", b"content")
-    assert cache.read("key") is None
+def test_numbers_without_names_are_refused():
+    with pytest.raises(
+        InputError, match=r"^Body: found 1, 2.5 without a name, expected names of fields: mass=..., inertia="
+    ):
+        Body(1, 2.5)
 
 
-def test_compiled_code_is_read_back_from_the_cache(tmp_path, monkeypatch):
-    source = "def twice(x):\n    return 2.0*x\n"
-    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(tmp_path))
-    assert machine.compiled_source(source, "twice", "float64(float64)").call(21.0) == 42.0
-    machine.compiled_source.cache_clear()
-    monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
-    assert machine.compiled_source(source, "twice", "float64(float64)").call(21.0) == 42.0
-    assert len(list(tmp_path.iterdir())) == 1
+def test_points_of_ground_have_names_too():
+    """A pendulum on a named point of ground, which a measure names as well, hangs where one without names does."""
+    text = """
+gravity: [0, -9.81]
+{markers}
+bodies:
+  bar: {{mass: 1, inertia: 0.03, position: [1.3, 2], markers: {{end: {{point: [-0.3, 0]}}}}}}
+joints:
+  hinge: {{type: revolute, i: bar.end, j: {pivot}}}
+requests: {{way: "dm(bar, {measured})"}}
+run: {{duration: 1, rtol: 1e-9}}
+"""
+    named = text.format(markers="markers: {pivot: {point: [1, 2]}}", pivot="ground.pivot", measured="ground.pivot")
+    plain = text.format(markers="", pivot="{body: ground, point: [1, 2]}", measured="bar.end")
+    found, expected = (stiffmbs.run(stiffmbs.read_scene(scene)) for scene in (named, plain))
+    np.testing.assert_allclose(found["bar.y"], expected["bar.y"], atol=1e-12)
+    np.testing.assert_allclose(found["way"], 0.3, atol=1e-8)
+    with pytest.raises(InputError, match=r"found 'ground.axle', expected one of its markers \(pivot\)"):
+        stiffmbs.read_scene(named.replace("j: ground.pivot", "j: ground.axle"))
+
+
+def test_a_point_of_ground_is_named_in_python():
+    model = Model("Pendulum", gravity=(0, -9.81))
+    model.add("bar", Body(mass=1, inertia=0.03, position=(0.3, 1)))
+    model.mark("pivot", Marker(body="ground", point=(0, 1)))
+    model.add("hinge", Revolute(i=Marker(body="bar", point=(-0.3, 0)), j="ground.pivot"))
+    assert stiffmbs.check(model).degrees_of_freedom == 1
+    with pytest.raises(InputError, match="pivot: found a name that is taken"):
+        model.mark("pivot", Marker(body="ground", point=(0, 2)))
+    with pytest.raises(InputError, match=r"axle: found .* expected a marker with a point on ground"):
+        model.mark("axle", Marker(body="bar"))

@@ -15,9 +15,13 @@ from stiffmbs import AppliedForce, Body, Contact, Model, Revolute
 from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.state import State
 from stiffmbs.show.run import prepare
+from stiffmbs.solve.elimination_order import elimination_order
 from stiffmbs.solve.formulations.si2 import SI2_EXACT
-from stiffmbs.solve.sundae import SundaeEngine
-from stiffmbs.solve.sundials import libraries
+from stiffmbs.solve.newton import Stiffness
+from stiffmbs.solve.sundae import DENSE_UP_TO, SundaeEngine
+from stiffmbs.solve.sundials import choice, libraries, operations
+from stiffmbs.solve.sundials.choice import chosen
+from stiffmbs.solve.sundials.fixed_order import FixedOrder
 from stiffmbs.solve.sundials.ida import NativeIda
 from stiffmbs.solve.sundials.matrices import Banded, Dense, Sparse
 from stiffmbs.solve.sundials.ordering import narrowed
@@ -40,7 +44,10 @@ class Problem:
         self.yp[at["q"]], self.yp[at["u"]] = start.u, start.acceleration
 
     def native(self, **options):
-        return NativeIda(self.equations, State(self.system), self.rtol, self.atol, **options)
+        kind = Dense if self.equations.n <= DENSE_UP_TO else Sparse
+        matrix = options.pop("matrix", kind(self.equations.n, *self.equations.pattern))
+        atol = options.pop("atol", self.atol)
+        return NativeIda(self.equations, State(self.system), matrix, self.rtol, atol, **options)
 
     def through(self, ida, times, first_step=0.0):
         """Begin, and report at the times, however many calls that takes."""
@@ -54,7 +61,7 @@ class Problem:
 
     def through_scikit_sundae(self, times):
         ida = SundaeEngine(self.equations, State(self.system), self.rtol, self.atol, max_step=0.0)
-        ida.begin(0.0, self.y, self.yp, newton=0.33)
+        ida.begin(0.0, self.y, self.yp, newton=0.33, stiffness=Stiffness(0.0, 0.0))
         blocks = [(reached.rows.copy(), reached.y.copy()) for reached in ida.to_times(times, times[-1])]
         return np.concatenate([rows for rows, _ in blocks]), blocks[-1][1], ida
 
@@ -62,6 +69,11 @@ class Problem:
 @pytest.fixture(scope="module")
 def pendulum(examples):
     return Problem(stiffmbs.load_scene(examples / "cart_pendulum.yaml"), rtol=1e-8)
+
+
+@pytest.fixture(scope="module")
+def squeezer(examples):
+    return Problem(stiffmbs.load_scene(examples / "andrews.yaml"))
 
 
 def hanging_chain():
@@ -88,43 +100,99 @@ def ball():
     return Problem(model, rtol=1e-8)
 
 
-@pytest.mark.parametrize("name", ["pendulum", "chain"])  # a dense and a sparse matrix
-def test_the_steps_are_those_of_scikit_sundae(name, request):
-    problem, times = request.getfixturevalue(name), np.linspace(0, 2, 101)[1:]
+@pytest.mark.parametrize(
+    ("name", "end"), [("pendulum", 2.0), ("chain", 2.0), ("squeezer", 0.03)]
+)  # dense, sparse, dense
+def test_the_steps_are_those_of_scikit_sundae(name, end, request):
+    problem, times = request.getfixturevalue(name), np.linspace(0, end, 101)[1:]
     native = problem.native()
     rows, status = problem.through(native, times)
     expected, at_end, sundae = problem.through_scikit_sundae(times)
     at = problem.equations.at
     assert status is Status.STOP
     counted = native.statistics()
-    assert {key: counted[key] for key in sundae.statistics()} == sundae.statistics()
+    expected_counts = {key: count for key, count in sundae.statistics().items() if key != "linear_solver"}
+    assert {key: counted[key] for key in expected_counts} == expected_counts
     np.testing.assert_array_equal(native.history.t, sundae.history().t)
     np.testing.assert_allclose(rows[:, np.concatenate([at["q"], at["u"]])], expected, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(rows[-1], at_end, rtol=1e-12, atol=1e-12)  # multipliers too
 
 
-@pytest.mark.parametrize("kind", [Dense, Banded, Sparse])
+def in_fixed_order(equations):
+    return FixedOrder(equations.n, *equations.pattern, elimination_order(equations))
+
+
+@pytest.mark.parametrize("kind", ["banded", "SuperLU_MT", "fixed order"])
 def test_all_matrices_give_the_same_motion(chain, kind):
-    n, pattern = chain.equations.n, chain.equations.pattern
+    equations = chain.equations
+    n, pattern = equations.n, equations.pattern
+    matrix = {
+        "banded": Banded(n, *pattern),
+        "SuperLU_MT": Sparse(n, *pattern),
+        "fixed order": in_fixed_order(equations),
+    }
+    assert matrix[kind].sentence().startswith(kind)
     times = np.array([0.2, 0.4])
-    rows, status = chain.through(chain.native(matrix=kind(n, *pattern)), times)
-    expected, _ = chain.through(chain.native(), times)
+    rows, status = chain.through(chain.native(matrix=matrix[kind]), times)
+    expected, _ = chain.through(chain.native(matrix=Dense(n, *pattern)), times)
     assert status is Status.STOP
-    at = np.concatenate([chain.equations.at["q"], chain.equations.at["u"]])
+    at = np.concatenate([equations.at["q"], equations.at["u"]])
     np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-7)
 
 
-def test_the_unknowns_of_a_chain_are_brought_into_a_band(chain, pendulum):
+def test_a_band_is_found_in_a_chain(chain):
     ordered = Problem(hanging_chain(), order=narrowed)
-    ida, times = ordered.native(), np.array([0.2, 0.4])
-    assert isinstance(ida.matrix, Banded)
-    assert ida.matrix.lower == ida.matrix.upper == 10
+    band = Banded(ordered.equations.n, *ordered.equations.pattern)
+    assert band.lower == band.upper == 10
+    ida, times = ordered.native(matrix=band), np.array([0.2, 0.4])
     rows, _ = ordered.through(ida, times)
     expected, _ = chain.through(chain.native(), times)
     for unknown in ("q", "u"):
         at, natural = ordered.equations.at[unknown], chain.equations.at[unknown]
         np.testing.assert_allclose(rows[:, at], expected[:, natural], atol=1e-5)
-    assert narrowed(pendulum.equations) is pendulum.equations
+
+
+def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, monkeypatch):
+    assert isinstance(chosen(chain.equations)[1], FixedOrder)
+    monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
+    _, matrix = chosen(chain.equations)
+    assert isinstance(matrix, Banded)
+    assert (matrix.rows.size, matrix.lower) == (chain.equations.pattern[0].size, 10)
+    assert isinstance(chosen(squeezer.equations)[1], Dense)
+
+
+def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
+    def missing():
+        raise libraries.Unavailable("no SuperLU_MT")
+
+    monkeypatch.setattr(choice, "superlu_cost", lambda *_: 0.0)
+    assert isinstance(chosen(chain.equations)[1], Sparse)
+    monkeypatch.setattr("stiffmbs.solve.sundials.matrices.sparse_libraries", missing)
+    assert isinstance(chosen(chain.equations)[1], FixedOrder)
+
+
+def test_pivots_are_sought_anew_where_they_have_become_small(chain):
+    """The order found far from the start, where the matrix is another one, serves all the same."""
+    ida = chain.native(matrix=in_fixed_order(chain.equations))
+    for scale in (1e-6, 1e6):  # cj is the inverse of the step: from 1e6 to 1 and back
+        ida.begin(0.0, chain.y, chain.yp, first_step=1e-6 * scale)
+        _, status = ida.advance(np.array([0.1]), 0.1, np.empty((1, chain.equations.n)))
+        assert status is not Status.FAILED
+    rows, _ = chain.through(ida, np.array([0.4]))
+    expected, _ = chain.through(chain.native(), np.array([0.4]))
+    at = np.concatenate([chain.equations.at["q"], chain.equations.at["u"]])
+    np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-6)
+
+
+def test_other_layouts_of_linear_solvers_are_noticed(monkeypatch):
+    found = libraries.ida_libraries()
+    operations.replaceable.cache_clear()
+    assert operations.replaceable(found)
+    monkeypatch.setattr(operations, "LONGEST", 1)
+    operations.replaceable.cache_clear()
+    assert not operations.replaceable(found)
+    monkeypatch.undo()
+    operations.replaceable.cache_clear()
 
 
 def test_history_tells_time_order_and_size_of_each_step(pendulum):
@@ -190,7 +258,7 @@ def test_suppressed_multipliers_are_out_of_the_error_test_alone(pendulum, cart_p
     steps, at = {}, pendulum.equations.at["q"]
     for name, suppressed in (("huge tolerance", None), ("suppressed", pendulum.multipliers)):
         atol = pendulum.atol if suppressed is None else np.full(pendulum.equations.n, pendulum.rtol)
-        ida = NativeIda(pendulum.equations, State(pendulum.system), pendulum.rtol, atol, suppressed=suppressed)
+        ida = pendulum.native(atol=atol, suppressed=suppressed)
         rows, status = pendulum.through(ida, times)
         assert status is Status.STOP
         np.testing.assert_allclose(rows[:, at[0]], cart_pendulum_reference(times)[0], atol=2e-6)
@@ -203,7 +271,7 @@ def test_the_worst_unknown_is_the_one_with_the_tightest_tolerance(pendulum):
     atol = np.full(pendulum.equations.n, 1e15)
     speed = pendulum.equations.at["u"][5]
     atol[speed] = 1e-8
-    ida = NativeIda(pendulum.equations, State(pendulum.system), 1e-8, atol)
+    ida = pendulum.native(atol=atol)
     pendulum.through(ida, np.array([0.5]))
     assert ida.worst()[0] == speed
     assert 0 < ida.worst()[1] < np.sqrt(len(atol))
@@ -318,7 +386,7 @@ def test_closing_twice_and_failing_at_the_start_are_harmless(pendulum):
     del ida
     assert alive() is None
     with pytest.raises(ValueError, match=r"atol: found shape \(3,\), expected \(20,\)"):
-        NativeIda(pendulum.equations, State(pendulum.system), 1e-6, np.ones(3))
+        pendulum.native(atol=np.ones(3))
     with pytest.raises(ValueError, match="invalid argument"):
         pendulum.native(max_order=9)
 

@@ -19,12 +19,19 @@ def environment(cache):
     return {**os.environ, "STIFFMBS_CACHE": str(cache)}
 
 
+def _heed_interrupts():
+    """Children of a process that ignores interrupts, as those that run tests in parallel do, would ignore them too."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_interruption_keeps_what_was_computed(examples, tmp_path, solver):
     scene, results = examples / "cart_pendulum.yaml", tmp_path / "out.npz"
     stiffmbs.run(stiffmbs.load_scene(scene), duration=0.01, solver=solver)  # compiled before
     options = ["--duration", "100000", "--solver", solver, "--set", "run.output=0.1", "--json", "-o", str(results)]
-    process = subprocess.Popen([*COMMAND, str(scene), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        [*COMMAND, str(scene), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_heed_interrupts
+    )
     time.sleep(3)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)

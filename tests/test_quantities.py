@@ -116,3 +116,9 @@ def test_arithmetic_is_pythons(text):
     except ZeroDivisionError:
         return
     assert quantity(text).value == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("found", [1e300, -1e101, "1e99*1e99"])
+def test_numbers_whose_products_overflow_are_refused(found):
+    with pytest.raises(FormulaError, match=r"expected a length below 1e\+100 m"):
+        in_si(found, "length")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.system import System
+from ..solve.storage import blocks, release, room
 
 
 def kinetic_energy(system: System, u: np.ndarray) -> np.ndarray:
@@ -14,7 +15,11 @@ def kinetic_energy(system: System, u: np.ndarray) -> np.ndarray:
     ----------
     u : ndarray, shape (n, n_u)
     """
-    return 0.5 * (u * u) @ system.mass
+    energy = room(len(u))
+    for block in blocks(len(u)):
+        energy[block] = 0.5 * u[block] ** 2 @ system.mass
+        release(u)
+    return energy
 
 
 def potential_energy(system: System, values: np.ndarray) -> np.ndarray:
@@ -25,4 +30,8 @@ def potential_energy(system: System, values: np.ndarray) -> np.ndarray:
     values : ndarray, shape (n, values)
         Values of the output terms, one row per instant.
     """
-    return values[:, system.term("output", "potential").source].sum(axis=1)
+    energy, source = room(len(values)), system.term("output", "potential").source
+    for block in blocks(len(values)):
+        energy[block] = values[block][:, source].sum(axis=1)
+        release(values)
+    return energy

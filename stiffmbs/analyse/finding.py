@@ -73,8 +73,8 @@ def finding_of(loop: Loop, state: State, start: float, duration: float, order: S
         None where all equations are independent, or not defined (the search for initial values names the element).
     """
     equations = LoopEquations(loop, state, start)
-    pose = equations.pose(state.system.q[loop.columns], start)
-    if not (np.all(np.isfinite(pose.J)) and np.all(np.isfinite(pose.C))):
+    pose = equations.pose(state.system.q[loop.coordinates], start)
+    if not (pose.J.finite and np.all(np.isfinite(pose.C))):
         return None
     rank = loop_rank(equations, pose.q, start)
     if not rank.null_spaces:

@@ -1,17 +1,19 @@
-"""The equations of one loop as small dense matrices, without units, and its assembly where they are redundant."""
+"""The equations of one loop, without units, and its assembly where they are redundant."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..compile.state import State
-from ..compile.system import PLANAR
+from .entries import Entries
 from .loops import Loop
 
 CLOSED = 1e-11
 """Largest violation, in parts of the loop's size, of a pose that counts as assembled."""
+AGREES = 1e-6
+"""The same, where equations are redundant and given by some digits only."""
 MOST_STEPS = 40
 """Steps of an assembly; where equations agree a few are enough."""
 LONGEST_STEP = 1.0
@@ -31,15 +33,15 @@ class Pose:
     Attributes
     ----------
     q : ndarray
-        Coordinates of the loop's bodies, m and rad.
+        Coordinates of the loop's bodies, m and rad (quaternions).
     t : float
         s.
     gap : float
         Largest violation of the positions.
     C : ndarray, shape (n,)
         Violations.
-    C_q, J : ndarrays, shape (n, 3 bodies)
-        Derivatives of the positions, and of the velocity level.
+    C_q, J : Entries, shape (n, velocities)
+        Derivatives of the positions by moves, and of the velocity level.
     rates : ndarray, shape (n,)
         J u + C_t at u = 0, 1/s.
     """
@@ -48,8 +50,8 @@ class Pose:
     t: float
     gap: float
     C: np.ndarray
-    C_q: np.ndarray
-    J: np.ndarray
+    C_q: Entries
+    J: Entries
     rates: np.ndarray
 
 
@@ -78,37 +80,44 @@ class LoopEquations:
         self._row_at, self._column_at = np.full(system.n_c, -1), np.full(system.n_u, -1)
         self._row_at[loop.rows] = np.arange(len(loop.rows))
         self._column_at[loop.columns] = np.arange(len(loop.columns))
-        self._entries = {name: self._places(name) for name in ("C", "V", "C_q", "J")}
+        self._vectors = {name: self._places(name) for name in ("C", "V")}
+        self._pattern = self._pattern_of_J()
+        self._holonomic = system.holonomic[loop.rows]
         state.evaluate("motion", t)
-        J = self._matrix("J")
-        self.length = _root_mean_square_arm(J, system.size)
-        self._column_scale = np.tile([self.length, self.length, 1.0], len(loop.bodies))
+        J = self._J()
+        turning = system.per_velocity(0.0, 1.0)[loop.columns] > 0
+        self.length = _root_mean_square_arm(J, turning, system.size)
+        self._column_scale = np.where(turning, 1.0, self.length)
         self.row_scale = np.ones(len(loop.rows))
-        self.scale_rows([J * self._column_scale])
+        self.scale_rows([J.scaled(self.row_scale, self._column_scale)])
 
-    def scale_rows(self, matrices: list[np.ndarray]) -> None:
+    def scale_rows(self, matrices: list[Entries]) -> None:
         """Scale rows so that the longest form that each takes in matrices scaled so far has length one."""
-        norms = np.max([np.linalg.norm(J, axis=1) for J in matrices], axis=0)
+        norms = np.max([J.norms() for J in matrices], axis=0)
         self.row_scale /= np.maximum(norms, LEAST_NORM * np.median(norms) or 1.0)
 
     def pose(self, q: np.ndarray, t: float) -> Pose:
         """The equations at given coordinates of the loop's bodies."""
         state, rows = self.state, self.row_scale
-        state.q[self.loop.columns] = q
+        state.q[self.loop.coordinates] = q
         state.u[self.loop.columns] = 0.0
         state.evaluate("motion", t)
         C = rows * self._vector("C")
-        with np.errstate(invalid="ignore"):  # where equations are not defined; the caller looks for finite numbers
-            C_q, J = (rows[:, None] * self._matrix(name) * self._column_scale for name in ("C_q", "J"))
+        J = self._J().scaled(rows, self._column_scale)
+        C_q = J if self._holonomic.all() else J.scaled(1.0 * self._holonomic, np.ones(J.shape[1]))
         return Pose(q, t, float(np.abs(C).max()), C, C_q, J, rows * self._vector("V"))
 
     def moved(self, q: np.ndarray, move: np.ndarray) -> np.ndarray:
         """Coordinates after a move without units."""
-        return q + self._column_scale * move
+        return self.state.system.of_body.moved(q, self._column_scale * move)
+
+    def velocities(self, rates: np.ndarray) -> np.ndarray:
+        """Velocities of the loop's bodies from such without units of length."""
+        return self._column_scale * rates
 
     def distance(self, a: Pose, b: Pose) -> float:
         """Length of the move between two poses, without units."""
-        return float(np.linalg.norm((a.q - b.q) / self._column_scale))
+        return float(np.linalg.norm(self.state.system.of_body.move(a.q, b.q) / self._column_scale))
 
     def assembled(self, q: np.ndarray, t: float, kept: np.ndarray | None = None) -> Pose:
         """The pose nearby where the equations hold, or come closest to holding.
@@ -125,19 +134,20 @@ class LoopEquations:
         pose = self.pose(q, t)
         closed = False  # one step more once closed, not more: where C_q is singular they would creep towards that pose
         for _ in range(MOST_STEPS):
-            C, C_q = pose.C[rows], pose.C_q[rows]
-            if closed or not np.all(np.isfinite(C_q)) or not np.any(C):
+            C, C_q = pose.C[rows], pose.C_q if kept is None else pose.C_q.of_rows(rows)
+            if closed or not C_q.finite or not np.any(C):
                 break
             closed = bool(np.abs(C).max() < CLOSED)
-            slope = C_q.T @ C
+            slope = C_q.transposed_times(C)
             if not closed and np.linalg.norm(slope) < STATIONARY * np.linalg.norm(C):
                 break
             damping = max(float(C @ C), LEAST_DAMPING)
-            step = -C_q.T @ np.linalg.solve(C_q @ C_q.T + damping * np.eye(len(C)), C)
+            step = -C_q.transposed_times(C_q.solved_gram(damping, C))
             length = float(np.linalg.norm(step))
             pose = self.pose(self.moved(pose.q, step * min(1.0, LONGEST_STEP / max(length, 1e-300))), t)
             if length < 1e-14 * len(C):
                 break
+        self.state.count_anew(t)
         return pose
 
     def _places(self, name: str) -> tuple[np.ndarray, ...]:
@@ -146,23 +156,28 @@ class LoopEquations:
         inside = self._row_at[term.row] >= 0
         return term.source[inside], self._row_at[term.row[inside]], self._column_at[term.column[inside]]
 
-    def _matrix(self, name: str) -> np.ndarray:
-        source, row, column = self._entries[name]
-        result = np.zeros((len(self.loop.rows), len(self.loop.columns)))
-        np.add.at(result, (row, column), self.state.values["motion"][source])
-        return result
+    def _pattern_of_J(self) -> tuple[np.ndarray, np.ndarray, Entries]:
+        """Sources of the entries of J, the place to which each adds, and the places."""
+        source, row, column = self._places("J")
+        width = len(self.loop.columns)
+        places, add_to = np.unique(row * width + column, return_inverse=True)
+        shape = (len(self.loop.rows), width)
+        return source, add_to, Entries(places // width, places % width, np.zeros(len(places)), shape)
+
+    def _J(self) -> Entries:
+        source, add_to, entries = self._pattern
+        return replace(entries, value=np.bincount(add_to, self.state.values["motion"][source], len(entries.value)))
 
     def _vector(self, name: str) -> np.ndarray:
-        source, row, _ = self._entries[name]
+        source, row, _ = self._vectors[name]
         result = np.zeros(len(self.loop.rows))
         result[row] = self.state.values["motion"][source]
         return result
 
 
-def _root_mean_square_arm(J: np.ndarray, size: float) -> float:
-    """Of the rows that hold points: the part in angular velocities over that in velocities, m."""
-    turning = np.arange(J.shape[1]) % PLANAR == PLANAR - 1
-    along, about = (np.linalg.norm(J[:, part], axis=1) for part in (~turning, turning))
+def _root_mean_square_arm(J: Entries, turning: np.ndarray, size: float) -> float:
+    """Of the rows that hold points: the part in angular velocities (`turning`) over that in velocities, m."""
+    along, about = (J.of_columns(part).norms() for part in (~turning, turning))
     of_points = along * size > 1e-6 * about
     arms = about[of_points] / along[of_points]
     return float(np.sqrt(np.mean(arms**2))) if np.any(arms > 0) else size

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .loop_equations import CLOSED, LoopEquations, Pose
+from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
 
 SOUND = 1e-5
 """Least singular value of the scaled J above which the equations are independent beyond doubt."""
 DEPENDENT = 1e-8
 """Singular values of the scaled J below this, at poses away from singular ones, belong to redundant equations."""
+BY_GAP = 30.0
+"""Singular values below so many gaps do so too, where equations agree to some digits only."""
 UNCLEAR = 1e-9, 1e-5
 """A pose with singular values between these, near a singular one by chance, is not asked where others are clear."""
 SINGULAR = 1e-5
@@ -70,17 +72,18 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     """
     start = equations.assembled(q, t)
     count = len(start.C)
-    if _surely_independent(start.J):
+    if start.J.singular_values_above(SOUND):
         return LoopRank(equations, start, count, count, SOUND, [])
     others = list(_perturbed(equations, start))
     poses = [start, *others]
     before = equations.row_scale.copy()
     equations.scale_rows([pose.J for pose in poses])
     rescaled = (equations.row_scale / before)[:, None]
-    decomposed = [_left_singular(rescaled * pose.J) for pose in poses]
+    decomposed = [_left_singular(rescaled * pose.J.dense()) for pose in poses]
     values = [s for s, _ in decomposed]
-    asked = _clear(values[1:]) or values[1:] or values
-    rank = max(int(np.sum(s > DEPENDENT)) for s in asked)
+    gap = start.gap if CLOSED < start.gap <= AGREES else 0.0
+    asked = (values[1:] if gap else _clear(values[1:])) or values[1:] or values
+    rank = max(int(np.sum(s > max(DEPENDENT, BY_GAP * gap))) for s in asked)
     least = max(float(s[rank - 1]) for s in asked) if rank else 0.0
     start_rank = int(np.sum(values[0][:rank] > SINGULAR * least))
     general = [k for k, s in enumerate(values) if _is_general(s, rank, least, k == 0 or any(s is own for own in asked))]
@@ -113,27 +116,14 @@ def _is_general(values: np.ndarray, rank: int, least: float, asked: bool) -> boo
     return asked and int(np.sum(values > SINGULAR * least)) == rank
 
 
-def _surely_independent(J: np.ndarray) -> bool:
-    """Whether every singular value is above `SOUND`: J J^T - SOUND^2 I is positive definite."""
-    if len(J) > J.shape[1]:
-        return False
-    gram = J @ J.T
-    gram[np.diag_indices_from(gram)] -= SOUND**2
-    try:
-        np.linalg.cholesky(gram)
-    except np.linalg.LinAlgError:
-        return False
-    return True
-
-
 def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:
     """Assembled poses near the start; smaller moves where larger ones cannot be assembled."""
     rng = np.random.default_rng(1)
     size, found = PERTURBATION, 0
-    for _ in range(POSES + SHRINKS if start.gap <= CLOSED else POSES):
-        move = size * rng.uniform(-1, 1, len(start.q))
+    for _ in range(POSES + SHRINKS if start.gap <= AGREES else POSES):
+        move = size * rng.uniform(-1, 1, len(equations.loop.columns))
         pose = equations.assembled(equations.moved(start.q, move), start.t)
-        if np.all(np.isfinite(pose.J)) and pose.gap <= max(CLOSED, 2 * start.gap):
+        if pose.J.finite and pose.gap <= max(CLOSED, 2 * start.gap):
             yield pose
             found += 1
             if found == POSES:

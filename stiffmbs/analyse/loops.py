@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.state import State
-from ..compile.system import PLANAR, Group, System
+from ..compile.system import Group, System
 from ..compile.terms import TERM_SETS
 from ..describe.element import Element
 
@@ -43,14 +43,15 @@ class Loop:
     joints : tuple of LoopJoint
     bodies : tuple of int
         Their numbers in the system.
-    rows, columns : ndarrays of int
-        The joints' equations and the bodies' coordinates in the whole.
+    rows, columns, coordinates : ndarrays of int
+        The joints' equations, and the bodies' velocities and coordinates, in the whole.
     """
 
     joints: tuple[LoopJoint, ...]
     bodies: tuple[int, ...]
     rows: np.ndarray
     columns: np.ndarray
+    coordinates: np.ndarray
 
 
 def loops(system: System, state: State, t: float) -> list[Loop]:
@@ -84,7 +85,7 @@ def loops(system: System, state: State, t: float) -> list[Loop]:
                 joints_of[other].discard(k)
                 if len(joints_of[other]) == 1:
                     leaves.append(other)
-    return list(_connected([joint for joint, _ in joints], joints_of))
+    return list(_connected(system, [joint for joint, _ in joints], joints_of))
 
 
 def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tuple[LoopJoint, set[int]]]:
@@ -95,23 +96,23 @@ def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tupl
     row, column = np.array(group.record.patterns["J"], dtype=np.int64).reshape(-1, 2).T
     first = system.places["motion"][g, 1 + TERM_SETS["motion"].index("J")]
     values = state.values["motion"][first : first + group.count * len(row)].reshape(group.count, len(row))
-    J = np.zeros((group.count, count, PLANAR * group.kind.n_bodies))
-    J[:, row, column] = values
-    J[:, :, PLANAR - 1 :: PLANAR] /= system.size
-    norms = np.linalg.norm(J, axis=2, keepdims=True)
+    width, straight = system.of_body.n_u, system.of_body.linear
+    J = np.zeros((group.count, count, group.kind.n_bodies, width))
+    J[:, row, column // width, column % width] = values
+    J[..., straight:] /= system.size
+    norms = np.linalg.norm(J, axis=(2, 3), keepdims=True)
     with np.errstate(invalid="ignore"):  # a joint that is not defined at this pose holds nothing for sure
         J /= np.where(norms > 0, norms, 1.0)
-        parts = J.reshape(group.count, count, group.kind.n_bodies, PLANAR).transpose(0, 2, 1, 3)
+        parts = J.transpose(0, 2, 1, 3)
         independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > FULL_RANK
-    numbers = group.index[:, : 2 * group.kind.n_bodies : 2] // PLANAR
     for e, name in enumerate(group.names):
-        on = [int(body) for body in numbers[e]]
+        on = [int(body) for body in group.bodies[e]]
         rows = group.first_row + e * count + np.arange(count)
         held = {body for body, alone in zip(on, independent[e], strict=True) if alone}
         yield LoopJoint(name, group.elements[e], rows, tuple(b for b in on if b < len(system.bodies))), held
 
 
-def _connected(joints: list[LoopJoint], joints_of: list[set[int]]) -> Iterator[Loop]:
+def _connected(system: System, joints: list[LoopJoint], joints_of: list[set[int]]) -> Iterator[Loop]:
     """The joints that are left, in parts that share no body."""
     seen: set[int] = set()
     for start, around in enumerate(joints_of):
@@ -126,5 +127,8 @@ def _connected(joints: list[LoopJoint], joints_of: list[set[int]]) -> Iterator[L
                 open_bodies += new
         seen |= bodies
         inside, numbers = tuple(joints[k] for k in sorted(members)), tuple(sorted(bodies))
-        columns = PLANAR * np.array(numbers)[:, None] + np.arange(PLANAR)
-        yield Loop(inside, numbers, np.concatenate([joint.rows for joint in inside]), columns.ravel())
+        columns, coordinates = (
+            (width * np.array(numbers)[:, None] + np.arange(width)).ravel()
+            for width in (system.of_body.n_u, system.of_body.n_q)
+        )
+        yield Loop(inside, numbers, np.concatenate([joint.rows for joint in inside]), columns, coordinates)

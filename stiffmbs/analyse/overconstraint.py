@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -10,12 +9,13 @@ import numpy as np
 
 from ..compile.system import System
 from ..describe.element import JointName
-from ..describe.marker import Marker
+from ..describe.marker import MarkerReference
 from .finding import LoopFinding
 from .give_way import TAKES_PART, Redundant
 from .loops import LoopJoint
 from .redundancy import Redundancy
-from .uniqueness import Undetermined
+from .replacements import Choice, replacements
+from .uniqueness import Undetermined, undetermined
 
 MOST_NAMES = 6
 
@@ -32,8 +32,12 @@ class Overconstraint:
         Joint and name of the equations that give way.
     undetermined : tuple of Undetermined
         The reactions that have no unique value because of it.
+    shared : bool
+        Whether all hold the same bodies against each other, so that what they carry together is unique.
     remedies : tuple of tuple of str
         Joints that would have to be left out or made elastic, all of one tuple together, for every reaction to be unique.
+    replacements : tuple of tuple of (str, str)
+        Joints and the kinds that would let go of just what is held too often: each that does alone, or a few together.
     reason, remedy : str
         Each a sentence without a full stop.
     """
@@ -41,26 +45,19 @@ class Overconstraint:
     joints: tuple[str, ...]
     redundant: tuple[tuple[str, str], ...]
     undetermined: tuple[Undetermined, ...]
+    shared: bool
     remedies: tuple[tuple[str, ...], ...]
+    replacements: tuple[Choice, ...]
     reason: str
     remedy: str
 
 
 def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
     """What is held more than once in a system, independent cases apart."""
-    for finding in redundancy.findings:
-        for block in _blocks(finding):
-            yield _overconstraint(redundancy.system, finding, block)
-
-
-def directions(parts: Sequence[Undetermined]) -> str:
-    """The directions in which forces are undetermined, in words; empty where they have none that stays."""
-    found = [
-        f"of {part.element} at {math.degrees(part.direction):.4g} deg of {part.axes}"
-        for part in parts
-        if part.axes is not None and part.direction is not None
-    ]
-    return f"forces only in the directions {listed(found)}, across them they are unique" if found else ""
+    blocks = [(finding, block) for finding in redundancy.findings for block in _blocks(finding)]
+    what = "all reactions" if len(blocks) == 1 else "these reactions"
+    for finding, block in blocks:
+        yield _overconstraint(redundancy.system, finding, block, what)
 
 
 def listed(names: Sequence[str]) -> str:
@@ -75,30 +72,45 @@ def _blocks(finding: LoopFinding) -> list[list[Redundant]]:
     joint_of = [joint.name for joint in finding.rank.equations.loop.joints for _ in joint.rows]
     blocks: list[tuple[set[int], list[Redundant]]] = []
     for part in finding.redundant:
-        rows, members = {part.row, *part.others}, [part]
-        joints = {joint_of[row] for row in rows}
-        for other in [block for block in blocks if block[0] & rows or {joint_of[row] for row in block[0]} == joints]:
+        blocks.append(({part.row, *part.others}, [part]))
+        while other := _alike(blocks, joint_of):
             blocks.remove(other)
-            rows, members = rows | other[0], [*other[1], *members]
-        blocks.append((rows, members))
+            rows, members = blocks.pop()
+            blocks.append((rows | other[0], [*other[1], *members]))
     return [members for _, members in blocks]
 
 
-def _overconstraint(system: System, finding: LoopFinding, block: list[Redundant]) -> Overconstraint:
+def _alike(
+    blocks: list[tuple[set[int], list[Redundant]]], joint_of: list[str]
+) -> tuple[set[int], list[Redundant]] | None:
+    """A block that belongs together with the last one."""
+    *others, (rows, _) = blocks
+    joints = {joint_of[row] for row in rows}
+    return next((o for o in others if o[0] & rows or {joint_of[row] for row in o[0]} == joints), None)
+
+
+def _overconstraint(system: System, finding: LoopFinding, block: list[Redundant], what: str) -> Overconstraint:
+    """What is said of one block; `what` becomes unique by a remedy."""
     loop = finding.rank.equations.loop
     joint_of = [joint for joint in loop.joints for _ in joint.rows]
     rows = sorted({row for part in block for row in (part.row, *part.others)})
     joints = list({joint_of[row].name: joint_of[row] for row in rows}.values())
     driven = list(dict.fromkeys(joint_of[row].name for row in rows if finding.driven[row]))
-    names = {joint.name for joint in loop.joints} - {joint.name for joint in joints}
-    remedies = list(_remedies(finding, block, joints))
+    names = {joint.name for joint in joints}
+    spaces = [(pose, _of_block(finding, space, block)) for pose, space in finding.rank.null_spaces]
+    remedies = list(_remedies(finding, spaces[-1][1], joints))
+    chosen = replacements(finding.rank.equations, spaces, joints) if system.of_body.dimensions == 3 else []
+    parts = undetermined(finding.rank, spaces)
+    channels = {name for part in finding.undetermined if part.element in names for name in part.channels}
     return Overconstraint(
         joints=tuple(joint.name for joint in joints),
-        redundant=tuple(sorted(system.equations[loop.rows[part.row]] for part in block)),
-        undetermined=tuple(part for part in finding.undetermined if part.element not in names),
+        redundant=tuple(system.equations[row] for row in sorted(loop.rows[part.row] for part in block)),
+        undetermined=tuple(parts),
+        shared=_between_the_same(joints) and {name for part in parts for name in part.channels} == channels,
         remedies=tuple(tuple(joint.name for joint in some) for some in remedies),
+        replacements=tuple(chosen),
         reason=_reason(system, joints, driven, len(block)),
-        remedy=_remedy(remedies),
+        remedy=_remedy(remedies, chosen, what),
     )
 
 
@@ -110,25 +122,35 @@ def _reason(system: System, joints: list[LoopJoint], driven: list[str], count: i
         return f"over-driven: {listed(driven)} prescribe the same motion of {held} ({equations})"
     if driven:
         return f"over-driven: {driven[0]} prescribes a motion of {held} that other joints hold already ({equations})"
-    if all(set(joint.bodies) == set(joints[0].bodies) for joint in joints):
+    if _between_the_same(joints):
         against = " against each other" if len(bodies) > 1 else ""
         return f"{held} {'are' if against else 'is'} guided twice{against}: {listed(names)} hold the same ({equations})"
     return f"{held} form loops that hold themselves: {listed(names)} close them more often than needed ({equations})"
 
 
-def _remedies(finding: LoopFinding, block: list[Redundant], joints: list[LoopJoint]) -> Iterator[tuple[LoopJoint, ...]]:
-    """Each joint that alone would settle it; where there is none, a few that do together."""
+def _between_the_same(joints: list[LoopJoint]) -> bool:
+    """Whether joints hold the same bodies against each other."""
+    return all(set(joint.bodies) == set(joints[0].bodies) for joint in joints)
+
+
+def _of_block(finding: LoopFinding, space: np.ndarray, block: list[Redundant]) -> np.ndarray:
+    """The null vectors that belong to redundant equations, one for each."""
     chosen = [finding.redundant.index(part) for part in block]
-    space = finding.rank.null_spaces[-1][1]
-    space = (space @ np.linalg.inv(space[[part.row for part in finding.redundant]]))[:, chosen]
+    one_each: np.ndarray = space @ np.linalg.inv(space[[part.row for part in finding.redundant]])
+    return one_each[:, chosen]
+
+
+def _remedies(finding: LoopFinding, space: np.ndarray, joints: list[LoopJoint]) -> Iterator[tuple[LoopJoint, ...]]:
+    """Each joint that alone would settle it; where there is none, a few that do together."""
+    count = space.shape[1]
     first = {joint.name: row for row, joint in _first_rows(finding)}
     own = [np.arange(first[joint.name], first[joint.name] + len(joint.rows)) for joint in joints]
-    alone = [joint for joint, rows in zip(joints, own, strict=True) if _rank(space[rows]) == len(block)]
+    alone = [joint for joint, rows in zip(joints, own, strict=True) if _rank(space[rows]) == count]
     if alone:
         yield from ((joint,) for joint in alone)
         return
     together: list[int] = []
-    while (reached := _rank(space[_stacked(own, together)])) < len(block):
+    while (reached := _rank(space[_stacked(own, together)])) < count:
         gains = [_rank(space[_stacked(own, [*together, k])]) - reached for k in range(len(joints))]
         together.append(max(range(len(joints)), key=lambda k: (gains[k], _elastic(joints[k]), k)))
     yield tuple(joints[k] for k in together)
@@ -150,14 +172,31 @@ def _rank(rows: np.ndarray) -> int:
     return int(np.sum(values > TAKES_PART)) if values.size else 0
 
 
-def _remedy(remedies: list[tuple[LoopJoint, ...]]) -> str:
+def _remedy(remedies: list[tuple[LoopJoint, ...]], chosen: list[Choice], what: str) -> str:
+    ways = list(_replaced(chosen))
     if len(remedies) == 1 and len(remedies[0]) > 1:
-        return f"bushings in place of {listed([joint.name for joint in remedies[0]])} make all reactions unique"
+        ways.append(f"bushings in place of {listed([joint.name for joint in remedies[0]])}")
+        return f"{', or '.join(ways)} make {what} unique"
     elastic = [joint.name for (joint,) in remedies if _elastic(joint)]
     others = [joint.name for (joint,) in remedies if not _elastic(joint)]
     choices = (("a bushing in place of", elastic), ("leaving out", others))
-    ways = [f"{way} {_one_of(names)}" for way, names in choices if names]
-    return f"{' or '.join(ways)} makes all reactions unique"
+    ways += [f"{way} {_one_of(names)}" for way, names in choices if names]
+    return f"{', or '.join(ways)} makes {what} unique"
+
+
+def _replaced(chosen: list[Choice]) -> Iterator[str]:
+    """The joints and their other kinds in words, those of one kind together."""
+    if chosen and len(chosen[0]) > 1:
+        yield listed([f"{_a(kind)} in place of {joint}" for joint, kind in chosen[0]])
+        return
+    kinds: dict[str, list[str]] = {}
+    for ((joint, kind),) in chosen:
+        kinds.setdefault(kind, []).append(joint)
+    yield from (f"{_a(kind)} in place of {_one_of(joints)}" for kind, joints in kinds.items())
+
+
+def _a(kind: str) -> str:
+    return f"a{'n' if kind[0] in 'aeio' else ''} {kind} joint"
 
 
 def _one_of(names: Sequence[str]) -> str:
@@ -166,4 +205,4 @@ def _one_of(names: Sequence[str]) -> str:
 
 def _elastic(joint: LoopJoint) -> bool:
     """Whether a bushing can take the joint's place: it holds two markers."""
-    return len(list(joint.element.parts(Marker))) == 2 and not next(joint.element.parts(JointName), None)
+    return len(list(joint.element.parts(MarkerReference))) == 2 and not next(joint.element.parts(JointName), None)

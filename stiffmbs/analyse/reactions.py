@@ -7,8 +7,6 @@ import numpy as np
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 
-COMPONENTS = ("fx", "fy", "torque")
-
 
 def reactions(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
     """What each joint and force element does to its first body.
@@ -27,14 +25,15 @@ def reactions(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
     """
     at = 1 + TERM_SETS["output"].index("reaction")
     found: dict[str, np.ndarray] = {}
+    components = system.of_body.reactions
     for g, group in enumerate(system.groups):
         if not group.kind.element.kind:
             continue
         pattern = group.record.patterns["reaction"]
         first = system.places["output"][g, at]
         for e, name in enumerate(group.names):
-            for component in COMPONENTS:
+            for component in components:
                 found[f"{name}.{component}"] = np.zeros(len(values))
             for k, (row, _) in enumerate(pattern):
-                found[f"{name}.{COMPONENTS[row]}"] = values[:, first + e * len(pattern) + k]
+                found[f"{name}.{components[row]}"] = values[:, first + e * len(pattern) + k]
     return found

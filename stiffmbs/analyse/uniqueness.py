@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..compile.system import PLANAR, System
+from .directions import Direction, directions
 from .loop_equations import LoopEquations, Pose
 from .loop_rank import LoopRank
 from .reactions import reactions
 
 CHANGES = 1e-6
 """Change of a reaction, in parts of the largest, from which on it is not unique."""
-SAME_DIRECTION = 1e-5
-"""Angle, rad, and part of a force across it, up to which a direction counts as the same."""
+TORQUES = ("torque", "tx", "ty", "tz")
 SPEED = 1.0
 """Velocity (arms and rad per second) at which forces that hang on reactions are looked at: friction has none at rest."""
 
@@ -29,17 +27,13 @@ class Undetermined:
     element : str
     channels : tuple of str
         Components in ground axes, such as ``hinge.fx``.
-    axes : str or None
-        Where the undetermined force always has one direction: whose axes keep it (a body, or ``ground``); the force
-        across that direction is unique.
-    direction : float or None
-        Its angle in those axes, rad, in [0, pi).
+    directions : tuple of Direction
+        Where the undetermined force always lies, and in space the torque; what is at right angles to that is unique.
     """
 
     element: str
     channels: tuple[str, ...]
-    axes: str | None = None
-    direction: float | None = None
+    directions: tuple[Direction, ...] = ()
 
 
 def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> list[Undetermined]:
@@ -56,14 +50,14 @@ def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) ->
     along it.  What changes at one of the poses is not unique as a history.
     """
     equations = found.equations
-    system, changes = equations.state.system, [_changes(equations, pose, space) for pose, space in null_spaces]
+    changes = [changes_of(equations, pose, space) for pose, space in null_spaces]
     names = [name for name in changes[0] if any(np.abs(change[name]).max() > CHANGES for change in changes)]
     owners = dict.fromkeys(name.partition(".")[0] for name in names)
     poses = [pose for pose, _ in null_spaces]
     return [
         Undetermined(
             owner, tuple(name for name in names if name.partition(".")[0] == owner),
-            *_direction(system, equations, poses, changes, owner),
+            tuple(directions(equations, poses, changes, owner, CHANGES)),
         )
         for owner in owners
     ]  # fmt: skip
@@ -76,7 +70,8 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
     for pose, space in null_spaces:
         _place(equations, pose)
         rng = np.random.default_rng(1)
-        state.u[equations.loop.columns] = equations.moved(0.0 * pose.q, SPEED * rng.uniform(-1, 1, len(pose.q)))
+        columns = equations.loop.columns
+        state.u[columns] = equations.velocities(SPEED * rng.uniform(-1, 1, len(columns)))
         for lam in (*_multipliers(equations, space).T, *-_multipliers(equations, space).T):
             at_zero, loaded = (_force(equations, part * lam, pose.t) for part in (0.0, 1.0))
             if np.abs(loaded - at_zero).max() > CHANGES:
@@ -84,7 +79,7 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
     return False
 
 
-def _changes(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[str, np.ndarray]:
+def changes_of(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[str, np.ndarray]:
     """For each channel its change along each null vector, scaled so that the largest is one; torques by arms."""
     state = equations.state
     _place(equations, pose)
@@ -95,7 +90,7 @@ def _changes(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[st
         rows.append(state.values["output"].copy())
     state.lam[:] = 0.0
     found = {
-        name: (values[1:] - values[0]) / (equations.length if name.endswith(".torque") else 1.0)
+        name: (values[1:] - values[0]) / (equations.length if name.partition(".")[2] in TORQUES else 1.0)
         for name, values in reactions(state.system, np.array(rows)).items()
     }
     largest = np.max([np.abs(change) for change in found.values()], axis=0)
@@ -103,7 +98,7 @@ def _changes(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[st
 
 
 def _place(equations: LoopEquations, pose: Pose) -> None:
-    equations.state.q[equations.loop.columns] = pose.q
+    equations.state.q[equations.loop.coordinates] = pose.q
     equations.state.u[equations.loop.columns] = 0.0
 
 
@@ -118,25 +113,3 @@ def _force(equations: LoopEquations, lam: np.ndarray, t: float) -> np.ndarray:
     state.evaluate("acceleration", t)
     state.lam[:] = 0.0
     return state.vector("acceleration", "f")
-
-
-def _direction(
-    system: System, equations: LoopEquations, poses: list[Pose], changes: Sequence[Mapping[str, np.ndarray]], owner: str
-) -> tuple[str | None, float | None]:
-    """In whose axes the undetermined force of an element has one direction at every pose, and which."""
-    angles = []
-    for change in changes:
-        force = np.array([change[f"{owner}.fx"], change[f"{owner}.fy"]])
-        axes, sizes, _ = np.linalg.svd(force, full_matrices=False)
-        if sizes[0] <= CHANGES or sizes[1:].sum() > SAME_DIRECTION * sizes[0]:
-            return None, None
-        angles.append(np.arctan2(axes[1, 0], axes[0, 0]))
-    turned = {"ground": np.zeros(len(poses))}
-    for body in next((joint.bodies for joint in equations.loop.joints if joint.name == owner), ()):
-        at = PLANAR * equations.loop.bodies.index(body) + PLANAR - 1
-        turned[system.bodies[body]] = np.array([pose.q[at] for pose in poses])
-    for name, turn in turned.items():
-        relative = np.array(angles) - turn
-        if np.abs(np.sin(relative - relative[0])).max() < SAME_DIRECTION:
-            return name, round(float((relative[0] + SAME_DIRECTION) % np.pi - SAME_DIRECTION), 9) + 0.0
-    return None, None

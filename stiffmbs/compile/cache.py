@@ -1,7 +1,8 @@
 """What was derived and compiled, kept on disk: written once per source and machine, read back without a compiler.
 
 An entry is one file: a digest, then the content.  It is written beside its place and moved there in one step, so
-that a crash or a second process can leave no half of it; what does not match its digest is made again.
+that a crash or a second process can leave no half of it; what does not match its digest is made again.  Entries of
+one version of the package on one kind of machine share a directory of their own.
 """
 
 from __future__ import annotations
@@ -12,9 +13,13 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-FORMAT = "3"
+FORMAT = "5"
 """Changed whenever the meaning of an entry's content changes."""
 DIRECTORY_VARIABLE = "STIFFMBS_CACHE"
+RECORD, KERNEL, ROUTINE = "record", "kernel", "routine"
+"""Kinds of entries: what was derived of a kind of element, its machine code, and that of solvers."""
+PART = ".part-"
+"""How the name of a file begins that is still being written."""
 
 
 def cache_directory() -> Path:
@@ -27,50 +32,60 @@ def cache_directory() -> Path:
     return user_cache_path("stiffmbs", appauthor=False)
 
 
+def own_directory() -> Path:
+    """The entries of this version of the package on this machine."""
+    return cache_directory() / f"entries-{_own_tag()}"
+
+
 @cache
-def machine_tag() -> str:
-    """What an entry depends on besides its source: processor, LLVM and the versions that make it."""
+def _own_tag() -> str:
+    """A name for what all entries depend on besides their sources: the package, processor and LLVM."""
     from importlib.metadata import version
 
     import llvmlite.binding as llvm
 
     parts = (
+        FORMAT,
+        version("stiffmbs"),
         llvm.get_process_triple(),
         llvm.get_host_cpu_name(),
         llvm.get_host_cpu_features().flatten(),
-        version("numba"),
         version("llvmlite"),
     )
-    return "\n".join(parts)
+    return _digest(*parts)[:12]
 
 
-def key_of(*parts: str) -> str:
+def name_of(kind: str, *parts: str) -> str:
     """The name of the entry for a source."""
-    return hashlib.sha256("\0".join((FORMAT, *parts, machine_tag())).encode()).hexdigest()[:40]
+    return f"{kind}-{_digest(*parts)}"
 
 
-def read(key: str) -> bytes | None:
+def _digest(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:40]
+
+
+def read(name: str) -> bytes | None:
     """The content of an entry, or None where there is none that is whole."""
     try:
-        stored = (cache_directory() / key).read_bytes()
+        stored = (own_directory() / name).read_bytes()
     except OSError:
         return None
     digest, content = stored[:32], stored[32:]
     return content if hashlib.sha256(content).digest() == digest else None
 
 
-def write(key: str, content: bytes) -> None:
+def write(name: str, content: bytes) -> None:
     """Keep an entry; a directory that cannot be written to costs a compilation at the next run and nothing else."""
-    directory = cache_directory()
+    directory = own_directory()
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=directory, prefix=".part-")
+        handle, part = tempfile.mkstemp(dir=directory, prefix=PART)
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(hashlib.sha256(content).digest() + content)
-            os.replace(name, directory / key)
+            os.replace(part, directory / name)
         except BaseException:
-            os.unlink(name)
+            os.unlink(part)
             raise
     except OSError:
         return

@@ -17,12 +17,14 @@ import numpy as np
 from ..describe.element import Element
 from ..describe.formula import UNIT, evaluate
 from ..describe.formula_field import TIME, Formula, FormulaOf, is_measure, reading_order
-from ..describe.formula_value import step5_value, step_value
+from ..describe.formula_value import branch_value, step5_value, step_value
 from ..describe.table import Table
+from ..errors import InputError
+from .enclosure import FUNCTIONS as ENCLOSED
+from .enclosure import Enclosure
 from .system import System
+from .zeros import TooMany, zeros
 
-SAMPLES = 4001
-"""Instants at which a corner's condition is looked at where it is no straight line in t."""
 FLAT = 1e-12
 """Change between two points of a table, in parts of its largest value, up to which it is flat there."""
 
@@ -90,15 +92,37 @@ def _of_table(table: Table, start: float, end: float) -> Iterator[float]:
 
 def _of_formula(formula: Formula, start: float, end: float) -> Iterator[float]:
     for node in reading_order(formula.tree):
+        match node:
+            case ast.Call(ast.Name(name), [argument]) if name in formula.tables:
+                yield from _of_called_table(formula, formula.tables[name], argument, start, end)
         for condition in _conditions(node):
             if _depends_on_time_alone(condition, formula):
-                yield from _zeros(partial(_at, formula, condition), start, end)
+                try:
+                    yield from zeros(partial(_at, formula, condition), partial(_within, formula, condition), start, end)
+                except TooMany as error:
+                    raise InputError(f"'{formula.text}': {error}") from None
+
+
+def _of_called_table(formula: Formula, table: Table, argument: ast.expr, start: float, end: float) -> Iterator[float]:
+    """The corners of a table whose argument goes steadily with time; other arguments are left to the step control."""
+    if not _depends_on_time_alone(argument, formula):
+        return
+    sample = np.array([start, (start + end) / 2, end])
+    first, middle, last = _at(formula, argument, sample)
+    rate = (last - first) / (end - start)
+    if rate and abs(first + last - 2 * middle) <= STEADY * max(abs(first), abs(last)):
+        low, high = sorted((first, last))
+        yield from (start + (knot - first) / rate for knot in _of_table(table, low, high))
+
+
+STEADY = 1e-12
+"""How far an argument may be from a straight line, in parts of its size."""
 
 
 def _conditions(node: ast.expr) -> list[ast.expr]:
     """What is zero at the corners of a function (as `stiffmbs.compile.symbols.CORNERED` says for the state)."""
     match node:
-        case ast.Call(ast.Name("abs" | "sign"), [x]):
+        case ast.Call(ast.Name("abs" | "sign"), [x]) | ast.Call(ast.Name("branch"), [x, _, _, _]):
             return [x]
         case ast.Call(ast.Name("min" | "max"), [first, *others]):
             return [ast.BinOp(first, ast.Sub(), other) for other in others]
@@ -112,7 +136,7 @@ def _depends_on_time_alone(node: ast.expr, formula: Formula) -> bool:
     for part in ast.walk(node):
         if is_measure(part) or (isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values):
             return False
-        if isinstance(part, ast.Name) and part.id in formula.variables:
+        if isinstance(part, ast.Name) and part.id in (*formula.variables, *formula.tables):
             return False
         used = used or (isinstance(part, ast.Name) and part.id == TIME)
     return used
@@ -124,36 +148,22 @@ def _at(formula: Formula, condition: ast.expr, t: np.ndarray) -> np.ndarray:
     return np.broadcast_to(np.asarray(values, dtype=float), t.shape)
 
 
+def _within(formula: Formula, condition: ast.expr, low: np.ndarray, high: np.ndarray) -> Enclosure:
+    """The ranges of a condition and of its slope over many stretches of time."""
+    t = Enclosure.of_time(low, high)
+    return evaluate(condition, lambda name: t if name == TIME else formula.values[name], _OF_ENCLOSURES)
+
+
+def _by_argument(of_numbers: Callable[..., Any], of_enclosures: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of formulas, also of the constants in them."""
+    return lambda *x: (of_enclosures if any(isinstance(part, Enclosure) for part in x) else of_numbers)(*x)
+
+
 _SAME_NAME = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign")
 _OF_ARRAYS: dict[str, Callable[..., Any]] = {
     **{name: getattr(np, name) for name in _SAME_NAME},
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2,
     "min": lambda *values: reduce(np.minimum, values), "max": lambda *values: reduce(np.maximum, values),
-    "step": step_value, "step5": step5_value,
+    "step": step_value, "step5": step5_value, "branch": branch_value,
 }  # fmt: skip
-
-
-def _zeros(condition: Callable[[np.ndarray], np.ndarray], start: float, end: float) -> Iterator[float]:
-    """Zeros of a condition in t: exact where it is a straight line, else bisected between samples of different sign."""
-    times = np.linspace(start, end, SAMPLES)
-    with np.errstate(all="ignore"):
-        values = condition(times)
-        first, last = values[0], values[-1]
-        straight = first + (last - first) * np.linspace(0, 1, SAMPLES)
-        if np.all(np.abs(values - straight) <= 1e-12 * max(abs(first), abs(last))):
-            if first != last:
-                yield start + (end - start) * first / (first - last)
-            return
-        yield from times[values == 0]
-        for k in np.flatnonzero(values[:-1] * values[1:] < 0):
-            yield _bisected(condition, times[k], times[k + 1])
-
-
-def _bisected(condition: Callable[[np.ndarray], np.ndarray], low: float, high: float) -> float:
-    rising = condition(np.array([high]))[0] > 0
-    while low < (middle := (low + high) / 2) < high:
-        if (condition(np.array([middle]))[0] > 0) == rising:
-            high = middle
-        else:
-            low = middle
-    return high
+_OF_ENCLOSURES = {name: _by_argument(of_arrays, ENCLOSED[name]) for name, of_arrays in _OF_ARRAYS.items()}

@@ -1,20 +1,20 @@
 """From an element's equations to every derivative that a solver needs (SymPy).
 
-For C(q, t): J = dC/dq, V = J u + C_t, gamma = -(J u + C_t)_q u - (J u + C_t)_t so that J u' = gamma, and
-d(J^T w)/dq for given multipliers w.  For efforts Q_k on coordinates s_k: f = sum (ds_k/dq)^T Q_k, f_q and f_u.
+For C(q, t): V = C', J = dV/du, gamma = -V' at constant u so that J u' = gamma, and d(J^T w)/dq for given
+multipliers w.  For efforts Q_k on rates v_k: f = sum (dv_k/du)^T Q_k, f_q and f_u.  For a body that turns in space:
+p' = Z w.
 The reaction is the generalised force on the first body, turned into force and torque about the element's point.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from ..describe.element import Force, Joint
 from ..describe.request import Request
 from ..errors import InputError
-from .differentiate import Derivatives
 from .frames import SymbolicElement
 from .kind import Kind
 from .symbols import Symbols, symbols_of
@@ -62,33 +62,39 @@ def derive(kind: Kind) -> Derived:
     """
     symbols = symbols_of(kind)
     if issubclass(kind.element, Joint):
-        return _derived_joint(kind, symbols)
-    if issubclass(kind.element, Request):
-        return Derived(0, 0, symbols, {"request": [Entry(sp.sympify(kind.element.value(symbols.element)), 0)]})
-    assert issubclass(kind.element, Force)
-    return _derived_force(kind, symbols)
+        derived = _derived_joint(kind, symbols)
+    elif issubclass(kind.element, Request):
+        value = sp.sympify(kind.element.value(symbols.element))
+        derived = Derived(0, 0, symbols, {"request": [Entry(value, 0)]})
+    else:
+        assert issubclass(kind.element, Force)
+        derived = _derived_force(kind, symbols)
+    return replace(derived, terms=derived.terms | _counting(symbols.element)) if symbols.element.angles else derived
 
 
 def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
-    e, jacobian = symbols.element, Derivatives().jacobian
+    e = symbols.element
     C = sp.Matrix([sp.sympify(equation) for equation in kind.element.position(e)])  # type: ignore[attr-defined]
     rates = sp.Matrix([sp.sympify(equation) for equation in kind.element.velocity(e)])  # type: ignore[attr-defined]
-    C_q = jacobian(C, e.q) if C else sp.zeros(0, e.q.rows)
-    V = sp.Matrix([*(C_q * e.u + C.diff(e.t) if C else ()), *rates])
-    J = jacobian(V, e.u)
+    C_q = e.by_coordinates(C)
+    V = sp.Matrix([*(e.rate(equation) for equation in C), *rates])
+    J = e.by_velocities(V)
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
-            raise InputError(f"found the equation {[*C, *rates][row]} = 0, which depends on no coordinate of a body")
-        if J[row, :].free_symbols & set(e.u):
-            raise InputError(f"found the equation {[*C, *rates][row]} = 0, expected one that is linear in velocities")
+            raise InputError(f"found equation {row + 1} of {J.rows}, which depends on no coordinate of a body")
+        if any(e.depends(entry, e.u) for entry in J[row, :]):
+            raise InputError(
+                f"found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
+                "in velocities"
+            )
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
-    V_q = jacobian(V, e.q)
+    turning = e.rate(V)
     terms = {
-        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": V_q,
-        "gamma": -(V_q * e.u + V.diff(e.t)),
-        "G_lam": jacobian(J.T * lam, e.q), "G_mu": jacobian(C_q.T * mu[: C.rows, :], e.q),
-        "A_q": jacobian(J * e.a + V_q * e.u + V.diff(e.t), e.q),
-        "gamma_u": -jacobian(V_q * e.u + V.diff(e.t), e.u),
+        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
+        "gamma": -turning,
+        "G_lam": e.by_coordinates(J.T * lam), "G_mu": e.by_coordinates(C_q.T * mu[: C.rows, :]),
+        "A_q": e.by_coordinates(J * e.a + turning),
+        "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(kind, e, -J.T * lam),
         "switch": sp.Matrix(symbols.switches),
     }  # fmt: skip
@@ -99,18 +105,41 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
-    e, jacobian = symbols.element, Derivatives().jacobian
-    f = sp.zeros(e.q.rows, 1)
-    for effort, coordinate in kind.element.efforts(e):  # type: ignore[attr-defined]
-        f += jacobian([coordinate], e.q).T * effort
+    e = symbols.element
+    f = sp.zeros(e.u.rows, 1)
+    for effort, rate in kind.element.powers(e):  # type: ignore[attr-defined]
+        f += e.by_velocities([rate]).T * effort
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
     terms = {
-        "f": f, "f_q": jacobian(f, e.q), "f_u": jacobian(f, e.u),
-        "f_lam": jacobian(f, joint_lam) if joint_lam else sp.zeros(0, 0),
+        "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),
+        "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
         "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
         "switch": sp.Matrix([*symbols.switches, *kind.element.switches(e)]),  # type: ignore[attr-defined]
+        "limit": sp.Matrix(kind.element.limits(e)),  # type: ignore[attr-defined]
     }  # fmt: skip
+    if kind.element.turns:  # type: ignore[attr-defined]
+        terms |= _turning(e)
     return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()})
+
+
+def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
+    """Z of p' = Z w, in the rows and columns of a body's coordinates and velocities, and d(Z w)/dq."""
+    (body,) = e.frames
+    Z, rates = sp.zeros(len(body.q), len(body.u)), sp.zeros(len(body.q), 1)
+    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:]))
+    rates[3:, :] = Z[3:, 3:] * sp.Matrix(body.u[3:])
+    return {"Z": Z, "Z_q": e.by_coordinates(rates)}
+
+
+def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
+    """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
+    first = e.q.rows
+    angles, rates = sp.Matrix(e.angles), sp.Matrix([e.rate(angle) for angle in e.angles])
+    terms = {"counted": angles, "counting": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
+    return {
+        name: [Entry(entry.expression, first + entry.row, entry.column) for entry in _entries(matrix)]
+        for name, matrix in terms.items()
+    }
 
 
 def multipliers(name: str, count: int) -> sp.Matrix:
@@ -120,12 +149,11 @@ def multipliers(name: str, count: int) -> sp.Matrix:
 
 def _reaction(kind: Kind, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
     """Force and torque about the element's point, of the generalised force on its first body."""
-    fx, fy, moment = force[0], force[1], force[2]
-    arm = sp.Matrix(kind.element.point(e)) - e.frames[0].origin  # type: ignore[attr-defined]
-    return sp.Matrix([fx, fy, moment - arm[0] * fy + arm[1] * fx])
+    first = e.frames[0]
+    return first.wrench(force[: len(first.u), :], sp.Matrix(kind.element.point(e)))  # type: ignore[attr-defined]
 
 
 def _entries(matrix: sp.Matrix) -> list[Entry]:
     rows, columns = matrix.shape
     every = (Entry(sp.sympify(matrix[r, c]), r, c) for r in range(rows) for c in range(columns))
-    return [entry for entry in every if not entry.expression.is_zero]
+    return [entry for entry in every if entry.expression != 0]

@@ -6,16 +6,48 @@ derivatives of a long equation (a cam) that is most of the time of its first run
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
+Chain = Mapping[sp.Symbol, Mapping[sp.Symbol, sp.Expr]]
+"""Symbols that stand for functions of others, with their derivatives by these."""
+
 
 class Derivatives:
-    """Derivatives of the expressions of one element; what has been differentiated is remembered."""
+    """Derivatives of the expressions of one element; what has been differentiated is remembered.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    chain : Chain
+        Symbols to be differentiated as functions of others, such as the entries of a rotation matrix.
+
+    Attributes
+    ----------
+    meanings : dict
+        What each name stands for; names in it have been given before.
+    """
+
+    def __init__(self, chain: Chain) -> None:
+        self._chain = chain
         self._known: dict[tuple[sp.Expr, sp.Symbol], sp.Expr] = {}
+        self._symbols: dict[sp.Expr, frozenset[sp.Symbol]] = {}
+        self._variables: dict[sp.Symbol, frozenset[sp.Symbol]] = {}
+        self._names: dict[sp.Expr, sp.Symbol] = {}
+        self.meanings: dict[sp.Symbol, sp.Expr] = {}
+
+    def named(self, x: sp.Expr) -> sp.Expr:
+        """A symbol that stands for an expression, and is differentiated as that; numbers and symbols stay as they are.
+
+        What is named is written once wherever it occurs, in derivatives too.
+        """
+        if not x.args:
+            return x
+        if x not in self._names:
+            symbol = sp.Symbol(f"named{len(self.meanings)}", real=True)
+            self._names[x], self.meanings[symbol] = symbol, x
+            self._variables[symbol] = self.variables(x)
+        return self._names[x]
 
     def jacobian(self, column: Iterable[sp.Expr], variables: Iterable[sp.Symbol]) -> sp.Matrix:
         """The matrix d(column)/d(variables)."""
@@ -25,10 +57,37 @@ class Derivatives:
     def partial(self, x: sp.Expr, v: sp.Symbol) -> sp.Expr:
         """The derivative of x with respect to v."""
         if not x.args:
-            return sp.Integer(int(x == v))
+            return sp.Integer(1) if x == v else self._of_symbol(x, v)
         if (x, v) not in self._known:
-            self._known[x, v] = self._by_rule(x, v) if v in x.free_symbols else sp.Integer(0)
+            self._known[x, v] = self._by_rule(x, v) if self._depends(x, v) else sp.Integer(0)
         return self._known[x, v]
+
+    def _of_symbol(self, x: sp.Symbol, v: sp.Symbol) -> sp.Expr:
+        if x not in self.meanings:
+            return self._chain.get(x, {}).get(v, sp.Integer(0))
+        if (x, v) not in self._known:
+            self._known[x, v] = self.named(self.partial(self.meanings[x], v))
+        return self._known[x, v]
+
+    def _depends(self, x: sp.Expr, v: sp.Symbol) -> bool:
+        """Whether v, or a symbol that stands for a function of v, occurs in x."""
+        return any(v in self._of_one(symbol) for symbol in self._symbols_in(x))
+
+    def variables(self, x: sp.Expr) -> frozenset[sp.Symbol]:
+        """The symbols of x, and those that they are functions of."""
+        return frozenset().union(*(self._of_one(symbol) for symbol in self._symbols_in(x)))
+
+    def _of_one(self, symbol: sp.Symbol) -> frozenset[sp.Symbol]:
+        if symbol not in self._variables:
+            self._variables[symbol] = frozenset((symbol, *self._chain.get(symbol, ())))
+        return self._variables[symbol]
+
+    def _symbols_in(self, x: sp.Basic) -> frozenset[sp.Symbol]:
+        """The symbols in an expression; SymPy itself would walk through all of it each time."""
+        if x not in self._symbols:
+            within = frozenset((x,)) if isinstance(x, sp.Symbol) else frozenset()
+            self._symbols[x] = within.union(*map(self._symbols_in, x.args))
+        return self._symbols[x]
 
     def _by_rule(self, x: sp.Expr, v: sp.Symbol) -> sp.Expr:
         match x:
@@ -36,8 +95,12 @@ class Derivatives:
                 return sp.Add(*(self.partial(part, v) for part in x.args))
             case sp.Mul():
                 return sp.Add(*(self._with_one_factor_changed(x, k, v) for k in range(len(x.args))))
-            case sp.Pow() if v not in x.exp.free_symbols:
+            case sp.Pow() if not self._depends(x.exp, v):
                 return x.exp * x.base ** (x.exp - 1) * self.partial(x.base, v)
+            case sp.Pow():
+                base, exponent = x.args
+                changed = self.partial(exponent, v) * sp.log(base) + exponent * self.partial(base, v) / base
+                return x * changed
             case sp.Piecewise():
                 return sp.Piecewise(*((self.partial(part, v), condition) for part, condition in x.args))
             case sp.Function():

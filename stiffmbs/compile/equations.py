@@ -1,77 +1,18 @@
-"""Residuals and matrices written as tables of blocks, as in the textbook, and compiled to flat lists.
-
-A formulation is a table: each line of the residual is a block of the system (M, J, f, ...) times a vector of
-unknowns or of their derivatives, each line of the matrix a block in its rows and columns.  Nothing else is needed
-for a solver: the lists made of it here are run by `stiffmbs.compile.native.evaluate`.
-"""
+"""A formulation of one system, compiled to flat lists, which `stiffmbs.compile.native.evaluate` runs."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from .coordinates import STILL, Coordinates, all_independent
+from .formulation import Formulation
 from .layout import EQUATIONS, packed
 from .system import System, Term
 from .terms import TERM_SETS
 
 ABSENT = -1
-
-
-@dataclass(frozen=True)
-class Product:
-    """One line of a residual: in `rows`, factor * block @ operand.
-
-    `rows` and `operand` are names of unknowns (``q u mu lam``); an operand with a prime is a derivative; a vector
-    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``Z`` takes u to q', ``E_mu`` and
-    ``E_lam`` are the relaxations of the rows, ``.T`` transposes, ``:rates`` keeps rows without a position form.
-    """
-
-    rows: str
-    factor: float
-    block: str
-    operand: str | None = None
-
-
-@dataclass(frozen=True)
-class Block:
-    """One line of a matrix: in `rows` and `columns`, (constant + cj * cj-part) * block."""
-
-    rows: str
-    columns: str
-    block: str
-    constant: float = 1.0
-    cj: float = 0.0
-
-
-@dataclass(frozen=True)
-class Formulation:
-    """Equations of motion in the form that a solver integrates or solves.
-
-    Attributes
-    ----------
-    unknowns : tuple of str
-        Of ``q u mu lam``.
-    residual_set, matrix_set : str
-        The term sets that residual and matrix are made of.
-    residual : sequence of Product
-    matrix : sequence of Block
-    tested : tuple of str
-        Unknowns whose error the integrator controls.
-    integrated : bool
-        Whether the unknowns mu and lam are integrals of the multipliers, which then are their derivatives.
-    """
-
-    name: str
-    unknowns: tuple[str, ...]
-    residual_set: str
-    matrix_set: str
-    residual: Sequence[Product]
-    matrix: Sequence[Block]
-    tested: tuple[str, ...] = ("q", "u")
-    integrated: bool = False
 
 
 class Equations:
@@ -81,6 +22,9 @@ class Equations:
     ----------
     formulation : Formulation
     system : System
+    coordinates : Coordinates, optional
+        Which coordinates are unknowns; all by default.  The equations of the others are added to those of the
+        coordinates that they move with (virtual work: N^T r(N z) with q = offset + N z).
     place : ndarray of int, shape (n,), optional
         Where each unknown of the natural order (kind after kind) stands instead.
 
@@ -89,18 +33,21 @@ class Equations:
     n : int
         Number of unknowns.
     at : dict of str to ndarray
-        Where each kind of unknown stands in the vector of unknowns, `ABSENT` where it does not: multipliers of
-        redundant equations, and mu of equations that have no position form.
+        Where each kind of unknown stands in the vector of unknowns, `ABSENT` where it does not: coordinates that are
+        not independent, multipliers of redundant and fulfilled equations, and mu of equations that have no position form.
     pattern : tuple of ndarrays
         Row and column of each slot of the matrix, by columns.
     """
 
-    def __init__(self, formulation: Formulation, system: System, place: np.ndarray | None = None) -> None:
+    def __init__(
+        self, formulation: Formulation, system: System, coordinates: Coordinates | None = None, place: np.ndarray | None = None
+    ) -> None:  # fmt: skip
         self.formulation, self.system = formulation, system
-        everything = np.ones
+        self.coordinates = coordinates or all_independent(system)
+        independent, solved_for = self.coordinates.independent, system.active & ~self.coordinates.fulfilled
         present = {
-            "q": everything(system.n_q, dtype=bool), "u": everything(system.n_u, dtype=bool),
-            "mu": system.holonomic & system.active, "lam": system.active,
+            "q": independent, "u": self.coordinates.independent_u,
+            "mu": system.holonomic & solved_for, "lam": solved_for,
         }  # fmt: skip
         self.at: dict[str, np.ndarray] = {}
         self.n = 0
@@ -109,23 +56,66 @@ class Equations:
             self.n += int(present[name].sum())
         if place is not None:
             self.at = {name: np.where(at == ABSENT, ABSENT, place[at]) for name, at in self.at.items()}
+        self._offset = np.zeros(system.n_q)
         self._compile_residual()
         self._compile_matrix()
+
+    def reordered(self, place: np.ndarray) -> Equations:
+        """The same equations with the unknowns in another order."""
+        return Equations(self.formulation, self.system, self.coordinates, place)
+
+    def start_from(self, q: np.ndarray) -> None:
+        """Take the offsets of dependent coordinates from a pose that satisfies the constraints."""
+        self._offset[:] = self.coordinates.offset(q)
+
+    @cached_property
+    def independent(self) -> np.ndarray:
+        """Where the independent coordinates, then their velocities, stand among the unknowns."""
+        carried = self.coordinates
+        return np.concatenate([self.at["q"][carried.independent], self.at["u"][carried.independent_u]])
+
+    def states(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """All coordinates and velocities from those that `independent` lists, one state in each row."""
+        count = int(self.coordinates.independent.sum())
+        q, u = rows[:, :count], rows[:, count:]
+        if self.coordinates.independent.all():
+            return q, u
+        return self._offset + self._led("q", q), self._led("u", u)
+
+    def _led(self, name: str, rows: np.ndarray) -> np.ndarray:
+        """How all coordinates or velocities move with the independent ones."""
+        leader, ratio = self.coordinates.relation(name)
+        if not rows.shape[1]:  # nothing moves
+            return np.zeros((len(rows), len(leader)))
+        place = np.cumsum(leader == np.arange(len(leader))) - 1
+        return ratio * rows[:, np.where(leader == STILL, 0, place[leader])]
+
+    def _carried(self, name: str, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where entries that belong to rows, columns or operands of a kind stand among the unknowns, and their factors."""
+        if name not in ("q", "u"):
+            return self.at[name][own], np.ones(len(own))
+        leader, ratio = self.coordinates.relation(name)
+        return np.where(leader[own] == STILL, ABSENT, self.at[name][leader[own]]), ratio[own]
 
     def _block(self, term_set: str, name: str, rows: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Source, row and column of a block's entries."""
         system = self.system
-        base = name.removesuffix(".T")
+        base, _, part = name.removesuffix(".T").partition(":")
         constants = system.constants(term_set)
-        if base in ("I", "Z"):  # planar: q' = u
-            diagonal = np.arange(len(self.at[rows]))
+        if base == "I":
+            diagonal = system.quaternions if part == "turning" else np.arange(system.extent(rows))
             return np.full(len(diagonal), constants["I"]), diagonal, diagonal
         if base in constants:
             diagonal = np.arange(system.n_u if base == "M" else system.n_c)
             return constants[base] + diagonal, diagonal, diagonal
-        base, _, rates_only = base.partition(":")
         term = system.term(term_set, base)
-        if rates_only:
+        if base == "Z":
+            q, u = system.of_body.straight(len(system.bodies))
+            straight = np.full(len(q), constants["I"])
+            parts = ((term.source, straight), (term.row, q), (term.column, u))
+            source, row, column = (np.concatenate(part) for part in parts)
+            return source, row, column
+        if part == "rates":
             kept = ~system.holonomic[term.row]
             term = Term(term.source[kept], term.row[kept], term.column[kept])
         return (term.source, term.column, term.row) if name.endswith(".T") else (term.source, term.row, term.column)
@@ -134,13 +124,14 @@ class Equations:
         parts: dict[str, list[tuple[np.ndarray, ...]]] = {"plain": [], "y": [], "yp": []}
         for line in self.formulation.residual:
             source, row, column = self._block(self.formulation.residual_set, line.block, line.rows)
-            factor = np.full(len(source), line.factor)
+            line_row, factor = self._carried(line.rows, row)
+            factor = line.factor * factor
             if line.operand is None:
                 part, operand = "plain", np.zeros_like(source)
             else:
                 part = "yp" if line.operand.endswith("'") else "y"
-                operand = self.at[line.operand.rstrip("'")][column]
-            line_row = self.at[line.rows][row]
+                operand, ratio = self._carried(line.operand.rstrip("'"), column)
+                factor = factor * ratio
             kept = (line_row != ABSENT) & (operand != ABSENT)
             parts[part].append(tuple(column[kept] for column in (line_row, source, operand, factor)))
         ends = np.cumsum([sum(len(lines[0]) for lines in part) for part in parts.values()])
@@ -155,20 +146,54 @@ class Equations:
         lines = []
         for line in self.formulation.matrix:
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
-            ones = np.ones(len(source))
-            place = (self.at[line.rows][row], self.at[line.columns][column])
-            kept = (place[0] != ABSENT) & (place[1] != ABSENT)
-            lines.append(tuple(part[kept] for part in (*place, source, line.constant * ones, line.cj * ones)))
+            (at_row, of_row), (at_column, of_column) = (
+                self._carried(line.rows, row),
+                self._carried(line.columns, column),
+            )
+            kept, factor = (at_row != ABSENT) & (at_column != ABSENT), of_row * of_column
+            parts = (at_row, at_column, source, line.constant * factor, line.cj * factor)
+            lines.append(tuple(part[kept] for part in parts))
         row, column, source, constant, cj = (np.concatenate([line[k] for line in lines]) for k in range(5))
-        places, slot = np.unique(column * self.n + row, return_inverse=True)
-        self.pattern = (places % self.n, places // self.n)
-        self._slot, self._source = slot.astype(np.int64), source.astype(np.int64)
+        place = column * self.n + row
+        order = np.argsort(place, kind="stable")
+        new = np.diff(place[order], prepend=-1) > 0
+        self.pattern = (place[order][new] % self.n, place[order][new] // self.n)
+        self._slot, self._source = np.empty(len(place), dtype=np.int64), source.astype(np.int64)
+        self._slot[order] = np.cumsum(new) - 1
         self._constant, self._cj = constant.astype(float), cj.astype(float)
+
+    def used(self) -> dict[str, np.ndarray]:
+        """For the sets of the residual and of the matrix, which groups of the system write values that are read."""
+        residual_set, matrix_set = self.formulation.residual_set, self.formulation.matrix_set
+        groups = {residual_set: self._writing(residual_set, self._r_source)}
+        of_matrix = self._writing(matrix_set, self._source)
+        return groups | {matrix_set: groups.get(matrix_set, False) | of_matrix}
+
+    def _writing(self, term_set: str, sources: np.ndarray) -> np.ndarray:
+        read = np.zeros(self.system.n_values(term_set) + 1, dtype=np.int64)
+        read[1 + sources[sources < len(read) - 1]] = 1
+        before, terms = np.cumsum(read), TERM_SETS[term_set]
+        writes = np.zeros(len(self.system.groups), dtype=bool)
+        for g, group in enumerate(self.system.groups):
+            first = self.system.places[term_set][g, 1:]
+            width = np.array([group.count * group.entries(term) for term in terms])
+            writes[g] = np.any(before[first + width] > before[first])
+        return writes
 
     @cached_property
     def _index(self) -> dict[str, np.ndarray]:
+        """Where compiled code finds coordinates and multipliers among the unknowns."""
         empty = np.zeros(1, dtype=np.int64)
-        return {f"at_{name}": np.ascontiguousarray(self.at.get(name, empty)) for name in ("q", "u", "mu", "lam")}
+        lists: dict[str, np.ndarray] = {}
+        for name in ("q", "u"):
+            leader, _ = self.coordinates.relation(name)
+            moving = np.flatnonzero(leader != STILL) if name in self.at else empty[:0]
+            lists |= {
+                f"moving_{name}": moving,
+                f"{name}_from": self._carried(name, moving)[0] if len(moving) else empty,
+            }
+        lists |= {f"at_{name}": self.at.get(name, empty) for name in ("mu", "lam")}
+        return {name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}
 
     def table(self, slots: np.ndarray | None = None) -> tuple[np.ndarray, list[np.ndarray]]:
         """The table for compiled code, and the arrays that must live as long as it.
@@ -188,7 +213,8 @@ class Equations:
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
             "n_slots": n_slots, "integrated": self.formulation.integrated, "n_entries": len(slot), "m_slot": slot, "m_source": self._source,
             "m_constant": self._constant, "m_cj": self._cj,
-            "has_q": "q" in self.at, "has_u": "u" in self.at, "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
-            **self._index,
+            "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
+            "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
+            "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,
         }  # fmt: skip
         return packed(EQUATIONS, values), [slot]

@@ -1,84 +1,20 @@
-"""The symbolic side of bodies and markers: what an element's equations are written in."""
+"""The symbolic element: what the equations of joints and forces are written in."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
 from functools import cached_property
+from typing import Any
 
 import sympy as sp
 
+from .counted_angle import CountedAngle, counter
+from .differentiate import Derivatives
 from .spline import integral
+from .turns import Tilt, Turn, product
 
 COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
-
-
-@dataclass(frozen=True)
-class BodyFrame:
-    """The coordinates q = (x, y, phi), velocities u = q' and accelerations a of one planar body as symbols."""
-
-    slot: int
-
-    @cached_property
-    def q(self) -> tuple[sp.Symbol, ...]:
-        return sp.symbols(f"x{self.slot} y{self.slot} phi{self.slot}", real=True)
-
-    @cached_property
-    def u(self) -> tuple[sp.Symbol, ...]:
-        return sp.symbols(f"vx{self.slot} vy{self.slot} omega{self.slot}", real=True)
-
-    @cached_property
-    def a(self) -> tuple[sp.Symbol, ...]:
-        return sp.symbols(f"ax{self.slot} ay{self.slot} alpha{self.slot}", real=True)
-
-    @property
-    def origin(self) -> sp.Matrix:
-        return sp.Matrix(self.q[:2])
-
-    @property
-    def angle(self) -> sp.Symbol:
-        return self.q[2]
-
-    def coordinate(self, name: str) -> sp.Symbol:
-        """The coordinate or velocity that a formula calls ``x``, ``angle``, ``omega`` ..."""
-        return dict(zip(("x", "y", "angle", "vx", "vy", "omega"), (*self.q, *self.u), strict=True))[name]
-
-    def rotated(self, along: sp.Expr, across: sp.Expr) -> sp.Matrix:
-        """A vector of the body's own axes in ground axes, A(phi) s'."""
-        c, s = sp.cos(self.angle), sp.sin(self.angle)
-        return sp.Matrix([c * along - s * across, s * along + c * across])
-
-
-MARKER_NUMBERS = ("xi", "eta", "angle", "cos", "sin")
-"""A marker's numbers in a kernel: its point, its angle, and the angle's cosine and sine."""
-
-
-@dataclass(frozen=True)
-class Frame:
-    """A marker as equations see it: point, direction and angle in ground axes."""
-
-    body: BodyFrame
-    numbers: tuple[sp.Symbol, ...]
-
-    @property
-    def point(self) -> sp.Matrix:
-        """r + A(phi) s', m."""
-        return self.body.origin + self.body.rotated(self.numbers[0], self.numbers[1])
-
-    @property
-    def angle(self) -> sp.Expr:
-        return self.body.angle + self.numbers[2]
-
-    @property
-    def axis(self) -> sp.Matrix:
-        """Unit vector along the marker's axis."""
-        return self.body.rotated(self.numbers[3], self.numbers[4])
-
-    @property
-    def normal(self) -> sp.Matrix:
-        """Unit vector across the marker's axis, a quarter turn ahead of it."""
-        return self.body.rotated(-self.numbers[4], self.numbers[3])
 
 
 class SymbolicElement:
@@ -88,14 +24,20 @@ class SymbolicElement:
     ----------
     t : sympy.Symbol
         Time.
-    frames : list of BodyFrame
+    frames : list of BodyFrame or of SpatialBodyFrame
         The bodies, in the order of `Element.bodies`.
+    angles : list of expressions
+        Those that count whole turns, in the order of their counters.
+    derivatives : Derivatives
+        Of expressions in its symbols.
     """
 
     t = sp.Symbol("t", real=True)
 
-    def __init__(self, frames: list[BodyFrame], fields: dict[str, object]) -> None:
+    def __init__(self, frames: list[Any], fields: dict[str, object]) -> None:
         self.frames = frames
+        self.angles: list[sp.Expr] = []
+        self.derivatives = Derivatives({symbol: by for frame in frames for symbol, by in frame.chain.items()})
         self.__dict__.update(fields)
 
     @property
@@ -110,22 +52,106 @@ class SymbolicElement:
     def a(self) -> sp.Matrix:
         return sp.Matrix([symbol for frame in self.frames for symbol in frame.a])
 
-    def rate(self, expression: sp.Expr) -> sp.Expr:
-        """Total time derivative, with q' = u."""
-        partial = sum((sp.diff(expression, q) * u for q, u in zip(self.q, self.u, strict=True)), sp.Integer(0))
-        return partial + sp.diff(expression, self.t)
+    def rate(self, x: Any) -> Any:
+        """Total time derivative of an expression, or of each in a matrix, at constant velocities."""
+        if isinstance(x, sp.MatrixBase):
+            return x.applyfunc(self.rate)
+        x = sp.sympify(x)
+        partial = self.derivatives.partial
+        moving = (rate * partial(x, symbol) for frame in self.frames for symbol, rate in frame.motion)
+        return sp.Add(*moving) + partial(x, self.t)
+
+    def named(self, x: Any) -> Any:
+        """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
+        if isinstance(x, sp.MatrixBase):
+            return x.applyfunc(self.named)
+        return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(sp.sympify(x))
+
+    def turn(self, i: Any, j: Any) -> Turn:
+        """How a marker is turned against another one, of another body in space."""
+        back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
+        inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
+        h, *v = self.named(product(back, self.named(i.quaternion)) * self.named(inverse_length))
+        return Turn(h, sp.Matrix(v))
+
+    def tilt(self, i: Any, j: Any, axis: int) -> Tilt:
+        """How an axis (0, 1, 2 for x, y, z) of a marker is tilted against that of another one in space."""
+        own = self.named([i.x, i.y, i.z][axis])
+        return Tilt(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
+
+    @property
+    def meanings(self) -> dict[sp.Symbol, sp.Expr]:
+        """What the names stand for, those before others that use them."""
+        return self.derivatives.meanings
+
+    def by_coordinates(self, column: Iterable[sp.Expr]) -> sp.Matrix:
+        """The matrix d(column)/dq."""
+        ways = [way for frame in self.frames for way in frame.by_coordinate]
+        partial, rows = self.derivatives.partial, list(column)
+        return sp.Matrix(
+            len(rows), len(ways), lambda r, c: sp.Add(*(partial(rows[r], symbol) * much for symbol, much in ways[c]))
+        )
+
+    def by_velocities(self, column: Iterable[sp.Expr]) -> sp.Matrix:
+        """The matrix d(column)/du."""
+        return self.by(column, self.u)
+
+    def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
+        """The matrix of derivatives by any symbols."""
+        return self.derivatives.jacobian(column, symbols)
 
     def is_constant(self, expression: sp.Expr) -> bool:
         """Whether an expression depends on neither time nor the state."""
-        return not ({self.t, *self.q, *self.u} & sp.sympify(expression).free_symbols)
+        return not self.depends(expression, [self.t]) and not self.in_state(expression)
 
-    @staticmethod
-    def distance(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
+    def angle(self, sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+        """The angle with a sine and a cosine, or multiples of both, counted over whole turns."""
+        for angle in self.angles:
+            if angle.args[:2] == (sine, cosine):
+                return angle
+        self.angles.append(CountedAngle(sine, cosine, counter(len(self.angles))))
+        return self.angles[-1]
+
+    def in_state(self, expression: sp.Expr) -> bool:
+        """Whether an expression depends on coordinates or velocities."""
+        turns = [symbol for frame in self.frames for symbol in frame.turn]
+        return self.depends(expression, [*self.q, *self.u, *turns])
+
+    def depends(self, expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
+        """Whether any of some symbols occurs in an expression, or in what its symbols stand for."""
+        return not self.derivatives.variables(sp.sympify(expression)).isdisjoint(symbols)
+
+    def distance(self, a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
         """Distance of two points, with a derivative of zero where they coincide."""
-        d = a - b
-        return sp.sqrt(d.dot(d) + COINCIDENT)
+        d = self.named(a - b)
+        return self.named(sp.sqrt(d.dot(d) + COINCIDENT))
 
     @staticmethod
     def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
         """The integral of a law from 0 to x, for a potential; None where there is no simple one."""
         return integral(law, x)
+
+
+class ReferredJoint(SymbolicElement):
+    """A joint that an element refers to: its fields, its multipliers, and the coordinate that is meant.
+
+    Attributes
+    ----------
+    kind : str
+    lam : list of Symbol
+        Multipliers of its equations.
+    """
+
+    def __init__(
+        self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
+    ) -> None:
+        super().__init__(of.frames, fields)
+        self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
+        count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
+        self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
+        self.derivatives, self.angles = of.derivatives, of.angles
+
+    @cached_property
+    def coordinate(self) -> Any:
+        """None where none is named and there is a choice; only one that is used is counted, if it is an angle."""
+        return None if self._coordinate is None else getattr(self._joint, self._coordinate)(self)

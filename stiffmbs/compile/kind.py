@@ -7,9 +7,9 @@ refers to), so that a change of a number never changes a kernel.
 from __future__ import annotations
 
 import ast
-import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,11 +17,34 @@ from ..describe.element import Element, Joint, JointName
 from ..describe.formula import UNIT
 from ..describe.formula_field import TIME, Formula, is_measure, measured_markers
 from ..describe.formula_value import formula_value
-from ..describe.marker import Marker
-from ..describe.model import ModelData
+from ..describe.marker import MarkerReference
 from ..describe.table import Table
+from .table_values import spline_data
 
 Shape = tuple[Any, ...]
+
+
+class Compilable(Protocol):
+    """What compiling asks of a model."""
+
+    @property
+    def bodies(self) -> Mapping[str, Any]: ...
+
+    @property
+    def dimensions(self) -> int:
+        """2 for a planar model, 3 for one in space."""
+
+    @property
+    def joints(self) -> Mapping[str, Any]: ...
+
+    def elements(self) -> Iterator[tuple[str, Element]]:
+        """Every joint, force, request and weight with its name."""
+
+    def carried(self, marker: Any) -> tuple[str, Any]:
+        """The body that carries a marker, and where it sits on it."""
+
+    def size(self) -> float:
+        """Of the mechanism at the start, m."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +55,8 @@ class Kind:
     ----------
     element : type
         The class that holds the equations.
+    dimensions : int
+        2 or 3.
     n_bodies : int
         Bodies that one element acts on.
     n_joints : int
@@ -41,6 +66,7 @@ class Kind:
     """
 
     element: type[Element]
+    dimensions: int
     n_bodies: int
     n_joints: int
     fields: tuple[tuple[str, Shape], ...]
@@ -85,27 +111,27 @@ class ElementData:
         return np.concatenate(parts)
 
 
-def sorted_out(element: Element, model: ModelData) -> tuple[Kind, ElementData]:
+def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
     """An element's kind, and what is its own."""
     data = ElementData()
     fields = _fields(element, model, data)
-    return Kind(type(element), len(data.bodies), len(data.joints), fields), data
+    return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), fields), data
 
 
-def _fields(element: Element, model: ModelData, data: ElementData) -> tuple[tuple[str, Shape], ...]:
+def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
     return tuple((name, _shape(getattr(element, name), model, data)) for name in type(element).model_fields)
 
 
-def _shape(value: Any, model: ModelData, data: ElementData) -> Shape:
+def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
     """The shape of a field's value; its data are appended to `data`."""
     match value:
-        case Marker():
+        case MarkerReference():
             return _marker_shape(value, model, data)
         case JointName():
-            joint: Joint = model.joints[value]
+            joint: Joint = model.joints[value.joint]
             fields = _fields(joint, model, data)
-            data.joints.append(str(value))
-            return ("joint", type(joint), fields, len(data.joints) - 1)
+            data.joints.append(value.joint)
+            return ("joint", type(joint), fields, len(data.joints) - 1, value.coordinate_of(joint))
         case None | bool() | str():
             return ("choice", value)
         case int() | float():
@@ -123,24 +149,25 @@ def _shape(value: Any, model: ModelData, data: ElementData) -> Shape:
             raise TypeError(f"a field of an element cannot hold {type(value).__name__}")
 
 
-def _marker_shape(marker: Marker, model: ModelData, data: ElementData) -> Shape:
-    placed = model.place(marker)
-    slot = data.slot(marker.body)
-    data.numbers += [*placed.point, placed.angle, math.cos(placed.angle), math.sin(placed.angle)]
+def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:
+    body, placed = model.carried(marker)
+    slot = data.slot(body)
+    data.numbers += placed.numbers()
     return ("marker", slot)
 
 
 class _FormulaShape(ast.NodeTransformer):
-    """Takes numbers, bodies and measures out of a formula.
+    """Takes numbers, bodies, measures and tables out of a formula.
 
-    Bodies become ``b0.x``, variables ``v0``, measures ``measure0``, and every part that is constant one number
+    Bodies become ``b0.x``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is constant one number
     ``p0``; whole exponents stay, as they decide about the derivatives.
     """
 
-    def __init__(self, formula: Formula, model: ModelData, data: ElementData) -> None:
+    def __init__(self, formula: Formula, model: Compilable, data: ElementData) -> None:
         self.formula, self.model, self.data = formula, model, data
         self.numbers: list[float] = []
-        self.measures: list[tuple[str, tuple[Marker, ...]]] = []
+        self.measures: list[tuple[str, tuple[Any, ...]]] = []
+        self.tables: list[Table] = []
 
     def shape(self) -> Shape:
         """The formula's shape; its numbers and markers are appended to the data."""
@@ -150,7 +177,11 @@ class _FormulaShape(ast.NodeTransformer):
             (name, tuple(_marker_shape(marker, self.model, self.data) for marker in markers))
             for name, markers in self.measures
         )
-        return ("formula", ast.unparse(tree), len(self.formula.variables), len(self.numbers), measures)
+        first = len(self.data.numbers)
+        self.data.tables += [(first + k, spline_data(table)) for k, table in enumerate(self.tables)]
+        self.data.numbers += [0.0] * len(self.tables)
+        counts = len(self.formula.variables), len(self.numbers), len(self.tables)
+        return ("formula", ast.unparse(tree), counts, measures)
 
     def visit(self, node: ast.AST) -> Any:
         constant = _constant_value(node, self.formula)
@@ -174,13 +205,21 @@ class _FormulaShape(ast.NodeTransformer):
         if is_measure(node):
             self.measures.append((node.func.id, measured_markers(node)))  # type: ignore[attr-defined]
             return ast.Name(f"measure{len(self.measures) - 1}")
-        return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
+        arguments = [self.visit(argument) for argument in node.args]
+        table = self.formula.tables.get(node.func.id)  # type: ignore[attr-defined]
+        if table is None:
+            return ast.Call(node.func, arguments, [])
+        self.tables.append(table)
+        return ast.Call(ast.Name(f"table{len(self.tables) - 1}"), arguments, [])
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
         return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         assert isinstance(node.value, ast.Name)
+        if self.model.dimensions == 3 and node.attr[0] in "qw":
+            self.measures.append((OWN + node.attr, (MarkerReference(body=node.value.id),)))
+            return ast.Name(f"measure{len(self.measures) - 1}")
         return ast.Attribute(ast.Name(f"b{self.data.slot(node.value.id)}"), node.attr)
 
 
@@ -189,30 +228,12 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
     if not isinstance(node, ast.expr):
         return None
     for part in ast.walk(node):
-        if is_measure(part) or (isinstance(part, ast.Name) and part.id in (TIME, *formula.variables)):
+        if is_measure(part) or (isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables)):
             return None
         if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
             return None
     return formula_value(formula, node)
 
 
-NATURAL, PERIODIC = 0.0, 1.0
-
-
-def spline_data(table: Table) -> np.ndarray:
-    """What a kernel needs of a table: count, ends, knots, and the coefficients of each piece (highest first).
-
-    Cubic spline interpolation by SciPy; straight lines are pieces without curvature.
-    """
-    x, y = np.array(table.table, dtype=float).T
-    if table.lines:
-        slope = np.diff(y) / np.diff(x)
-        pieces = np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
-    else:
-        from scipy.interpolate import CubicSpline
-
-        if table.ends == "periodic":
-            y = np.append(y[:-1], y[0])
-        pieces = CubicSpline(x, y, bc_type=table.ends).c
-    ends = PERIODIC if table.ends == "periodic" else NATURAL
-    return np.concatenate([[len(x), ends], x, pieces.T.ravel()])
+OWN = "own_"
+"""Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""

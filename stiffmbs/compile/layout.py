@@ -13,15 +13,17 @@ import numpy as np
 
 Layout = Mapping[str, str]
 
-INTS, FLOATS, INT = "ints", "floats", "int"
+INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
+DTYPES = {INTS: np.int64, INDICES: np.int32, FLOATS: np.float64}
+"""Of the arrays; indices are short where long lists of them are read anew with each evaluation."""
 
 STATE: Layout = {
-    "n_q": INT, "n_u": INT, "n_c": INT,
-    "q": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS,
-    "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS,
+    "n_q": INT, "n_u": INT, "n_c": INT, "spatial": INT,
+    "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS, "n_turned": INTS, "turned": INTS,
+    "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS, "left_open": FLOATS,
 }  # fmt: skip
-"""A system's state and kernels: q, u and accelerations a with the ground's at their end; for each term set the number of its kernel
-calls, the address of their arguments (rows of `CALL`) and the address of its values; the first row of each joint."""
+"""A system's state and kernels: whether its bodies are spatial; q, u and accelerations a with the ground's at their end; what kernels share of each body's
+orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first coordinate) for which that is read, and the number of its kernel calls, the address of their arguments (rows of `CALL`) and the address of its values; the first row of each joint; what each equation may be off by."""
 
 CALL = ("kernel", "count", "index", "number", "place")
 """The arguments of one kernel call, as 64-bit numbers."""
@@ -30,7 +32,9 @@ EQUATIONS: Layout = {
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
     "r_row": INTS, "r_source": INTS, "r_operand": INTS, "r_factor": FLOATS,
     "n_slots": INT, "n_entries": INT, "m_slot": INTS, "m_source": INTS, "m_constant": FLOATS, "m_cj": FLOATS,
-    "at_q": INTS, "at_u": INTS, "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_q": INT, "has_u": INT, "has_mu": INT, "has_lam": INT,
+    "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
+    "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
+    "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
 }  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
@@ -42,23 +46,37 @@ FACTORS: Layout = {
 """A sparse matrix by columns, its factors and work space (`stiffmbs.compile.native.factors`)."""
 
 
+FIXED_ORDER: Layout = {
+    "n": INT, "pivots": INT, "last_flag": INT, "array_of": INT, "factors": INTS, "found": INTS, "slot": INDICES, "weight": FLOATS,
+    "lu": FLOATS, "row": INDICES, "column": INDICES, "update_start": INTS, "update": INDICES, "room": INT, "mark": INTS, "x": FLOATS,
+}  # fmt: skip
+"""A linear solver of IDA's along fixed pivots (`stiffmbs.solve.native.fixed_order`); it begins as the content of the
+solver of SUNDIALS whose place it takes: number of unknowns, pivots, last flag.  Its long lists are of 32-bit numbers: a long
+chain's solutions wait for memory."""
+
 MECHANICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INTS,
+    "n_counting": INT, "counting_source": INTS, "counting_row": INTS,
 }  # fmt: skip
-"""The tables of one state and its three block systems; `status` receives why no more instants could be reported."""
+"""The tables of one state and its three block systems; `status` receives why no more instants could be reported; where the
+rates of the counters of turns stand among the terms of accelerations."""
 
 
-IDA: Layout = {"state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT, "n_switches": INT}
+IDA: Layout = {
+    "state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT,
+    "n_switches": INT, "sides": FLOATS, "waits": INTS,
+}  # fmt: skip
 """What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array."""
 
 
 ELIMINATED: Layout = {
-    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_products": INT, "n_slots": INT,
-    "f_source": INTS, "f_row": INTS, "gamma_source": INTS, "gamma_row": INTS,
-    "j_source": INTS, "j_row": INTS, "j_column": INTS, "at_lam": INTS,
-    "product_slot": INTS, "product_first": INTS, "product_second": INTS, "product_weight": FLOATS,
-    "column_start": INTS, "row": INTS, "update_start": INTS, "update_slot": INTS, "inverse_mass": FLOATS,
+    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_products": INT, "n_slots": INT, "ready": INTS,
+    "f_source": INDICES, "f_row": INDICES, "gamma_source": INDICES, "gamma_row": INDICES,
+    "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "at_lam": INTS,
+    "product_end": INDICES, "product_first": INDICES, "product_second": INDICES,
+    "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
+    "scale": FLOATS, "j_scale": FLOATS, "j": FLOATS,
     "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS,
 }  # fmt: skip
 """J M^-1 J^T and its factors by flat lists (`stiffmbs.solve.eliminated`)."""
@@ -74,23 +92,39 @@ SCHEME: Layout = {
 EXPLICIT: Layout = {
     "mechanics": INTS, "eliminated": INTS, "eliminates": INT, "scheme": INTS, "n": INT, "project": INT, "tolerance": FLOATS,
     "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS,
-    "t": FLOATS, "t_before": FLOATS, "h": FLOATS, "last_error": FLOATS,
+    "t": FLOATS, "t_before": FLOATS, "span": FLOATS, "h": FLOATS, "last_error": FLOATS,
+    "n_switches": INT, "sides": FLOATS, "at_event": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INTS,
     "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 }  # fmt: skip
-"""An explicit integration between two calls: the state y = (q, u) now and before the last step, the stages k, the
-counters, the output times (none: every step), and room for the rows and ends of steps that one call stores."""
+"""An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
+switches' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends of steps that one call stores."""
 
 NATIVE_IDA: Layout = {
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
-    "n_switches": INT, "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
+    "n_switches": INT, "sides": FLOATS, "waits": INTS,
+    "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
-    "mark": FLOATS, "count": INTS, "history": FLOATS,
+    "mark": FLOATS, "count": INTS, "history": FLOATS, "samples": FLOATS, "balance_mark": FLOATS, "balance": INTS,
+    "iteration": INTS,
 }  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported."""
+
+BALANCE: Layout = {
+    "mark": FLOATS, "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
+    "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
+    "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
+    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS,
+}  # fmt: skip
+"""Newton's iteration on an interpolated state (`stiffmbs.solve.native.balance`): functions, linear solver, and vectors."""
+
+ITERATION: Layout = {
+    "n": INT, "mark": FLOATS, "count": INTS, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
+}  # fmt: skip
+"""What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`)."""
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
@@ -105,6 +139,6 @@ def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
             table[column] = int(value)
         else:
             assert isinstance(value, np.ndarray) and value.flags.c_contiguous, name
-            assert value.dtype == (np.int64 if kind == INTS else np.float64), name
-            table[column] = value.ctypes.data
+            assert value.dtype == DTYPES[kind], name
+            table[column] = value.__array_interface__["data"][0]
     return table

@@ -1,14 +1,11 @@
-"""Compiled functions: machine code from the cache, or compiled by numba and cached.
-
-numba is imported only where something has to be compiled; cached code is loaded by llvmlite alone.
-"""
+"""Compiled functions: machine code from the cache, or translated, compiled by LLVM and cached."""
 
 from __future__ import annotations
 
 import ctypes
 import importlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -31,6 +28,20 @@ class Compiled:
     call: Callable[..., Any]
 
 
+Signatures = tuple[tuple[str, str], ...]
+"""Names of functions and their C signatures."""
+
+
+@dataclass(frozen=True)
+class _Source:
+    """Functions to be compiled together: their names in a namespace, which is made when asked for."""
+
+    signatures: Signatures
+    namespace: Callable[[], Mapping[str, Any]]
+    text: str = ""
+    """What defines them if that is in no file."""
+
+
 @cache
 def compiled_source(source: str, name: str, signature: str) -> Compiled:
     """Compile a function from generated source, or load it from the cache.
@@ -38,36 +49,42 @@ def compiled_source(source: str, name: str, signature: str) -> Compiled:
     Parameters
     ----------
     source : str
-        Python text that numba can compile; defines `name`.
+        Python text in the language of `stiffmbs.compile.translate`; defines `name`.
     name : str
         The function's name.
     signature : str
         Such as ``void(int64, float64*)``.
     """
 
-    def define() -> Callable[..., Any]:
-        namespace: dict[str, Any] = {}
-        exec(compile(source, f"<{name}>", "exec"), namespace)  # the text is made by this package from equations
-        return namespace[name]
+    def namespace() -> dict[str, Any]:
+        names: dict[str, Any] = {}
+        exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations
+        return names
 
-    return _loaded(store.key_of(source, _spline_text(), signature), define, signature)
+    entry = store.name_of(store.KERNEL, source, _language_text(), _called_text(), signature)
+    return _loaded(entry, _Source(((name, signature),), namespace, source))[name]
 
 
 @cache
-def _spline_text() -> str:
+def _called_text() -> str:
     """The text of what generated sources call."""
-    return (Path(__file__).parent / "native" / "spline.py").read_text(encoding="utf-8")
+    native = Path(__file__).parent / "native"
+    return "\0".join(
+        (native / f"{name}.py").read_text(encoding="utf-8") for name in ("counted_angle", "spline", "unwound")
+    )
 
 
 @cache
-def compiled_routine(module: str, name: str, signature: str) -> Compiled:
-    """Compile a function of one of the package's ``native`` modules, or load it from the cache."""
+def compiled_routines(module: str, signatures: Signatures) -> dict[str, Compiled]:
+    """Compile functions of one of the package's ``native`` modules together, or load them from the cache."""
+    entry = store.name_of(store.ROUTINE, _language_text(), _native_text(), module, repr(signatures))
+    return _loaded(entry, _Source(signatures, lambda: vars(importlib.import_module(module))))
 
-    def define() -> Callable[..., Any]:
-        function = getattr(importlib.import_module(module), name)
-        return getattr(function, "py_func", function)
 
-    return _loaded(store.key_of(_native_text(), module, name, signature), define, signature)
+@cache
+def _language_text() -> str:
+    """The text of the translator."""
+    return _joined(sorted((Path(__file__).parent / "translate").glob("*.py")))
 
 
 @cache
@@ -75,16 +92,24 @@ def _native_text() -> str:
     """The text of all native modules and of what they are laid out by: a routine may be built of any of them."""
     package = Path(__file__).parent.parent
     files = [*sorted(package.glob("*/native/*.py")), package / "compile" / "layout.py"]
+    return _joined(files)
+
+
+def _joined(files: list[Path]) -> str:
     return "\0".join(path.read_text(encoding="utf-8") for path in files)
 
 
-def _loaded(key: str, define: Callable[[], Callable[..., Any]], signature: str) -> Compiled:
-    symbol = f"stiffmbs_{key}"
-    code = store.read(key)
+def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
+    code = store.read(entry)
     if code is None:
-        code = _object_code(define(), symbol, signature)
-        store.write(key, code)
-    return _linked(code, symbol, signature)
+        code = _object_code(source, _symbol(entry, ""))
+        store.write(entry, code)
+    return {name: _linked(code, _symbol(entry, name), signature) for name, signature in source.signatures}
+
+
+def _symbol(entry: str, name: str) -> str:
+    """The name of a function in object code: no other of this process has it."""
+    return f"stiffmbs_{entry}_{name}"
 
 
 def _new_target() -> Any:
@@ -117,37 +142,19 @@ def _emitter() -> Any:
     return _new_target()
 
 
-def _object_code(function: Callable[..., Any], symbol: str, signature: str) -> bytes:
-    """Object code with one C function of the given name."""
-    import llvmlite.binding as llvm
-    import numba
-
-    in_numbas_words = re.sub(r"(\w+)\*", r"CPointer(\1)", signature)
-    built: Any = numba.cfunc(in_numbas_words, error_model="numpy")(function)
-    module = llvm.parse_assembly(built.inspect_llvm())
-    module.get_function(built._wrapper_name).name = symbol
-    _close(module, symbol)
-    return _emitter().emit_object(module)
-
-
-def _close(module: Any, symbol: str) -> None:
-    """Leave one function that needs nothing but the mathematical library, so that it can be loaded without numba.
-
-    Once everything else is private, the optimiser sees that nothing raises and drops numba's error paths.
-    """
+def _object_code(source: _Source, prefix: str) -> bytes:
+    """Object code with a C function for each name, which begins with the prefix there."""
     import llvmlite.binding as llvm
 
-    for function in module.functions:
-        if not function.is_declaration and function.name != symbol:
-            function.linkage = llvm.Linkage.internal
-    for variable in module.global_variables:
-        if not variable.is_declaration:
-            variable.linkage = llvm.Linkage.internal
+    from .translate.unit import Entry, assembly
+
+    namespace = source.namespace()
+    entries = [Entry(namespace[name], prefix + name, *_c_types(signature)) for name, signature in source.signatures]
+    module = llvm.parse_assembly(assembly(entries, source.text))
+    module.triple = llvm.get_process_triple()
     builder = llvm.create_pass_builder(_emitter(), llvm.create_pipeline_tuning_options(speed_level=3))
     builder.getModulePassManager().run(module, builder)
-    missing = [f.name for f in module.functions if f.is_declaration and f.name.startswith(("numba", "Py", "NRT"))]
-    if missing:
-        raise RuntimeError(f"compiled code would need {', '.join(missing)}, expected code that cannot raise")
+    return _emitter().emit_object(module)
 
 
 def _linked(code: bytes, symbol: str, signature: str) -> Compiled:
@@ -162,8 +169,12 @@ def _linked(code: bytes, symbol: str, signature: str) -> Compiled:
 
 
 def _prototype(signature: str) -> Any:
+    arguments, result = _c_types(signature)
+    return ctypes.CFUNCTYPE(_CTYPES[result], *(ctypes.c_void_p if "*" in kind else _CTYPES[kind] for kind in arguments))
+
+
+def _c_types(signature: str) -> tuple[list[str], str]:
     match = _SIGNATURE.match(signature)
     assert match is not None, signature
     result, arguments = match.groups()
-    types: list[Any] = [ctypes.c_void_p if "*" in a else _CTYPES[a.strip()] for a in arguments.split(",") if a.strip()]
-    return ctypes.CFUNCTYPE(_CTYPES[result], *types)
+    return [kind.strip() for kind in arguments.split(",") if kind.strip()], result

@@ -7,14 +7,22 @@ from __future__ import annotations
 
 import inspect
 import json
+import sys
 from dataclasses import asdict, dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..describe.element import Element
 from . import cache as store
 from .kind import Kind
 from .terms import TERM_SETS
+
+if TYPE_CHECKING:
+    from .derive import Derived
+
+RARE = ("all_levels", "all_levels_tangent")
+"""Term sets that one formulation alone uses, index1: a third of the work of all, done when it is first asked for."""
 
 
 @dataclass(frozen=True)
@@ -27,15 +35,18 @@ class KindRecord:
         Constraint equations of one element, and how many of them, the first, have a position form.
     joint_equations : list of int
         Equations of each joint that it refers to.
+    n_counters : int
+        Angles of one element that count whole turns.
     patterns : dict
         For each term the (row, column) of its entries in the element's own block.
     sources : dict
-        For each term set the source of its kernel; absent where the kind contributes nothing.
+        For each usual term set the source of its kernel; absent where the kind contributes nothing.
     """
 
     n_equations: int
     n_holonomic: int
     joint_equations: list[int]
+    n_counters: int
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
 
@@ -43,50 +54,100 @@ class KindRecord:
 @cache
 def record_of(kind: Kind) -> KindRecord:
     """Read a kind's record from the cache, or derive it and keep it."""
-    key = _key(kind)
-    stored = store.read(key) if key else None
+    entry = _entry(kind)
+    stored = store.read(entry) if entry else None
     if stored is not None:
         return KindRecord(**json.loads(stored))
     record = _derived(kind)
-    if key:
-        store.write(key, json.dumps(asdict(record)).encode())
+    if entry:
+        store.write(entry, json.dumps(asdict(record)).encode())
     return record
 
 
-def _derived(kind: Kind) -> KindRecord:
-    from .derive import derive
+@cache
+def source_of(kind: Kind, term_set: str) -> str | None:
+    """The source of a kind's kernel for a term set; None where the kind contributes nothing."""
+    record = record_of(kind)
+    if term_set in RARE and any(record.patterns.get(term) for term in TERM_SETS[term_set]):
+        return _rare_source(kind, term_set)
+    return record.sources.get(term_set)
+
+
+def _rare_source(kind: Kind, term_set: str) -> str:
     from .generate import kernel_source
 
-    derived = derive(kind)
+    entry = _entry(kind, term_set)
+    stored = store.read(entry) if entry else None
+    if stored is not None:
+        return stored.decode()
+    source = kernel_source(term_set, _terms(kind), "kernel")
+    if entry:
+        store.write(entry, source.encode())
+    return source
+
+
+@lru_cache(maxsize=4)
+def _terms(kind: Kind) -> Derived:
+    """The terms of a kind, for the kernels that are written of it one after the other."""
+    from .derive import derive
+
+    return derive(kind)
+
+
+def _derived(kind: Kind) -> KindRecord:
+    from .generate import kernel_source
+
+    derived = _terms(kind)
     patterns = {term: [(entry.row, entry.column) for entry in entries] for term, entries in derived.terms.items()}
     sources = {
         term_set: kernel_source(term_set, derived, "kernel")
         for term_set, terms in TERM_SETS.items()
-        if any(derived.terms.get(term) for term in terms)
+        if term_set not in RARE and any(derived.terms.get(term) for term in terms)
     }
     return KindRecord(
-        derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam], patterns, sources
-    )
+        derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
+        len(derived.symbols.element.angles), patterns, sources,
+    )  # fmt: skip
 
 
-def _key(kind: Kind) -> str | None:
-    """A key of everything that the record follows from; None where the element's source cannot be read."""
+def _entry(kind: Kind, *part: str) -> str | None:
+    """The cache's name for everything that the record, or a part of its own, follows from; None where the element's source
+    cannot be read."""
+    classes = [kind.element, *(shape[1] for _, shape in kind.fields if shape[0] == "joint")]
+    bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element)]
     try:
-        classes = [kind.element, *(shape[1] for _, shape in kind.fields if shape[0] == "joint")]
-        bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element)]
-        own = [Path(inspect.getfile(base)) for base in bases]
-        texts = [path.read_text(encoding="utf-8") for path in own]
+        texts = [Path(inspect.getfile(base)).read_text(encoding="utf-8") for base in bases]
+        texts += [path.read_text(encoding="utf-8") for path in sorted(_helpers(bases))]
     except (OSError, TypeError):
         return None
-    return store.key_of(
-        _compile_text(), *texts, kind.element.__qualname__, repr((kind.n_bodies, kind.n_joints, kind.fields))
+    return store.name_of(
+        store.RECORD,
+        _compile_text(),
+        *texts,
+        kind.element.__qualname__,
+        repr((kind.dimensions, kind.n_bodies, kind.n_joints, kind.fields)),
+        *part,
     )
+
+
+def _helpers(elements: list[type]) -> set[Path]:
+    """The files of the functions and classes that elements' equations may call: what their own modules import by name from
+    the same package."""
+    found = set()
+    for element in elements:
+        package = element.__module__.partition(".")[0]
+        for member in vars(sys.modules[element.__module__]).values():
+            called = inspect.isfunction(member) or inspect.isclass(member)
+            if called and member.__module__.partition(".")[0] == package:
+                found.add(Path(inspect.getfile(member)))
+    return found
 
 
 @cache
 def _compile_text() -> str:
     from importlib.metadata import version
 
-    rooms = (Path(__file__).parent, Path(__file__).parent.parent / "describe")
+    describe = Path(__file__).parent.parent / "describe"
+    rooms = (Path(__file__).parent, describe, describe / "spatial")
     files = [path for room in rooms for path in sorted(room.glob("*.py"))]
     return "\0".join([version("sympy"), *(path.read_text(encoding="utf-8") for path in files)])

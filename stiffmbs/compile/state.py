@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from .layout import CALL, STATE, packed
 from .routines import TERMS
-from .system import PLANAR, System
+from .system import System
 from .terms import TERM_AXES, TERM_SETS
 
 SETS = list(TERM_SETS)
+LEFT_OPEN = 1e-5
+"""What redundant equations, which are left out, may be off by where the others hold: they are given by so many digits.
+In rad, and in m for mechanisms of 1 m and more; in parts of the size of smaller ones."""
 
 
 class State:
@@ -31,25 +36,54 @@ class State:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self._q = np.concatenate([system.q, np.zeros(PLANAR)])
-        self._u = np.concatenate([system.u, np.zeros(PLANAR)])
-        self._a = np.zeros(system.n_u + PLANAR)
+        of_body = system.of_body
+        self._q = np.concatenate([system.q, of_body.ground])
+        self._u = np.concatenate([system.u, np.zeros(of_body.n_u)])
+        self._a = np.zeros(system.n_u + of_body.n_u)
+        self._turn = np.concatenate([np.zeros(of_body.turn_stride * system.n_q), of_body.ground_turn])
         self.q, self.u, self.a = self._q[: system.n_q], self._u[: system.n_u], self._a[: system.n_u]
         self.lam, self.mu = np.zeros(system.n_c), np.zeros(system.n_c)
         self.values: dict[str, np.ndarray] = {}
         self._calls: dict[str, np.ndarray] = {}
+        self._turned: dict[str, np.ndarray] = {}
         self._n_calls, self._calls_at, self._values_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(3))
+        self._n_turned, self._turned_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(2))
         self._relaxations = np.zeros(2 * system.n_c)
-        self.table = packed(
+        self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
+        self.table = self._packed(self._n_calls, self._calls_at)
+        self._evaluate = TERMS.load()
+
+    def _packed(self, n_calls: np.ndarray, calls_at: np.ndarray) -> np.ndarray:
+        system = self.system
+        return packed(
             STATE,
             {
-                "n_q": system.n_q, "n_u": system.n_u, "n_c": system.n_c,
-                "q": self._q, "u": self._u, "a": self._a, "lam": self.lam, "mu": self.mu,
-                "n_calls": self._n_calls, "calls": self._calls_at, "values": self._values_at,
-                "n_joints": len(system.joint_start) - 1, "joint_start": system.joint_start,
+                "n_q": system.n_q, "n_u": system.n_u, "n_c": system.n_c, "spatial": system.of_body.dimensions == 3,
+                "q": self._q, "turn": self._turn, "n_turned": self._n_turned, "turned": self._turned_at, "u": self._u, "a": self._a, "lam": self.lam, "mu": self.mu,
+                "n_calls": n_calls, "calls": calls_at, "values": self._values_at,
+                "n_joints": len(system.joint_start) - 1, "joint_start": system.joint_start, "left_open": self._left_open,
             },
         )  # fmt: skip
-        self._evaluate = TERMS.load()
+
+    def restricted(self, used: Mapping[str, np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
+        """A table of the same state in which some term sets leave out groups whose values nobody reads.
+
+        Parameters
+        ----------
+        used : mapping of str to ndarray of bool
+            For each of these term sets, which have to be loaded, the groups of the system that stay.
+
+        Returns
+        -------
+        ndarray of int, list of ndarray
+            The table, and the arrays that must live as long as it.
+        """
+        n_calls, calls_at, kept = self._n_calls.copy(), self._calls_at.copy(), []
+        for term_set, groups in used.items():
+            called = [self.system.kernel(term_set, group) is not None for group in self.system.groups]
+            kept.append(np.ascontiguousarray(self._calls[term_set][groups[called]]))
+            n_calls[SETS.index(term_set)], calls_at[SETS.index(term_set)] = len(kept[-1]), kept[-1].ctypes.data
+        return self._packed(n_calls, calls_at), [n_calls, calls_at, *kept]
 
     def load(self, term_set: str) -> None:
         """Make a term set ready for compiled code: its kernels, and room for its values."""
@@ -62,6 +96,9 @@ class State:
             for g, group in enumerate(system.groups)
             if (kernel := system.kernel(term_set, group)) is not None
         ]  # fmt: skip
+        self._turned[term_set] = system.turned(term_set)
+        self._n_turned[k] = len(self._turned[term_set])
+        self._turned_at[k] = self._turned[term_set].ctypes.data
         self._calls[term_set] = np.array(calls, dtype=np.int64).reshape(-1, len(CALL))
         room = np.zeros(system.n_values(term_set))
         self.values[term_set] = np.concatenate([room, system.mass, self._relaxations, [1.0]])
@@ -81,17 +118,23 @@ class State:
         self.load(term_set)
         self._evaluate(t, SETS.index(term_set), self.table.ctypes.data)
 
+    def count_anew(self, t: float) -> None:
+        """Set the counters of turns to the very angles that they count."""
+        term = self.system.term("position", "counted")
+        if len(term.row):
+            self.evaluate("position", t)
+            self.q[term.row] = self.values["position"][term.source]
+
     def vector(self, term_set: str, name: str) -> np.ndarray:
         """A vector term from the last evaluation of its set, assembled."""
         term = self.system.term(term_set, name)
-        result = np.zeros(self.system.n_c if TERM_AXES[name] == "c" else self.system.n_u)
+        result = np.zeros(self.system.extent(TERM_AXES[name]))
         np.add.at(result, term.row, self.values[term_set][term.source])
         return result
 
     def matrix(self, term_set: str, name: str) -> np.ndarray:
         """A matrix term from the last evaluation of its set, dense."""
         term = self.system.term(term_set, name)
-        shape = tuple(self.system.n_c if axis in "cl" else self.system.n_u for axis in TERM_AXES[name])
-        result = np.zeros(shape)
+        result = np.zeros([self.system.extent(axis) for axis in TERM_AXES[name]])
         np.add.at(result, (term.row, term.column), self.values[term_set][term.source])
         return result

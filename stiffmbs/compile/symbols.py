@@ -5,14 +5,17 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import sympy as sp
 
 from ..describe.formula import evaluate
 from ..describe.formula_field import TIME
-from .frames import MARKER_NUMBERS, BodyFrame, Frame, SymbolicElement
-from .kind import Kind, Shape
+from . import planar_frames, spatial_frames
+from .frames import ReferredJoint, SymbolicElement
+from .kind import OWN, Kind, Shape
+from .measures import measure, own_coordinate
 from .spline import Spline
 
 
@@ -40,16 +43,16 @@ class Symbols:
 
 def symbols_of(kind: Kind) -> Symbols:
     """Make a kind's symbols and its element."""
-    frames = [BodyFrame(slot) for slot in range(kind.n_bodies)]
-    symbols = Symbols(SymbolicElement(frames, {}))
-    builder = _Builder(frames, symbols)
+    frame = planar_frames.BodyFrame if kind.dimensions == 2 else spatial_frames.SpatialBodyFrame
+    symbols = Symbols(SymbolicElement([frame(slot) for slot in range(kind.n_bodies)], {}))
+    builder = _Builder(kind.dimensions, symbols)
     symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
     return symbols
 
 
 class _Builder:
-    def __init__(self, frames: list[BodyFrame], symbols: Symbols) -> None:
-        self.frames, self.symbols = frames, symbols
+    def __init__(self, dimensions: int, symbols: Symbols) -> None:
+        self.dimensions, self.frames, self.symbols = dimensions, symbols.element.frames, symbols
 
     def fresh(self, name: str, **assumptions: bool) -> sp.Symbol:
         """A new symbol for the next number."""
@@ -71,34 +74,39 @@ class _Builder:
             case ("table",):
                 offset = self.fresh(name, integer=True)
                 return lambda x: Spline(x, offset, sp.Integer(0))
-            case ("formula", text, n_variables, n_numbers, measures):
-                return self.formula(name, text, n_variables, n_numbers, measures)
-            case ("joint", element, fields, slot):
-                return self.joint(name, element, fields, slot)
+            case ("formula", text, counts, measures):
+                return self.formula(name, text, counts, measures)
+            case ("joint", element, fields, slot, coordinate):
+                return self.joint(name, element, fields, slot, coordinate)
         raise TypeError(f"no such shape: {shape}")
 
-    def marker(self, name: str, slot: int) -> Frame:
+    def marker(self, name: str, slot: int) -> Any:
         """A frame with new symbols for its numbers."""
-        return Frame(self.frames[slot], tuple(self.fresh(f"{name}_{part}") for part in MARKER_NUMBERS))
+        if self.dimensions == 2:
+            numbers = tuple(self.fresh(f"{name}_{part}") for part in planar_frames.MARKER_NUMBERS)
+            return planar_frames.Frame(self.frames[slot], numbers)
+        numbers = tuple(self.fresh(f"{name}_{part}") for part in spatial_frames.MARKER_NUMBERS)
+        return spatial_frames.SpatialFrame(self.frames[slot], numbers)
 
-    def joint(self, name: str, element: Any, fields: tuple[tuple[str, Shape], ...], slot: int) -> SymbolicElement:
-        """A joint that is referred to: its own fields, its coordinate, and symbols for its multipliers."""
+    def joint(
+        self, name: str, element: Any, fields: tuple[tuple[str, Shape], ...], slot: int, coordinate: str | None
+    ) -> ReferredJoint:
+        """A joint that is referred to."""
         own = {field_name: self.made(f"{name}_{field_name}", shape) for field_name, shape in fields}
-        joint: Any = SymbolicElement(self.frames, own)
-        count = len(list(element.position(joint))) + len(list(element.velocity(joint)))
-        joint.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
-        joint.kind = element.kind
-        joint.coordinate = element.coordinate(joint)
+        joint = ReferredJoint(self.symbols.element, element, own, coordinate, slot)
         self.symbols.joint_lam.append(joint.lam)
         return joint
 
-    def formula(self, name: str, text: str, n_variables: int, n_numbers: int, measures: tuple[Any, ...]) -> Any:
-        """A formula's expression, or a function of its variables where it has such."""
+    def formula(self, name: str, text: str, counts: tuple[int, int, int], measures: tuple[Any, ...]) -> Any:
+        """A formula's expression, or a function of its variables where it has such; of so many variables, numbers, tables."""
+        n_variables, n_numbers, n_tables = counts
         numbers = [self.fresh(f"{name}_p") for _ in range(n_numbers)]
         measured = [
             self.measure(measure, [self.marker(f"{name}_{k}", slot) for k, (_, slot) in enumerate(shapes)])
             for measure, shapes in measures
         ]
+
+        tables = {f"table{k}": partial(_spline, self.fresh(f"{name}_t", integer=True)) for k in range(n_tables)}
 
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
             def value(word: str) -> sp.Expr:
@@ -116,7 +124,7 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
-            return sp.sympify(evaluate(tree, names(variables), self.functions(), sp.sympify))
+            return sp.sympify(evaluate(tree, names(variables), self.functions() | tables, sp.sympify))
 
         return function if n_variables else function()
 
@@ -127,7 +135,7 @@ class _Builder:
         def noting(function: Callable[..., sp.Expr], corners: Callable[..., tuple[sp.Expr, ...]]) -> Any:
             def called(*arguments: sp.Expr) -> sp.Expr:
                 for corner in corners(*arguments):
-                    if {*e.q, *e.u} & sp.sympify(corner).free_symbols:
+                    if e.in_state(corner):
                         self.symbols.switches.append(corner)
                 return function(*arguments)
 
@@ -135,30 +143,15 @@ class _Builder:
 
         return SMOOTH | {name: noting(function, corners) for name, (function, corners) in CORNERED.items()}
 
-    def measure(self, name: str, markers: list[Frame]) -> sp.Expr:
-        """A measure between two markers, named as in Adams, in ground axes."""
-        e, (a, b) = self.symbols.element, markers
-        d = a.point - b.point
-        distance = e.distance(a.point, b.point)
-        match name:
-            case "dx":
-                return d[0]
-            case "dy":
-                return d[1]
-            case "dm":
-                return distance
-            case "az":
-                return a.angle - b.angle
-            case "vx":
-                return e.rate(d[0])
-            case "vy":
-                return e.rate(d[1])
-            case "vm":
-                return e.distance(sp.Matrix([e.rate(d[0]), e.rate(d[1])]), sp.zeros(2, 1))
-            case "vr":
-                return e.rate(distance)
-            case _:
-                return e.rate(a.angle - b.angle)
+    def measure(self, name: str, markers: list[Any]) -> sp.Expr:
+        """A measure between markers, or a coordinate of a spatial body in its own axes."""
+        if name.startswith(OWN):
+            return own_coordinate(name.removeprefix(OWN), markers[0])
+        return measure(name, self.symbols.element, markers)
+
+
+def _spline(table: sp.Symbol, x: sp.Expr) -> sp.Expr:
+    return Spline(x, table, sp.Integer(0))
 
 
 def step(x: sp.Expr, x0: sp.Expr, h0: sp.Expr, x1: sp.Expr, h1: sp.Expr) -> sp.Expr:
@@ -197,6 +190,11 @@ def magnitude(x: sp.Expr) -> sp.Expr:
     return sp.Piecewise((x, x >= 0), (-x, True))
 
 
+def branch(x: sp.Expr, below: sp.Expr, at: sp.Expr, above: sp.Expr) -> sp.Expr:
+    """One of three expressions by the sign of the first, with the derivative of that one (Adams' IF)."""
+    return sp.Piecewise((below, x < 0), (above, x > 0), (at, True))
+
+
 SMOOTH: dict[str, Callable[..., sp.Expr]] = {
     name: getattr(sp, name)
     for name in (
@@ -216,5 +214,6 @@ CORNERED: dict[str, tuple[Callable[..., sp.Expr], Callable[..., tuple[sp.Expr, .
     "max": (greater, _differences),
     "step": (step, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
     "step5": (step5, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
+    "branch": (branch, lambda x, below, at, above: (x,)),
 }
 """Functions with corners, and what is zero there."""

@@ -6,24 +6,17 @@ write, and which equation and coordinate each belongs to.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ..describe.element import Element
-from ..describe.formula import FormulaError
-from ..describe.marker import GROUND
-from ..describe.model import ModelData
-from ..errors import InputError
-from .kind import ElementData, Kind, sorted_out
+from .bodies import BodyKind
+from .kind import Kind
 from .machine import Compiled, compiled_source
-from .record import KindRecord, record_of
-from .terms import KERNEL_SIGNATURE, TERM_AXES, TERM_SETS
-
-PLANAR = 3
-"""Coordinates, and velocities, of a planar body."""
+from .record import KindRecord, source_of
+from .terms import KERNEL_SIGNATURE, TERM_AXES, TERM_SETS, TURNED
 
 
 @dataclass(frozen=True)
@@ -34,9 +27,11 @@ class Group:
     ----------
     names : tuple of str
         Element by element.
-    index : ndarray of int, shape (count, 2 * bodies + 1 + joints)
-        Offsets of each body in q and u (the ground's are past the end), of the element's first number, and of the
-        first row of each joint that it refers to.
+    of_body : BodyKind
+        Coordinates and velocities of the bodies.
+    index : ndarray of int, shape (count, 2 * bodies + 1 + joints + counters)
+        Offsets of each body in q and u (the ground's are past the end), of the element's first number, of the
+        first row of each joint that it refers to, and of its counters of turns in q.
     numbers : ndarray
         Kernel parameters and tables, element after element; may be changed in place.
     first_row : int
@@ -45,6 +40,7 @@ class Group:
 
     kind: Kind
     record: KindRecord
+    of_body: BodyKind
     names: tuple[str, ...]
     elements: tuple[Element, ...]
     index: np.ndarray
@@ -55,6 +51,20 @@ class Group:
     def count(self) -> int:
         """Number of elements."""
         return len(self.names)
+
+    def entries(self, term: str) -> int:
+        """Number of entries that one element has in a term."""
+        return len(self.record.patterns.get(term, ()))
+
+    @property
+    def bodies(self) -> np.ndarray:
+        """Numbers of the bodies that each element acts on, shape (count, bodies); the ground's is behind the last body's."""
+        return self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u
+
+    @property
+    def counters(self) -> np.ndarray:
+        """Numbers of the coordinates that count turns for each element, shape (count, counters)."""
+        return self.index[:, self.index.shape[1] - self.record.n_counters :]
 
 
 @dataclass(frozen=True)
@@ -77,10 +87,17 @@ class System:
     ----------
     bodies : tuple of str
         In the order of their coordinates.
+    of_body : BodyKind
+        The coordinates and velocities that each of them has.
     q, u : ndarrays
-        Coordinates (x, y, phi of each body; m, rad) and velocities at the start, as described.
+        Coordinates (m, rad; quaternions) and velocities at the start, as described.  Behind the bodies' coordinates
+        stand the counters of turns (`stiffmbs.compile.counted_angle`).
+    open_rates : ndarray of bool, shape (n_u,)
+        Which velocities at the start are not given, so that constraints decide about them first.
     mass : ndarray, shape (n_u,)
-        The diagonal of the mass matrix: m, m, I of each body.
+        The diagonal of the mass matrix: masses, and moments of inertia about principal axes.
+    principal_axes : ndarray, shape (bodies, 4)
+        Quaternions of the principal axes in each body's own axes, which results are shown in; (bodies, 0) in the plane.
     groups : tuple of Group
         Elements by kind.
     equations : tuple of (str, str)
@@ -92,9 +109,12 @@ class System:
     """
 
     bodies: tuple[str, ...]
+    of_body: BodyKind
     q: np.ndarray
     u: np.ndarray
+    open_rates: np.ndarray
     mass: np.ndarray
+    principal_axes: np.ndarray
     groups: tuple[Group, ...]
     equations: tuple[tuple[str, str], ...]
     holonomic: np.ndarray
@@ -112,6 +132,40 @@ class System:
     @property
     def n_c(self) -> int:
         return len(self.equations)
+
+    def per_coordinate(self, linear: float, angular: float) -> np.ndarray:
+        """One number for the coordinates of every centre of mass, and another for those of orientations, shape (n_q,)."""
+        return np.append(self._per_body(self.of_body.n_q, linear, angular), np.full(self.n_counters, angular))
+
+    @property
+    def n_counters(self) -> int:
+        """Coordinates that count whole turns of angles."""
+        return self.n_q - self.of_body.n_q * len(self.bodies)
+
+    @property
+    def quaternions(self) -> np.ndarray:
+        """The numbers of the coordinates that are parts of quaternions; none in the plane."""
+        straight, _ = self.of_body.straight(len(self.bodies))
+        return np.setdiff1d(np.arange(self.n_q - self.n_counters), straight)
+
+    def per_velocity(self, linear: float, angular: float) -> np.ndarray:
+        """One number for the velocities of every centre of mass, and another for angular ones, shape (n_u,)."""
+        return self._per_body(self.of_body.n_u, linear, angular)
+
+    def _per_body(self, width: int, linear: float, angular: float) -> np.ndarray:
+        straight = self.of_body.linear
+        return np.tile([linear] * straight + [angular] * (width - straight), len(self.bodies))
+
+    def move(self, q: np.ndarray, there: np.ndarray) -> np.ndarray:
+        """What takes the bodies from one pose to another, as velocities times time, shape (n_u,)."""
+        of_bodies = slice(self.n_q - self.n_counters)
+        return self.of_body.move(q[of_bodies], there[of_bodies])
+
+    def name_of(self, k: int, labels: tuple[str, ...]) -> str:
+        """Such as ``cart.x``: the body of a coordinate or velocity, and which of a body's labels for these it has."""
+        if k >= len(labels) * len(self.bodies):
+            return "a count of turns"
+        return f"{self.bodies[k // len(labels)]}.{labels[k % len(labels)]}"
 
     @cached_property
     def joint_start(self) -> np.ndarray:
@@ -134,16 +188,43 @@ class System:
             for g, group in enumerate(self.groups):
                 places[g, 0] = group.first_row
                 places[g, 1 + k] = end
-                end += group.count * len(group.record.patterns.get(term, ()))
+                end += group.count * group.entries(term)
         return places
 
     def n_values(self, term_set: str) -> int:
         """Number of values that the kernels of a set write; the constants stand behind them."""
-        return sum(
-            group.count * len(group.record.patterns.get(term, ()))
-            for group in self.groups
-            for term in TERM_SETS[term_set]
-        )
+        return self._numbers_of_values[term_set]
+
+    @cached_property
+    def _numbers_of_values(self) -> dict[str, int]:
+        return {
+            term_set: sum(group.count * group.entries(term) for group in self.groups for term in terms)
+            for term_set, terms in TERM_SETS.items()
+        }
+
+    def writer(self, term_set: str, at: int) -> str:
+        """The name of the element that writes the value at a place of a set."""
+        group, element = self._writer(term_set, at)
+        return group.names[element]
+
+    def beyond(self, limit: int) -> str:
+        """What is wrong where a limit is passed, a value of the set ``switch``."""
+        group, element = self._writer("switch", limit)
+        return f"'{group.names[element]}': {group.kind.element.beyond}"  # type: ignore[attr-defined]
+
+    def _writer(self, term_set: str, at: int) -> tuple[Group, int]:
+        for g, group in enumerate(self.groups):
+            for k, term in enumerate(TERM_SETS[term_set]):
+                width = group.entries(term)
+                first = int(self.places[term_set][g, 1 + k])
+                if first <= at < first + group.count * width:
+                    return group, (at - first) // width
+        raise IndexError(f"the set {term_set} has no value {at}")
+
+    @cached_property
+    def first_limit(self) -> int:
+        """Where the limits of all forces begin among the values of the set ``switch``."""
+        return sum(group.count * group.entries("switch") for group in self.groups)
 
     def values_of(self, values: np.ndarray, term_set: str, element: str) -> dict[str, np.ndarray]:
         """The values that one element wrote for each term of a set."""
@@ -152,13 +233,23 @@ class System:
             if element in group.names:
                 e = group.names.index(element)
                 for k, term in enumerate(TERM_SETS[term_set]):
-                    width = len(group.record.patterns.get(term, ()))
+                    width = group.entries(term)
                     first = self.places[term_set][g, 1 + k] + e * width
                     found[term] = values[first : first + width]
         return found
 
+    @cached_property
+    def _terms(self) -> dict[tuple[str, str], Term]:
+        """Those asked for so far."""
+        return {}
+
     def term(self, term_set: str, name: str) -> Term:
         """The entries of a term in a set, those of the ground left out."""
+        if (term_set, name) not in self._terms:
+            self._terms[term_set, name] = self._term(term_set, name)
+        return self._terms[term_set, name]
+
+    def _term(self, term_set: str, name: str) -> Term:
         k = TERM_SETS[term_set].index(name)
         axes = TERM_AXES[name]
         parts = [
@@ -167,10 +258,11 @@ class System:
         ]
         nothing = np.empty(0, dtype=np.int64)  # of a scene without joints, forces and weight
         source, row, column = (np.concatenate([nothing, *(part[i] for part in parts)]) for i in range(3))
-        inside = (row < self._extent(axes[0])) & (column < (self._extent(axes[1]) if len(axes) > 1 else 1))
+        inside = (row < self.extent(axes[0])) & (column < (self.extent(axes[1]) if len(axes) > 1 else 1))
         return Term(source[inside], row[inside], column[inside])
 
-    def _extent(self, axis: str) -> int:
+    def extent(self, axis: str) -> int:
+        """How many there are of what a term's rows or columns count (`stiffmbs.compile.terms.TERM_AXES`)."""
         return {"q": self.n_q, "u": self.n_u, "c": self.n_c, "l": self.n_c}.get(axis, np.iinfo(np.int64).max)
 
     def _group_entries(self, g: int, group: Group, first: int, name: str, axes: str) -> tuple[np.ndarray, ...]:
@@ -188,8 +280,13 @@ class System:
             case "c":
                 return group.first_row + elements * group.record.n_equations + own[None, :]
             case "q" | "u":
-                body, offset = own // PLANAR, own % PLANAR
-                return group.index[:, 2 * body + (axis == "u")] + offset[None, :]
+                width = self.of_body.n_q if axis == "q" else self.of_body.n_u
+                body, offset = own // width, own % width
+                counter = own - width * group.kind.n_bodies
+                of_counter = group.index.shape[1] - group.record.n_counters + counter
+                return group.index[:, np.where(counter < 0, 2 * body + (axis == "u"), of_counter)] + np.where(
+                    counter < 0, offset, 0
+                )
             case "l":
                 joint, offset = self._joint_of_column(group, own)
                 return group.index[:, 2 * group.kind.n_bodies + 1 + joint] + offset[None, :]
@@ -205,95 +302,29 @@ class System:
 
     def kernel(self, term_set: str, group: Group) -> Compiled | None:
         """The compiled kernel with which a group contributes to a set, if it does."""
-        source = group.record.sources.get(term_set)
+        source = source_of(group.kind, term_set)
         return compiled_source(source, "kernel", KERNEL_SIGNATURE) if source else None
+
+    def turned(self, term_set: str) -> np.ndarray:
+        """The first coordinate of each body what is shared of whose orientation the kernels of a set read."""
+        read = [
+            group.index[:, : 2 * group.kind.n_bodies : 2].ravel()
+            for group in self.groups
+            if TURNED in (source_of(group.kind, term_set) or "")
+        ]
+        bodies = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *read]))
+        return bodies[bodies < self.of_body.n_q * len(self.bodies)]
 
     def constants(self, term_set: str) -> dict[str, int]:
         """Where the constants stand that follow the values of a set: mass entries, relaxations, a one."""
-        starts = np.cumsum([self.n_values(term_set), self.n_u, self.n_c, self.n_c])
-        return {name: int(start) for name, start in zip(("M", "E_mu", "E_lam", "I"), starts, strict=True)}
+        return self._constants[term_set]
 
-
-def compile_model(model: ModelData) -> System:
-    """Compile a model: kernels from the cache or newly made, and every term's place.
-
-    Raises
-    ------
-    InputError
-        When an element's equations cannot be compiled; names the element.
-    """
-    bodies = tuple(model.bodies)
-    offset = {name: PLANAR * k for k, name in enumerate(bodies)} | {GROUND: PLANAR * len(bodies)}
-    sorted_elements: dict[Kind, list[_Member]] = {}
-    for name, element in model.elements():
-        try:
-            kind, data = sorted_out(element, model)
-        except FormulaError as error:
-            raise InputError(f"{name}: {error}") from None
-        sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
-    records = {kind: _record(kind, members[0].name) for kind, members in sorted_elements.items()}
-    rows, equations, holonomic = _rows(sorted_elements, records)
-    groups = [
-        _group(kind, records[kind], members, offset, rows, rows[members[0].name] if records[kind].n_equations else 0)
-        for kind, members in sorted_elements.items()
-    ]
-    return System(
-        bodies=bodies,
-        q=np.array([c for body in model.bodies.values() for c in (*body.position, body.angle)]),
-        u=np.array([c for body in model.bodies.values() for c in (*body.velocity, body.omega)]),
-        mass=np.array([m for body in model.bodies.values() for m in (body.mass, body.mass, body.inertia)]),
-        groups=tuple(groups),
-        equations=tuple(equations),
-        holonomic=np.array(holonomic, dtype=bool),
-        active=np.ones(len(equations), dtype=bool),
-        size=model.size(),
-    )
-
-
-@dataclass(frozen=True)
-class _Member:
-    name: str
-    element: Element
-    data: ElementData
-
-
-def _record(kind: Kind, name: str) -> KindRecord:
-    try:
-        return record_of(kind)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
-
-
-def _rows(
-    sorted_elements: Mapping[Kind, list[_Member]], records: Mapping[Kind, KindRecord]
-) -> tuple[dict[str, int], list[tuple[str, str]], list[bool]]:
-    """The first row of each joint, and for each row its joint and equation and whether it has a position form."""
-    first: dict[str, int] = {}
-    equations: list[tuple[str, str]] = []
-    holonomic: list[bool] = []
-    for kind, members in sorted_elements.items():
-        record = records[kind]
-        for member in members if record.n_equations else ():
-            first[member.name] = len(equations)
-            equations += [(member.name, label) for label in member.element.equation_names()]
-            holonomic += [k < record.n_holonomic for k in range(record.n_equations)]
-    return first, equations, holonomic
-
-
-def _group(
-    kind: Kind, record: KindRecord, members: list[_Member], offset: dict[str, int], rows: dict[str, int], first_row: int
-) -> Group:
-    numbers = [member.data.flat() for member in members]
-    starts = np.cumsum([0, *(len(own) for own in numbers)])
-    index = [
-        [
-            *(offset[body] for body in member.data.bodies for _ in ("q", "u")),
-            start,
-            *(rows[j] for j in member.data.joints),
-        ]
-        for member, start in zip(members, starts, strict=False)
-    ]
-    return Group(
-        kind, record, tuple(m.name for m in members), tuple(m.element for m in members),
-        np.array(index, dtype=np.int64), np.concatenate([*numbers, [0.0]]), first_row,
-    )  # fmt: skip
+    @cached_property
+    def _constants(self) -> dict[str, dict[str, int]]:
+        sizes = (self.n_u, self.n_c, self.n_c)
+        return {
+            term_set: dict(
+                zip(("M", "E_mu", "E_lam", "I"), np.cumsum([self.n_values(term_set), *sizes]).tolist(), strict=True)
+            )
+            for term_set in TERM_SETS
+        }

@@ -3,35 +3,37 @@
 from __future__ import annotations
 
 TERM_SETS: dict[str, tuple[str, ...]] = {
-    "position": ("C", "C_q"),
-    "motion": ("C", "V", "C_q", "J", "f"),
-    "tangent": ("C_q", "J", "V_q", "G_lam", "G_mu", "f_q", "f_u", "f_lam"),
-    "acceleration": ("J", "gamma", "f", "f_lam"),
+    "position": ("C", "C_q", "counted"),
+    "motion": ("C", "V", "C_q", "J", "f", "Z"),
+    "tangent": ("C_q", "J", "V_q", "G_lam", "G_mu", "f_q", "f_u", "f_lam", "Z", "Z_q"),
+    "acceleration": ("J", "gamma", "f", "f_lam", "counting"),
     "output": ("reaction", "potential", "request"),
-    "switch": ("switch",),
-    "all_levels": ("C", "V", "J", "gamma", "f"),
-    "all_levels_tangent": ("C_q", "J", "V_q", "G_lam", "A_q", "gamma_u", "f_q", "f_u", "f_lam"),
+    "switch": ("switch", "limit"),
+    "all_levels": ("C", "V", "J", "gamma", "f", "Z"),
+    "all_levels_tangent": ("C_q", "J", "V_q", "G_lam", "A_q", "gamma_u", "f_q", "f_u", "f_lam", "Z", "Z_q"),
 }
 """What a solver asks for at one time, so that common subexpressions are computed once.
 
 C constraints, C_q = dC/dq, V the velocity level (C_q u + C_t, and equations that have no position form), J = dV/du,
 f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q, f_u, f_lam derivatives of f (forces
 of friction hang on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
-A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, potential = energy, request =
-what the user asked for, switch = what changes its sign at corners of a force.
+A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, Z of q' = Z u where that is not u itself and
+Z_q = d(Z u)/dq, counted = angles that count turns and counting = their rates, potential = energy, request =
+what the user asked for, switch = what changes its sign at corners of a force, limit = what is above zero for as long as its law holds.
 """
 
 TERM_AXES: dict[str, str] = {
-    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "request": "e", "switch": "s",
+    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "request": "e", "switch": "s", "limit": "s",
     "C_q": "cq", "J": "cu", "V_q": "cq", "G_lam": "uq", "G_mu": "qq", "f_q": "uq", "f_u": "uu", "f_lam": "ul",
-    "A_q": "cq", "gamma_u": "cu",
+    "A_q": "cq", "gamma_u": "cu", "Z": "qu", "Z_q": "qq", "counted": "q", "counting": "q",
 }  # fmt: skip
 """What a term's row and column count: c own equations, u velocities, q coordinates, l equations of the joints that are
 referred to, r parts of a reaction, s switches, e elements."""
 
-KERNEL_ARGUMENTS = "count, index, number, t, q, u, a, lam, mu, place, value"
-KERNEL_SIGNATURE = (
-    "void(int64, int64*, float64*, float64, float64*, float64*, float64*, float64*, float64*, int64*, float64*)"
-)
+KERNEL_ARGUMENTS = "count, index, number, t, q, turn, u, a, lam, mu, place, value"
+KERNEL_SIGNATURE = "void(int64, int64*, float64*, float64, float64*, float64*, float64*, float64*, float64*, float64*, int64*, float64*)"
 """Arguments of every kernel: the number of elements; for each element and body the offsets in q and u; parameters;
-time, q, u, accelerations and multipliers; `place`, the kind's first equation and the first value of each term; the values, written."""
+time, q, what kernels share of each body's orientation (`stiffmbs.compile.bodies`), u, accelerations and multipliers; `place`, the kind's first equation and the first value of each term; the values, written."""
+
+TURNED = "turn["
+"""In the source of a kernel that reads what is shared of its bodies' orientations."""

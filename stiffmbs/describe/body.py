@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable
 
 from pydantic import Field, field_validator
 
@@ -45,6 +45,22 @@ class Body(Described):
         check_names(markers, "marker")
         return markers
 
+    def coordinates(self) -> tuple[float, ...]:
+        """x, y (m) of the centre of mass and the angle phi (rad) at the start."""
+        return (*self.position, self.angle)
+
+    def rates(self) -> tuple[float, ...]:
+        """The rates of `coordinates` at the start, m/s and rad/s."""
+        return (*self.velocity, self.omega)
+
+    def open_rates(self) -> tuple[bool, ...]:
+        """Which of `rates` are not given: none."""
+        return False, False, False
+
+    def masses(self) -> tuple[float, ...]:
+        """Diagonal of the body's mass matrix, kg, kg and kg m^2."""
+        return self.mass, self.mass, self.inertia
+
 
 class BodyHandle:
     """A body of a model, as `Model.add` returns it: a shorthand for its markers and coordinates."""
@@ -65,7 +81,7 @@ class BodyHandle:
         return sympy.Symbol(f"{self.name}.{coordinate}", real=True)
 
 
-def check_names(names: Mapping[str, object], what: str) -> None:
+def check_names(names: Iterable[object], what: str) -> None:
     """Refuse names that could not stand in a formula or a channel."""
     for name in names:
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):

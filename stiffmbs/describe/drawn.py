@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .element import Element, Joint, JointName
-from .marker import GROUND, Marker
+from .marker import MarkerReference
 
 if TYPE_CHECKING:
-    from .model import ModelData
+    from .model_data import ModelData
 
 
 @dataclass(frozen=True)
@@ -44,18 +44,18 @@ class DrawnMarker:
 
 def drawn(element: Element, model: ModelData) -> Any:
     """The element as its equations see it, for markers, numbers and joints that it refers to."""
-    e: Any = SimpleNamespace(**{name: _drawn(getattr(element, name), model) for name in type(element).model_fields})
-    if isinstance(element, Joint):
-        e.coordinate = element.coordinate(e)
-    return e
+    fields = {name: _drawn(getattr(element, name), model) for name in type(element).model_fields}
+    return SimpleNamespace(**fields, angle=math.atan2)
 
 
 def _drawn(value: Any, model: ModelData) -> Any:
     match value:
-        case Marker():
-            turned = 0.0 if value.body == GROUND else model.bodies[value.body].angle
-            return DrawnMarker(np.array(model.point(value)), turned + model.place(value).angle)
+        case MarkerReference():
+            return model.drawn_marker(value)
         case JointName():
-            return drawn(model.joints[value], model)
+            joint: Joint = model.joints[value.joint]
+            e, name = drawn(joint, model), value.coordinate_of(joint)
+            e.coordinate = None if name is None else getattr(joint, name)(e)
+            return e
         case _:
             return value

@@ -10,18 +10,20 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Iterator, Mapping
+from functools import reduce
+from operator import or_
 from types import ModuleType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import WithJsonSchema
+from pydantic import Field, WithJsonSchema
 
 from ..errors import InputError
 from .fields import Described
 from .formula_field import Formula
-from .marker import Marker
+from .marker import MarkerReference
 
 if TYPE_CHECKING:
-    from .model import ModelData
+    from .model_data import ModelData
 
 Symbolic = Any
 """The element as its equations see it: a `Frame` for a marker, a symbol for a number, an expression for a formula, a
@@ -30,7 +32,19 @@ function for a formula or table of a variable, a symbolic element for a joint th
 
 
 class JointName(str):
-    """The name of a joint of the model, in a field of another element."""
+    """The name of a joint of the model, or of one of its coordinates (``sleeve.angle``), in a field of another element."""
+
+    @property
+    def joint(self) -> str:
+        """The joint's name."""
+        return self.partition(".")[0]
+
+    def coordinate_of(self, joint: Joint) -> str | None:
+        """Which of the joint's coordinates is meant; None where it has no such one, or there is a choice."""
+        _, _, name = self.partition(".")
+        if name:
+            return name if name in joint.coordinates else None
+        return joint.coordinates[0] if len(joint.coordinates) == 1 else None
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
@@ -39,7 +53,9 @@ class JointName(str):
         return core_schema.no_info_after_validator_function(cls, core_schema.str_schema())
 
 
-JointReference = Annotated[JointName, WithJsonSchema({"type": "string", "description": "the name of a joint"})]
+JointReference = Annotated[
+    JointName, WithJsonSchema({"type": "string", "description": "the name of a joint, or of one of its coordinates"})
+]
 
 
 class Element(Described):
@@ -55,9 +71,9 @@ class Element(Described):
                 if isinstance(item, part):
                     yield name, item
 
-    def markers(self) -> Iterator[tuple[str, Marker]]:
+    def markers(self) -> Iterator[tuple[str, MarkerReference]]:
         """The element's markers by field name, the first body's first; those in its formulas after its own."""
-        yield from self.parts(Marker)
+        yield from self.parts(MarkerReference)
         for name, formula in self.parts(Formula):
             for _, markers in formula.measures():
                 yield from ((name, marker) for marker in markers)
@@ -68,6 +84,10 @@ class Element(Described):
 
     def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
+        yield from ()
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        """Why the element cannot act where the bodies are drawn."""
         yield from ()
 
     def as_drawn(self, model: ModelData) -> Self:
@@ -82,9 +102,13 @@ class Joint(Element):
     ----------
     equations : tuple of str
         The names of the equations that `position`, then `velocity`, return; used in reports.
+    coordinates : tuple of str
+        The names of its coordinates, for drives and couplers: ``angle``, ``displacement``.  A joint has a static
+        function of `e` by the name of each.
     """
 
     equations: ClassVar[tuple[str, ...]] = ()
+    coordinates: ClassVar[tuple[str, ...]] = ()
 
     @staticmethod
     def position(e: Symbolic) -> Any:
@@ -97,11 +121,6 @@ class Joint(Element):
         return ()
 
     @staticmethod
-    def coordinate(e: Symbolic) -> Any:
-        """The joint's coordinate, for drives and couplers; None where it has none."""
-        return None
-
-    @staticmethod
     def point(e: Symbolic) -> Any:
         """The joint's point, about which its torque is reported."""
         return e.i.point
@@ -111,16 +130,32 @@ class Joint(Element):
 
 
 class Force(Element):
-    """An applied force: efforts on coordinates, by virtual power.
+    """An applied force: efforts on coordinates or on rates, by virtual power.
 
     The generalised force is the sum of effort times the derivative of its coordinate: a spring is its tension on
-    its length, a force at a point is its two components on the point's two coordinates.
+    its length, a force at a point is its components on the point's coordinates.  A force that acts on a rate that
+    belongs to no coordinate, as a torque in space on an angular velocity, has `powers` in place of `efforts`.
+
+    Attributes
+    ----------
+    turns : bool
+        Whether it stands for a body's turning in space, and the body's kinematics, p' = Z(p) w, belong to it.
+    beyond : str
+        What is wrong where one of its `limits` is passed: "found ..., expected ...".
     """
+
+    turns: ClassVar[bool] = False
+    beyond: ClassVar[str] = ""
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         """Pairs of an effort and the coordinate that it does work on."""
         raise NotImplementedError
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+        """Pairs of an effort and the rate that it has its power with, the rate being linear in velocities."""
+        return [(effort, e.rate(coordinate)) for effort, coordinate in cls.efforts(e)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
@@ -130,6 +165,11 @@ class Force(Element):
     @staticmethod
     def switches(e: Symbolic) -> Any:
         """Expressions that change their sign where the force has a corner in the state, such as a gap."""
+        return ()
+
+    @classmethod
+    def limits(cls, e: Symbolic) -> Any:
+        """Expressions above zero for as long as the force's law holds; where one is not, the run stops."""
         return ()
 
     @staticmethod
@@ -148,3 +188,8 @@ def kinds(package: ModuleType, base: type[Element]) -> dict[str, type[Any]]:
             if named and found.setdefault(member.kind, member) is not member:
                 raise InputError(f"two classes of elements have the kind '{member.kind}'")
     return found
+
+
+def any_of(found: Mapping[str, type[Element]]) -> Any:
+    """The type of a field that takes an element of any of the kinds, told apart by its ``type``."""
+    return Annotated[reduce(or_, found.values()), Field(discriminator="type")]

@@ -11,11 +11,16 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from pydantic import ValidationError as PydanticError
+
 from ..errors import InputError
-from .fields import NAME_PATTERN
+from .fields import NAME_PATTERN, sentence
 from .formula import UNIT, FormulaError
+from .formula_field import FUNCTIONS as FORMULA_FUNCTIONS
 from .formula_field import TIME
+from .formula_names import MEASURES
 from .quantity import CONSTANTS, FUNCTIONS, Quantity, in_si, quantity
+from .table import Table
 
 MOST_REPEATS = 1_000_000
 _LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
@@ -74,6 +79,31 @@ def read_parameters(found: Any) -> dict[str, Quantity]:
         except FormulaError as error:
             raise InputError(f"parameters.{name}: {error}") from None
     return parameters
+
+
+def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
+    """The scene's tables, which its formulas may call as functions.
+
+    Raises
+    ------
+    InputError
+        When a name is no identifier or has a meaning in formulas, or a table cannot be read.
+    """
+    if found is None:
+        return {}
+    if not isinstance(found, dict):
+        raise InputError(f"tables: found {found!r}, expected a mapping of names to tables")
+    tables = {}
+    for name, table in found.items():
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            raise InputError(f"tables: found the name {name!r}, expected letters, digits and _")
+        if name in (*FUNCTIONS, *FORMULA_FUNCTIONS, *MEASURES, *parameters):
+            raise InputError(f"tables.{name}: found the name of a function or parameter, expected another")
+        try:
+            tables[name] = Table.model_validate(table, context={"parameters": parameters})
+        except PydanticError as error:
+            raise InputError(f"tables.{name}: {sentence(error)}") from None
+    return tables
 
 
 def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity]) -> Any:

@@ -31,7 +31,11 @@ NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]
     """Makes a direct construction fail with the package's own error."""
 
-    def __call__(cls, **fields: Any) -> Any:
+    def __call__(cls, *unnamed: Any, **fields: Any) -> Any:
+        if unnamed:
+            names = ", ".join(f"{field.alias or name}=..." for name, field in cls.model_fields.items())
+            found = ", ".join(map(repr, unnamed))
+            raise InputError(f"{cls.__name__}: found {found} without a name, expected names of fields: {names}")
         try:
             return super().__call__(**fields)
         except PydanticError as error:
@@ -66,6 +70,14 @@ class Described(_Base):
                 if key not in known:
                     raise ValueError(f"found the unknown key '{key}', expected one of {', '.join(known)}")
         return found
+
+    @model_validator(mode="before")
+    @classmethod
+    def _arrays_as_lists(cls, found: Any) -> Any:
+        """NumPy's arrays and numbers as Python's, so that no field has to know both."""
+        if not isinstance(found, dict):
+            return found
+        return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}
 
 
 @dataclass(frozen=True)

@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from numbers import Real
 from typing import Annotated, Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from .formula import UNIT, FormulaError, parse
-from .marker import Marker
+from .formula_functions import FUNCTIONS, OF_TABLE, check_functions
+from .formula_names import MEASURES
+from .marker import GROUND, MarkerReference
 from .quantity import CONSTANTS, UNITS, Quantity
 from .table import Table
 
 TIME = "t"
-POSITIONS = ("x", "y", "angle")
-VELOCITIES = ("vx", "vy", "omega")
-POSITION_MEASURES = ("dx", "dy", "dm", "az")
-VELOCITY_MEASURES = ("vx", "vy", "vm", "vr", "wz")
-FUNCTIONS = (
-    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
-    "abs", "sign", "min", "max", "step", "step5",
-)  # fmt: skip
-"""What formulas may call.  ``step(x, x0, h0, x1, h1)`` goes from h0 to h1 by a cubic, ``step5`` by a quintic."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +35,18 @@ class Formula:
         Names that the field gives a meaning to (``s`` and ``v`` of a spring's law).
     values : dict of str to float
         The scene's parameters, units and constants that it uses, in SI units.
+    velocities : bool
+        Whether it may hold velocities.
+    tables : mapping of str to Table
+        The scene's tables that it calls as functions.
     """
 
     text: str
     tree: ast.expr
     variables: tuple[str, ...]
     values: dict[str, float]
+    velocities: bool = False
+    tables: Mapping[str, Table] = field(default_factory=dict)
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
@@ -55,7 +55,7 @@ class Formula:
                 case ast.Attribute(ast.Name(body), coordinate) if body != UNIT:
                     yield body, coordinate
 
-    def measures(self) -> Iterator[tuple[str, tuple[Marker, ...]]]:
+    def measures(self) -> Iterator[tuple[str, tuple[MarkerReference, ...]]]:
         """The measures that it uses with their markers, in reading order."""
         for node in reading_order(self.tree):
             if is_measure(node):
@@ -69,7 +69,9 @@ class Formula:
             yield from (marker.body for marker in markers)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Formula) and (self.text, self.values) == (other.text, other.values)
+        return isinstance(other, Formula) and all(
+            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables")
+        )
 
     def __hash__(self) -> int:
         return hash(self.text)
@@ -97,24 +99,29 @@ def is_measure(node: ast.AST) -> bool:
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MEASURES
 
 
-MEASURES = tuple(dict.fromkeys((*POSITION_MEASURES, *VELOCITY_MEASURES)))
-
-
-def measured_markers(node: ast.AST) -> tuple[Marker, ...]:
-    """The markers of a measure: one or two references to bodies or their markers; ground where one is left out."""
+def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
+    """The markers of a measure: two references to bodies or their markers, ground where one is left out, and perhaps a
+    third one, whose axes the measure is taken along.
+    """
     assert isinstance(node, ast.Call)
     markers = []
     for argument in node.args:
         match argument:
             case ast.Name(body):
-                markers.append(Marker(body=body))
+                markers.append(MarkerReference(body=body))
             case ast.Attribute(ast.Name(body), marker):
-                markers.append(Marker(body=body, marker=marker))
+                markers.append(MarkerReference(body=body, marker=marker))
             case _:
                 raise FormulaError(f"found '{ast.unparse(argument)}' in a measure, expected a body or body.marker")
-    if len(markers) not in (1, 2):
+    if len(markers) not in (1, 2, 3):
         raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected one or two")
-    return tuple(markers) if len(markers) == 2 else (markers[0], Marker(body="ground"))
+    return tuple(markers) if len(markers) > 1 else (markers[0], MarkerReference(body=GROUND))
+
+
+def called_tables(tree: ast.expr, tables: Mapping[str, Table]) -> dict[str, Table]:
+    """The tables that a formula calls, by name."""
+    called = (node.func.id for node in reading_order(tree) if isinstance(node, ast.Call))  # type: ignore[attr-defined]
+    return {name: tables[name] for name in called if name in tables}
 
 
 @dataclass(frozen=True)
@@ -143,12 +150,13 @@ class FormulaOf:
             return found
         if isinstance(found, Table | dict) and self.table:
             return found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
-        formula = self._made(found, {name: value.value for name, value in parameters.items()})
+        known = {name: value.value for name, value in parameters.items()}
+        formula = self._made(found, known, (info.context or {}).get("tables") or {})
         self._check(formula)
         return formula
 
-    def _made(self, found: Any, known: dict[str, float]) -> Formula:
-        if isinstance(found, int | float) and not isinstance(found, bool):
+    def _made(self, found: Any, parameters: dict[str, float], tables: Mapping[str, Table]) -> Formula:
+        if isinstance(found, Real) and not isinstance(found, bool):
             found = repr(float(found))
         elif hasattr(found, "free_symbols"):
             from sympy.printing.pycode import pycode
@@ -158,22 +166,29 @@ class FormulaOf:
             allowed = "a formula or a table" if self.table else "a formula"
             raise FormulaError(f"found {found!r}, expected {allowed}")
         tree = parse(found)
-        return Formula(found, tree, self.variables, dict(self._values(found, tree, known)))
+        known = FUNCTIONS | dict.fromkeys(tables, OF_TABLE)
+        check_functions(tree, known, MEASURES, (*known, *MEASURES) if self.coordinates else tuple(known))
+        values = dict(self.values(found, tree, parameters))
+        return Formula(found, tree, self.variables, values, self.velocities, called_tables(tree, tables))
 
-    def _values(self, text: str, tree: ast.expr, known: dict[str, float]) -> Iterator[tuple[str, float]]:
+    def values(self, text: str, tree: ast.expr, known: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+        """The parameters, units and constants in a tree with their values in SI units.
+
+        Raises
+        ------
+        FormulaError
+            For a name without a meaning.
+        """
         for node in reading_order(tree):
             match node:
                 case ast.Attribute(ast.Name(owner), name) if owner == UNIT:
                     if name not in UNITS:
                         raise FormulaError(f"found '{name}' after a number in '{text}', expected a unit")
                     yield f"{UNIT}.{name}", UNITS[name].value
-                case ast.Call(ast.Name(name)) if name not in (*FUNCTIONS, *MEASURES):
-                    listed = ", ".join((*FUNCTIONS, *MEASURES) if self.coordinates else FUNCTIONS)
-                    raise FormulaError(f"found the unknown function '{name}', expected one of {listed}")
                 case ast.Name(name) if name != TIME and name not in self.variables:
                     yield name, self._value(text, name, known)
 
-    def _value(self, text: str, name: str, known: dict[str, float]) -> float:
+    def _value(self, text: str, name: str, known: Mapping[str, float]) -> float:
         if name in known:
             return known[name]
         units = {} if self.variables else UNITS  # a lone s in a law of v would be a second
@@ -192,13 +207,6 @@ class FormulaOf:
         used += [f"{name}(...)" for name, _ in formula.measures()]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
-        allowed = (*POSITIONS, *(VELOCITIES if self.velocities else ()))
-        for body, coordinate in formula.coordinates():
-            if coordinate not in allowed:
-                raise FormulaError(f"found '{body}.{coordinate}', expected one of {body}.{f', {body}.'.join(allowed)}")
-        for name, _ in formula.measures():
-            if name in VELOCITY_MEASURES and not self.velocities:
-                raise FormulaError(f"found the velocity {name} in '{formula.text}', expected positions only")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)

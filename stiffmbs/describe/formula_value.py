@@ -57,9 +57,15 @@ def step5_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
 
 
+def branch_value(x: Any, below: Any, at: Any, above: Any) -> Any:
+    """One of three, of numbers or arrays, by the sign of the first (Adams' IF)."""
+    return np.select([np.less(x, 0), np.greater(x, 0)], [below, above], at)
+
+
 _FUNCTIONS: dict[str, Callable[..., Quantity]] = {
     **FUNCTIONS,
     "step": lambda *a: Quantity(step_value(*(q.value for q in a))),
     "step5": lambda *a: Quantity(step5_value(*(q.value for q in a))),
     "sign": lambda a: Quantity(math.copysign(1.0, a.value)),
+    "branch": lambda x, below, at, above: below if x.value < 0 else above if x.value > 0 else at,
 }

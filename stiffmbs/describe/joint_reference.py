@@ -1,4 +1,4 @@
-"""Whether a joint is of the sort that an element refers to."""
+"""Whether a joint has the coordinate that an element refers to."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from .element import Element, Joint, JointName
 
 
 def unfit_joints(
-    element: Element, joints: Mapping[str, Joint], wanted: Mapping[str, type[Joint]] | None = None
+    element: Element, joints: Mapping[str, Joint], wanted: Mapping[str, str] | None = None
 ) -> Iterator[tuple[str, str]]:
-    """The fields whose joint has no coordinate, or is not of the kind that `wanted` names for the field; and why.
+    """The fields whose joint has no such coordinate, or not the one that `wanted` names for the field; and why.
 
     Parameters
     ----------
@@ -18,16 +18,21 @@ def unfit_joints(
         With fields that name joints.
     joints : mapping of str to Joint
         The model's joints.
-    wanted : mapping of str to type, optional
-        The class of joint by field.
+    wanted : mapping of str to str, optional
+        ``angle`` or ``displacement`` by field.
     """
     for field, name in element.parts(JointName):
-        joint, base = joints[name], (wanted or {}).get(field)
-        if base is not None and not isinstance(joint, base):
-            yield field, f"found '{name}' of the type {joint.kind}, expected a {base.kind} joint"
-        elif type(joint).coordinate is Joint.coordinate:
-            yield (
-                field,
-                f"found '{name}' of the type {joint.kind}, expected a joint with a coordinate (revolute, prismatic or "
-                "point_on_line)",
-            )
+        joint, sort = joints[name.joint], (wanted or {}).get(field)
+        found, meant = f"found '{name}' of the type {joint.kind}, expected", name.coordinate_of(joint)
+        if joint.coordinates and meant is None:
+            yield field, f"{found} {' or '.join(f'{name.joint}.{own}' for own in joint.coordinates)}"
+        elif meant is None or sort not in (None, meant):
+            yield field, f"{found} {SORTS[sort]}"
+
+
+SORTS = {
+    None: "a joint with a coordinate, such as a revolute or prismatic one",
+    "angle": "a revolute joint, or another one's angle",
+    "displacement": "a prismatic joint, or another one's displacement",
+}
+"""Joints with a coordinate, or with a certain one, in words."""

@@ -1,7 +1,11 @@
-"""A marker: a point and a direction fixed on a body (Adams' word), or on ground."""
+"""A marker: a point and a direction fixed on a body (Adams' word), or on ground.
+
+What a marker of the plane and one of space have in common is that they name a body; where they sit on it is their own.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from pydantic import Field, GetJsonSchemaHandler, model_validator
@@ -22,8 +26,55 @@ class Placement(Described):
     )
     angle: si.Angle = Field(0.0, description="direction of the marker's axis against the body's, rad")
 
+    def numbers(self) -> tuple[float, ...]:
+        """What a kernel takes: the point, the angle, its cosine and its sine."""
+        return (*self.point, self.angle, math.cos(self.angle), math.sin(self.angle))
 
-class Marker(Described):
+
+class MarkerReference(Described):
+    """A body, or a marker that a body names: ``cart``, ``bar.end``, ``ground``.
+
+    Parameters
+    ----------
+    body : str
+        The body, or ``"ground"``.
+    marker : str, optional
+        A marker that the body names.
+    """
+
+    body: str = Field(description="a body of the scene, or ground")
+    marker: str | None = Field(None, pattern=NAME_PATTERN, description="a marker that the body names")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_reference(cls, found: Any) -> Any:
+        if isinstance(found, str):
+            body, _, marker = found.partition(".")
+            return {"body": body, "marker": marker or None}
+        if (
+            isinstance(found, dict)
+            and found.get("marker")
+            and found.keys() - {"body", "marker"} & cls.model_fields.keys()
+        ):
+            raise ValueError("found a marker's name and a point, expected one or the other")
+        if not isinstance(found, dict | MarkerReference):
+            raise ValueError(f"found {found!r}, expected a body, body.marker, or a mapping with body and point")
+        return found
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [_REFERENCE, handler(core_schema)]}
+
+    def placement(self) -> Any:
+        """Where it sits on its body as given on the spot; None where it isn't."""
+        return None
+
+    @property
+    def label(self) -> str:
+        return f"{self.body}.{self.marker}" if self.marker else self.body
+
+
+class Marker(MarkerReference):
     """A marker used by an element: of a body by name, or given on the spot.
 
     Written as ``cart`` (the centre of mass), ``bar.end`` (a marker that the body names), ``ground``, or
@@ -41,27 +92,9 @@ class Marker(Described):
         Direction of the marker's axis against the body's, rad.
     """
 
-    body: str = Field(description="a body of the scene, or ground")
-    marker: str | None = Field(None, pattern=NAME_PATTERN, description="a marker that the body names")
     point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
     angle: si.Angle = Field(0.0, description="direction of the axis against the body's, rad")
 
-    @model_validator(mode="before")
-    @classmethod
-    def _from_reference(cls, found: Any) -> Any:
-        if isinstance(found, str):
-            body, _, marker = found.partition(".")
-            return {"body": body, "marker": marker or None}
-        if isinstance(found, dict) and found.get("marker") and {"point", "angle"} & found.keys():
-            raise ValueError("found a marker's name and a point, expected one or the other")
-        if not isinstance(found, dict | Marker):
-            raise ValueError(f"found {found!r}, expected a body, body.marker, or a mapping with body and point")
-        return found
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"anyOf": [_REFERENCE, handler(core_schema)]}
-
-    @property
-    def label(self) -> str:
-        return f"{self.body}.{self.marker}" if self.marker else self.body
+    def placement(self) -> Placement:
+        """Where it sits on its body, as given on the spot."""
+        return Placement(point=self.point, angle=self.angle)

@@ -13,6 +13,8 @@ Dimension = tuple[float, float, float]  # exponents of kg, m, s; angles have non
 
 NUMBER: Dimension = (0, 0, 0)
 ANY = "value"
+LARGEST = 1e100
+"""In SI units; products of three such numbers overflow."""
 DIMENSIONS: dict[str, tuple[Dimension, str]] = {
     ANY: (NUMBER, "SI units"),
     "number": (NUMBER, "1"),
@@ -24,7 +26,10 @@ DIMENSIONS: dict[str, tuple[Dimension, str]] = {
     "velocity": ((0, 1, -1), "m/s"),
     "angular velocity": ((0, 0, -1), "rad/s"),
     "acceleration": ((0, 1, -2), "m/s^2"),
+    "area": ((0, 2, 0), "m^2"),
+    "second moment of area": ((0, 4, 0), "m^4"),
     "force": ((1, 1, -2), "N"),
+    "pressure": ((1, -1, -2), "N/m^2"),
     "torque": ((1, 2, -2), "N m"),
     "stiffness": ((1, 0, -2), "N/m"),
     "damping": ((1, 0, -1), "N s/m"),
@@ -214,12 +219,21 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
             raise FormulaError(
                 f"found '{found}', which is in {_unit(result.dimension)}, expected a {dimension} in {unit}"
             )
-        return result.value
-    if isinstance(found, bool) or not hasattr(found, "__float__"):
+        return _of_ordinary_size(result.value, dimension)
+    if isinstance(found, bool) or not hasattr(found, "__float__") or getattr(found, "ndim", False):
         raise FormulaError(f"found {_shown(found)}, expected a {dimension} in {unit}")
     value = float(found)
     if not math.isfinite(value):
         raise FormulaError(f"found {value}, expected a finite {dimension} in {unit}")
+    return _of_ordinary_size(value, dimension)
+
+
+def _of_ordinary_size(value: float, dimension: str) -> float:
+    """The value, if its square and its products with others are still numbers."""
+    if abs(value) > LARGEST:
+        raise FormulaError(
+            f"found {value:g}, expected a {dimension} below {LARGEST:g} {DIMENSIONS[dimension][1]}".rstrip()
+        )
     return value
 
 
@@ -235,4 +249,4 @@ def _shown(found: object) -> str:
         return "yes or no (a truth value)"
     if isinstance(found, dict):
         return "a mapping"
-    return "a list" if isinstance(found, list | tuple) else repr(found)
+    return "a list" if isinstance(found, list | tuple) or hasattr(found, "ndim") else repr(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -11,30 +11,58 @@ from pydantic import Field
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
-from .expand import read_parameters, repeat_entries, set_value
+from .body import Body as PlanarBody
+from .expand import read_parameters, read_tables, repeat_entries, set_value
 from .fields import sentence
 from .figure import Figure
-from .model import FORCES, JOINTS, ModelData
+from .model import FORCES, JOINTS, PlanarData
+from .model_data import ModelData
 from .settings import RunSettings
+from .spatial.body import Body as SpatialBody
+from .spatial.model import FORCES as SPATIAL_FORCES
+from .spatial.model import JOINTS as SPATIAL_JOINTS
+from .spatial.model import SpatialData
+from .table import Table
 
 SECTIONS = ("bodies", "joints", "forces")
+DATASET = ".adm"
+"""How the name of an Adams/Solver dataset ends."""
 
 
 class Scene(ModelData):
     """A model and its run settings, as read from a file."""
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
+    tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
+    notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
+
+
+def notes_of(model: ModelData) -> tuple[str, ...]:
+    """The notes of a scene; a model that is none has none."""
+    return model.notes if isinstance(model, Scene) else ()
+
+
+class PlanarScene(PlanarData, Scene):
+    """A scene in the plane."""
+
+
+class SpatialScene(SpatialData, Scene):
+    """A scene in space."""
+
+
+FAMILIES: dict[Any, type[Scene]] = {2: PlanarScene, 3: SpatialScene}
+"""By the scene's dimensions."""
 
 
 def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
-    """Read a scene file.
+    """Read a scene file, or an Adams/Solver dataset.
 
     Parameters
     ----------
     path : str or Path
-        A YAML file.
+        A YAML file; a dataset where its name ends in ``.adm``.
     changes : sequence of (path, text)
         Values put in place of the file's, such as ``("bodies.cart.mass", "12 kg")``.
 
@@ -43,14 +71,33 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     InputError
         When the file cannot be read or is no valid scene; names the file, the line and the path in it.
     """
+    if Path(path).suffix.lower() == DATASET:
+        from .adams.load import load_adams
+
+        return load_adams(path, changes)
+    return read_scene(file_text(path), changes, str(path))
+
+
+def file_text(path: str | Path, otherwise: str = "") -> str:
+    """What stands in a file: UTF-8, or another encoding where it is none.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read.
+    """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        content = Path(path).read_bytes()
     except FileNotFoundError:
         raise InputError(f"{path}: found no such file, expected a scene") from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise InputError(f"{path}: the file cannot be read ({reason})") from None
-    return read_scene(text, changes, str(path))
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read ({error.strerror})") from None
+    try:
+        return content.decode()
+    except UnicodeDecodeError:
+        if otherwise:
+            return content.decode(otherwise)
+        raise InputError(f"{path}: the file cannot be read (it is not UTF-8 text)") from None
 
 
 def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene") -> Scene:
@@ -60,12 +107,38 @@ def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
+    return made_scene(found, changes, source, lambda path: _line(text, path))
+
+
+def made_scene(
+    found: dict[str, Any],
+    changes: Sequence[tuple[str, str]],
+    source: str,
+    line_of: Callable[[tuple[Any, ...]], int | None],
+) -> Scene:
+    """The scene of a mapping.
+
+    Parameters
+    ----------
+    found : mapping
+        Is changed.
+    changes : sequence of (path, text)
+    source : str
+        What messages call it.
+    line_of : callable
+        The line in the source of what a path of keys leads to.
+
+    Raises
+    ------
+    InputError
+        When it is no valid scene.
+    """
     for path, value in changes:
         set_value(found, path, _yaml(value, f"--set {path}"))
     try:
         return _validated(found)
     except _Located as error:
-        line = _line(text, error.path)
+        line = line_of(error.path)
         where = f"{source}, line {line}, " if line else f"{source}, "
         raise InputError(where + str(error)) from None
 
@@ -81,18 +154,40 @@ class _Located(Exception):
 def _validated(found: dict[str, Any]) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"))
+        tables = read_tables(found.get("tables"), parameters)
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
+    raw["tables"] = tables
+    context = {"parameters": parameters, "tables": tables}
     try:
-        return Scene.model_validate(raw, context={"parameters": parameters})
+        return _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
+        if "dimensions" not in raw and _right_in_space(raw, context):
+            raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
         message = sentence(error)
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
+
+
+def _family(raw: dict[str, Any]) -> type[Scene]:
+    """The class of scenes of as many dimensions as the scene says; of two where it says nothing."""
+    found = raw.get("dimensions", 2)
+    if found not in (2, 3):
+        raise _Located(f"dimensions: found {found!r}, expected 2 or 3", ("dimensions",))
+    return FAMILIES[found]
+
+
+def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
+    """Whether a scene that is wrong in the plane would be right in space."""
+    try:
+        SpatialScene.model_validate(raw, context=context)
+    except PydanticError:
+        return False
+    return True
 
 
 def _yaml(text: str, source: str) -> Any:
@@ -136,9 +231,17 @@ def _line(text: str, path: tuple[Any, ...]) -> int | None:
 
 
 def scene_schema() -> dict[str, Any]:
-    """The JSON schema of scene files."""
-    schema = Scene.model_json_schema()
+    """The JSON schema of scene files, of the plane and of space."""
+    from pydantic.json_schema import models_json_schema
+
+    planar: list[type[Any]] = [PlanarBody, *JOINTS.values(), *FORCES.values()]
+    spatial: list[type[Any]] = [SpatialBody, *SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]
+    scenes: list[type[Any]] = [PlanarScene, SpatialScene]
+    found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial)])
     loop = {"type": "string", "description": "repeat this entry: 'k in 1..N'; k and {k} are replaced in it"}
-    for part in ("Body", *(element.__name__ for element in (*JOINTS.values(), *FORCES.values()))):
-        schema["$defs"][part]["properties"]["for"] = loop
-    return schema
+    for part in dict.fromkeys((*planar, *spatial)):
+        name = found[part, "validation"]["$ref"].rpartition("/")[2]
+        schema["$defs"][name]["properties"]["for"] = loop
+    in_plane, in_space = (found[scene, "validation"] for scene in scenes)
+    three = {"properties": {"dimensions": {"const": 3}}, "required": ["dimensions"]}
+    return {"if": three, "then": in_space, "else": in_plane, "$defs": schema["$defs"]}

@@ -10,7 +10,7 @@ from . import si
 from .fields import Described, Measured
 
 MOST_OUTPUTS = 10_000_000
-"""Output times of a run; a body and a joint take 2 GB at so many."""
+"""Output times of a run; a body and a joint take 2 GB at so many, in a temporary file."""
 
 
 class RunSettings(Described):
@@ -28,7 +28,7 @@ class RunSettings(Described):
         Number of output points, evenly spaced, ends included; or the solver's own steps.
     solver : str
         ``bdf`` (SUNDIALS IDA), ``projected`` (explicit, with projection onto the constraints), ``kinematic`` (for
-        scenes whose drives fix every coordinate), or ``auto`` (bdf or projected, by the spectrum of the scene).
+        scenes whose drives fix every coordinate), or ``auto`` (projected, and bdf where and while the scene is stiff).
     formulation : str
         Of the residual that ``bdf`` integrates (`stiffmbs.solve.formulations`).
     stabilisation : float
@@ -44,6 +44,8 @@ class RunSettings(Described):
         Whether ``projected`` returns to the constraints after each step.
     max_step : float
         Largest step of ``bdf`` and the adaptive schemes, s; 0 for none.
+    presolve : bool
+        Whether the solver is given a smaller problem with the same results where the model allows it.
     give_way : tuple of str
         Joints whose equations are dropped first where the scene has redundant ones.
     """
@@ -67,6 +69,7 @@ class RunSettings(Described):
     step: si.PositiveTime = Field(1e-3, description="step of the fixed schemes, s")
     projection: bool = Field(True, description="whether projected returns to the constraints after each step")
     max_step: si.TimeOrZero = Field(0.0, description="largest step of bdf and the adaptive schemes, s; 0 for none")
+    presolve: bool = Field(True, description="whether unknowns that others determine are left out of the solution")
     give_way: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
 
     @model_validator(mode="after")
@@ -78,6 +81,6 @@ class RunSettings(Described):
         asked = self.duration / self.output if self.output is not None else self.points
         if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
             raise ValueError(
-                f"found {asked:.3g} output times, expected at most {MOST_OUTPUTS:.0e}: they are kept in memory"
+                f"found {asked:.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
             )
         return self

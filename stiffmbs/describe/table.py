@@ -25,11 +25,15 @@ class Table(Described):
         ``not-a-knot``.
     lines : bool
         Straight lines in place of a spline; its points are corners.
+    akima : bool
+        Akima's cubics in place of a spline, each by the five points around it: no overshoot, and no continuous curvature.
+        Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602 (Adams: AKISPL).
     """
 
     table: tuple[tuple[si.Anything, si.Anything], ...] = Field(min_length=2, description="pairs of argument and value")
     ends: Literal["natural", "clamped", "periodic", "not-a-knot"] = Field("natural", description="end condition")
     lines: bool = Field(False, description="straight lines in place of a spline")
+    akima: bool = Field(False, description="Akima's local cubics in place of a spline")
 
     @field_validator("table")
     @classmethod
@@ -46,6 +50,8 @@ class Table(Described):
             raise ValueError(
                 f"found {first:g} at the start and {last:g} at the end, expected a periodic table to close"
             )
+        if self.akima and (self.lines or self.ends != "natural"):
+            raise ValueError("found akima with lines or ends, expected it alone")
         if self.ends == "not-a-knot" and len(self.table) < 4:
             raise ValueError(f"found {len(self.table)} points, expected 4 or more for not-a-knot ends")
         return self

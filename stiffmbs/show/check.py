@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ..analyse.overconstraint import Overconstraint, listed, overconstraints
-from ..compile.system import PLANAR, System
-from ..describe.model import Model, ModelData
+from ..analyse.own_freedoms import OwnFreedom, own_freedoms
+from ..compile.system import System
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.scene import notes_of
 from ..describe.settings import RunSettings
-from ..errors import AssemblyError
+from ..errors import AssemblyError, SolverError
 from ..solve.initial import initial_values
+from ..solve.pieces import Piece
+from .presolve import presolve_sentences, unknowns
 from .redundancy import contradiction_sentences, overconstraint_sentences, pose_sentences, singular_sentence
-from .run import Examined, examined
+from .run import Examined, examined, presolved
 
 
 @dataclass(frozen=True)
@@ -39,9 +44,11 @@ class Report:
     extra_freedoms : int
         Degrees of freedom at the start beyond those in general: more than 0 at a singular pose.
     unknowns : tuple of (int, int)
-        Of the formulation SI2, with all equations and without the redundant ones.
+        Of the formulation SI2: of all bodies and equations, and of what is solved for.
+    presolve : tuple of str
+        What is left out of the solution because it follows from the rest, a sentence each.
     messages : tuple of str
-        All there is to say, a sentence each.
+        All else that there is to say, a sentence each.
     sound : bool
         Whether nothing stands in the way of a run with unique reactions.
     """
@@ -56,6 +63,7 @@ class Report:
     contradictions: tuple[str, ...]
     extra_freedoms: int
     unknowns: tuple[int, int]
+    presolve: tuple[str, ...]
     messages: tuple[str, ...]
     sound: bool
 
@@ -69,20 +77,21 @@ class Report:
             "redundant": [{"joint": joint, "equation": equation} for joint, equation in self.redundant],
             "not_unique": list(self.not_unique),
             "unknowns": {"before": self.unknowns[0], "after": self.unknowns[1]},
-            "messages": list(self.messages),
+            "messages": [*self.messages, *(f"presolve: {sentence}" for sentence in self.presolve)],
         }
 
     def __str__(self) -> str:
+        count = self.degrees_of_freedom
+        freedoms = f"{count} degree{'s' if count != 1 else ''} of freedom"
         head = (
-            f"{self.name or 'model'}: {self.degrees_of_freedom} degrees of freedom, {self.equations} equations of rank "
+            f"{self.name or 'model'}: {freedoms}, {self.equations} equations of rank "
             f"{self.rank}, {self.unknowns[0]} unknowns"
         )
-        if self.unknowns[1] != self.unknowns[0]:
-            head += f", {self.unknowns[1]} without redundant equations"
-        return "\n".join([head, *(f"- {message}" for message in self.messages or ("nothing to object to",))])
+        presolve = [f"presolve: {sentence}" for sentence in self.presolve]
+        return "\n".join([head, *presolve, *(f"- {message}" for message in self.messages or ("nothing to object to",))])
 
 
-def check(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Report:
+def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Report:
     """Examine a model: degrees of freedom, redundancy, uniqueness of reactions, singular poses, contradictions.
 
     Parameters
@@ -109,36 +118,32 @@ def check(model: Model | ModelData, settings: RunSettings | None = None, **chang
     held_twice = [] if against else [sentence for case in cases for sentence in overconstraint_sentences(case)]
     problems = [*against, *held_twice]
     problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
-    problems += [] if against or redundancy.extra_freedoms else _start_sentences(found)
-    positions = system.n_q + system.n_u
+    mechanics, pieces, free = found.mechanics(), tuple[Piece, ...](), list[OwnFreedom]()
+    if not against:
+        try:
+            start = initial_values(mechanics, found.grid.start)
+            free = own_freedoms(mechanics, found.grid.start)
+            pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+        except (AssemblyError, SolverError) as error:
+            problems += [] if redundancy.extra_freedoms else [str(error)]
     return Report(
         name=found.data.name, degrees_of_freedom=redundancy.degrees_of_freedom, equations=system.n_c,
         rank=redundancy.rank, redundant=redundancy.redundant, not_unique=redundancy.not_unique, overconstraints=cases,
         contradictions=against, extra_freedoms=redundancy.extra_freedoms,
-        unknowns=(
-            positions + int(system.holonomic.sum()) + system.n_c,
-            positions + int((system.holonomic & redundancy.active).sum()) + redundancy.rank,
-        ),
-        messages=(*problems, *_freedom_sentences(found, system)), sound=not problems,
+        unknowns=unknowns(system, pieces, mechanics), presolve=tuple(presolve_sentences(system, pieces, mechanics)),
+        messages=(*problems, *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
     )  # fmt: skip
 
 
-def _start_sentences(found: Examined) -> list[str]:
-    """Why there are no initial values, where there are none."""
-    try:
-        initial_values(found.mechanics(), found.grid.start)
-    except AssemblyError as error:
-        return [str(error)]
-    return []
-
-
-def _freedom_sentences(found: Examined, system: System) -> Iterator[str]:
+def _freedom_sentences(found: Examined, system: System, free: Sequence[OwnFreedom]) -> Iterator[str]:
     if found.redundancy.degrees_of_freedom == 0:
         yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
+    for freedom in free:
+        yield f"{freedom.body} can {freedom.motion} by itself between {listed(freedom.joints)}, which moves no other body"
     touched = {
         body
         for group in system.groups if group.kind.element.kind
-        for body in (group.index[:, : 2 * group.kind.n_bodies : 2] // PLANAR).ravel()
+        for body in group.bodies.ravel()
     }  # fmt: skip
     alone = [name for k, name in enumerate(system.bodies) if k not in touched]
     if alone:

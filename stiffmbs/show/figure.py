@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ..describe.figure import Figure
 from ..errors import InputError
 from .files import refuse_path
 from .solution import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
 
 ENDINGS = (".png", ".svg", ".pdf")
 
@@ -27,28 +31,38 @@ def check_figure(path: Path) -> None:
 
 
 def draw(path: Path, solution: Solution, figure: Figure | None) -> None:
-    """Draw a scene's own figure; without one, the total energy over time.
+    """Draw a scene's own figure to a file; parameters and errors as for `drawn`."""
+    drawn(solution, figure).savefig(path, dpi=120)
+
+
+def drawn(solution: Solution, figure: Figure | None) -> Sheet:
+    """A scene's own figure; without one, the total energy over time.
 
     Raises
     ------
     InputError
         When the figure names an unknown channel.
     """
-    import matplotlib
+    from matplotlib.figure import Figure as Sheet
 
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
+    sheet = Sheet(figsize=(8, 5), layout="constrained")
+    draw_on(sheet, solution, figure or Figure(title="total energy", y=("energy.total",)))
+    return sheet
 
-    chosen = figure or Figure(title="total energy", y=("energy.total",))
-    x = solution.time if chosen.x == "time" else solution[chosen.x]
-    sheet, axes = pyplot.subplots(figsize=(8, 5), layout="constrained")
-    for channel in chosen.y:
-        axes.plot(x, solution[channel], label=channel)
-    axes.set_xlabel("time (s)" if chosen.x == "time" else chosen.x)
-    axes.set_title(chosen.title or solution.name)
-    if chosen.equal:
+
+def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
+    """Draw a figure on an empty sheet of matplotlib's; errors as for `drawn`."""
+    x = solution.time if figure.x == "time" else solution[figure.x]
+    axes: Any = sheet.add_subplot(projection="3d" if figure.z else None)
+    for channel in figure.y:
+        axes.plot(x, solution[channel], *([solution[figure.z]] if figure.z else []), label=channel)
+    axes.set_xlabel("time (s)" if figure.x == "time" else figure.x)
+    if figure.z:
+        axes.set_ylabel(figure.y[0])
+        axes.set_zlabel(figure.z)
+    else:
+        axes.legend()
+    axes.set_title(figure.title or solution.name)
+    if figure.equal:
         axes.set_aspect("equal")
     axes.grid(alpha=0.3)
-    axes.legend()
-    sheet.savefig(path, dpi=120)
-    pyplot.close(sheet)

@@ -7,10 +7,12 @@ import tempfile
 from collections.abc import Callable, Collection
 from importlib.util import find_spec
 from pathlib import Path
+from zipfile import ZipFile
 
 import numpy as np
 
 from ..errors import InputError
+from ..solve.storage import blocks, release
 from .solution import Solution
 
 
@@ -18,16 +20,25 @@ def _write_csv(path: Path, solution: Solution) -> None:
     marks = [
         f"{name}.not_unique" for name in solution.not_unique
     ]  # columns of ones: names of channels stay as they are
-    ones = np.ones((len(solution.time), len(marks)))
-    columns = np.column_stack([solution.time, *solution.channels.values(), ones])
-    header = ",".join(["time", *solution.channels, *marks])
-    np.savetxt(path, columns, delimiter=",", header=header, comments="", fmt="%.17g")
+    columns = (solution.time, *solution.channels.values())
+    with path.open("w", encoding="utf-8") as file:
+        print(",".join(["time", *solution.channels, *marks]), file=file)
+        for block in blocks(len(solution.time)):
+            ones = np.ones((block.stop - block.start, len(marks)))
+            np.savetxt(
+                file, np.column_stack([*(column[block] for column in columns), ones]), delimiter=",", fmt="%.17g"
+            )
+            release(*columns)
 
 
 def _write_npz(path: Path, solution: Solution) -> None:
+    """As `numpy.savez` does, but for memory: one array after the other."""
     marked = {"not_unique": np.array(solution.not_unique)} if solution.not_unique else {}
-    with path.open("wb") as file:
-        np.savez(file, time=solution.time, **solution.channels, **marked)  # type: ignore[arg-type]
+    with ZipFile(path, "w") as archive:
+        for name, values in {"time": solution.time, **solution.channels, **marked}.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                np.lib.format.write_array(file, values, allow_pickle=False)
+            release(values)
 
 
 def _write_netcdf(path: Path, solution: Solution) -> None:
@@ -84,10 +95,22 @@ def write(path: Path, solution: Solution) -> None:
         a unique value are marked: by a column ``rail.fy.not_unique`` of ones, by an array ``not_unique`` of names, or
         by the attribute ``unique`` of each variable.
     """
+    written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
+
+
+def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
+    """Let a file be written beside its place and put there when it is whole.
+
+    Parameters
+    ----------
+    path : Path
+    write_to : callable
+        Writes to the path it is given.
+    """
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=".part-", suffix=path.suffix)
     os.close(handle)
     try:
-        WRITERS[path.suffix](Path(name), solution)
+        write_to(Path(name))
         umask = os.umask(0)
         os.umask(umask)
         os.chmod(name, 0o666 & ~umask)  # as an ordinary new file; mkstemp's are private

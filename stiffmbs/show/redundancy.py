@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 from ..analyse.contradictions import Contradiction
 from ..analyse.finding import LoopFinding
-from ..analyse.overconstraint import Overconstraint, directions, listed, overconstraints
+from ..analyse.loop_equations import AGREES, CLOSED
+from ..analyse.overconstraint import Overconstraint, listed, overconstraints
 from ..analyse.redundancy import Redundancy
 from ..compile.system import System
 from ..errors import AssemblyError
+from .undetermined import channel_words, directed_words
 
 
 def refuse_contradictions(redundancy: Redundancy) -> None:
@@ -26,13 +28,22 @@ def refuse_contradictions(redundancy: Redundancy) -> None:
 
 def overconstraint_sentences(case: Overconstraint) -> Iterator[str]:
     """An overconstraint in sentences: reason, what gives way, what is not unique, remedy."""
-    gone = listed([f"{joint} ({equation})" for joint, equation in case.redundant])
-    yield f"{case.reason}; a run leaves out {gone}, which does not change the motion"
-    channels = [name for part in case.undetermined for name in part.channels]
-    if channels:
-        directed = directions(case.undetermined)
-        yield f"rigid bodies do not determine {', '.join(channels)}" + (f": {directed}" if directed else "")
+    yield f"{case.reason}; a run leaves out {_given_way(case)}, which does not change the motion"
+    if case.undetermined:
+        shared = ["what they carry together is unique"] if case.shared else []
+        directed = "; ".join([*directed_words(case.undetermined), *shared])
+        yield f"rigid bodies do not determine {channel_words(case.undetermined)}" + (
+            f": {directed}" if directed else ""
+        )
     yield case.remedy
+
+
+def _given_way(case: Overconstraint) -> str:
+    """The equations that a run leaves out, joint by joint."""
+    of_joint: dict[str, list[str]] = {}
+    for joint, equation in case.redundant:
+        of_joint.setdefault(joint, []).append(equation)
+    return listed([f"{joint} ({', '.join(equations)})" for joint, equations in of_joint.items()])
 
 
 def contradiction_sentences(redundancy: Redundancy) -> Iterator[str]:
@@ -47,21 +58,26 @@ def _contradiction_sentence(system: System, finding: LoopFinding, contradiction:
     others = listed([name for name in contradiction.joints if name != joint])
     against = f"joint '{joint}' (equation {equation}) contradicts {others or 'itself'}"
     where = "its positions do not agree with theirs" if contradiction.level == "position" else "their velocities differ"
-    return f"the scene cannot be assembled: {against} at t = {contradiction.t:.6g} s, {where}"
+    return (
+        f"the scene cannot be assembled: {against} at t = {contradiction.t:.6g} s, {where} (by {contradiction.gap:.3g})"
+    )
 
 
 def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
     """That the start is a singular pose, where it is one."""
-    if not redundancy.extra_freedoms:
-        return
+    assembled = [finding for finding in redundancy.findings if finding.rank.start.gap <= AGREES]
     bodies = [
         redundancy.system.bodies[body]
-        for finding in redundancy.findings
+        for finding in assembled
         for body in finding.rank.equations.loop.bodies
         if finding.extra_freedoms
     ]
+    if not bodies:  # a pose whose joints do not close is no pose: the search for initial values names the gap
+        return
+    count = redundancy.extra_freedoms
+    more = "is one degree" if count == 1 else f"are {count} degrees"
     yield (
-        f"the start is a singular pose of {listed(bodies)}: for an instant there are {redundancy.extra_freedoms} degrees "
+        f"the start is a singular pose of {listed(bodies)}: for an instant there {more} "
         "of freedom more than elsewhere, and neither accelerations nor reactions are determined; this is no redundancy, "
         "start a little away from there"
     )
@@ -71,10 +87,15 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
     """What else makes the motion doubtful: equations that nearly repeat each other, friction without a unique load."""
     for finding in redundancy.findings:
         joints = [joint.name for joint in finding.rank.equations.loop.joints]
-        if finding.nearly_dependent:
+        if finding.nearly_dependent and not finding.contradictions:
             yield (
                 f"{listed(joints)} nearly repeat each other (smallest singular value {finding.rank.least:.1g}): the motion "
                 "hangs on the last digits of their geometry, expected either an exact or a clear difference"
+            )
+        if finding.redundant and CLOSED < finding.rank.start.gap <= AGREES:
+            yield (
+                f"{listed(joints)} agree to {finding.rank.start.gap:.1g} of their size only: the equations left out stay open by "
+                "so much"
             )
         if not finding.motion_unique:
             yield f"friction hangs on reactions of {listed(joints)} that are not unique, so the motion is not unique either"
@@ -83,8 +104,8 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:
     """What a run tells: the equations that it leaves out, and the channels without a unique value."""
     for case in overconstraints(redundancy):
-        gone = listed([f"{joint} ({equation})" for joint, equation in case.redundant])
-        yield f"{case.reason}; left out: {gone}"
-    if redundancy.not_unique:
-        yield f"rigid bodies do not determine {', '.join(redundancy.not_unique)}: one of many possible values is shown"
+        yield f"{case.reason}; left out: {_given_way(case)}"
+    if redundancy.undetermined:
+        words = channel_words(redundancy.undetermined)
+        yield f"rigid bodies do not determine {words}: one of many possible values is shown"
     yield from pose_sentences(redundancy)

@@ -8,26 +8,28 @@ from typing import Any
 
 import numpy as np
 
-from ..analyse.energy import kinetic_energy, potential_energy
-from ..analyse.reactions import reactions
 from ..analyse.redundancy import Redundancy, examine
-from ..analyse.requests import requests
-from ..compile.system import System, compile_model
-from ..describe.model import Model, ModelData
-from ..describe.scene import Scene
+from ..compile.compile_model import compile_model
+from ..compile.presolve import parts_of
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings
 from ..errors import AssemblyError, InputError
 from ..solve import SOLVERS
-from ..solve.auto import choose
 from ..solve.explicit import ADAPTIVE
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
+from ..solve.pieces import Piece, leave_out_coordinates, piece_of, solve_pieces
+from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
+from .channels import channels_of
+from .gaps import reported
+from .presolve import presolve_sentences
 from .solution import Solution
 
 DEFAULT_POINTS = 1001
-BODY_CHANNELS = (("x", "y", "angle"), ("vx", "vy", "omega"), ("ax", "ay", "alpha"))
 
 
 @dataclass(frozen=True)
@@ -55,15 +57,17 @@ class Job:
     redundancy: Redundancy
     mechanics: Mechanics
     start: InitialValues
-    choice: str = ""
+    pieces: tuple[Piece, ...] = ()
 
     def integrate(self, watch: Watch | None = None) -> Trajectory:
-        """Integrate from the start; see `stiffmbs.solve.trajectory`."""
-        solve = SOLVERS[self.settings.solver]
-        return solve(self.mechanics, self.start, self.grid, self.settings, watch or (lambda t: None))
+        """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
+        solve, watch = SOLVERS[self.settings.solver], watch or (lambda t: None)
+        if self.pieces:
+            return solve_pieces(solve, self.pieces, self.start, self.grid, self.settings, watch)
+        return solve(self.mechanics, self.start, self.grid, self.settings, watch)
 
 
-def prepare(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
+def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
     found = examined(model, settings, **changes)
     if found.redundancy.findings:
@@ -72,15 +76,45 @@ def prepare(model: Model | ModelData, settings: RunSettings | None = None, **cha
         refuse_contradictions(found.redundancy)
     mechanics = found.mechanics()
     start = initial_values(mechanics, found.grid.start)
-    settings, choice = found.settings, ""
-    if settings.solver == "auto":
-        settings, choice = choose(mechanics, settings, found.grid.start)
-    return Job(found.data, settings, found.grid, found.redundancy, mechanics, start, choice)
+    pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+    return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
 
 
-def examined(model: Model | ModelData, settings: RunSettings | None = None, **changes: Any) -> Examined:
+def _may_presolve(settings: RunSettings) -> bool:
+    """Whether a smaller problem has the same results: explicit steps of fixed length and drifts are shown as they are."""
+    shown_as_it_is = settings.solver == "projected" and not _near_constraints(settings)
+    return settings.presolve and settings.solver != "kinematic" and not shown_as_it_is
+
+
+def presolved(
+    model: ModelData, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
+) -> tuple[Piece, ...]:
+    """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
+
+    For implicit steps their mechanics, or those of the whole, then leave out coordinates that others determine.
+
+    Parameters
+    ----------
+    model : ModelData
+    mechanics : Mechanics
+        Of the whole, at its start.
+    start : InitialValues
+    grid : Grid
+    settings : RunSettings
+    """
+    if not _may_presolve(settings):
+        return ()
+    parts = parts_of(model, mechanics.system, apart=grid.times is not None)
+    pieces = tuple(piece_of(part, start, grid.start) for part in parts)
+    if settings.solver != "projected":
+        for solved in [piece.mechanics for piece in pieces] or [mechanics]:
+            leave_out_coordinates(solved, grid.start)
+    return pieces
+
+
+def examined(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Examined:
     """Compile a model and look for redundant equations; parameters and errors as for `run`."""
-    data = model.data() if isinstance(model, Model) else model
+    data = model.data() if isinstance(model, ModelBuilder) else model
     if not isinstance(data, ModelData):
         raise InputError(f"found {model!r}, expected a Model, or a Scene as stiffmbs.load_scene reads it from a file")
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
@@ -94,7 +128,7 @@ def examined(model: Model | ModelData, settings: RunSettings | None = None, **ch
 
 
 def run(
-    model: Model | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any
+    model: ModelBuilder | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any
 ) -> Solution:
     """Solve a model.
 
@@ -121,29 +155,36 @@ def run(
     AssemblyError
         When no consistent start is found.
     """
-    job = prepare(model, settings, **changes)
+    return solved(prepare(model, settings, **changes), watch)
+
+
+def solved(job: Job, watch: Watch | None = None) -> Solution:
+    """Integrate what was prepared, and turn it into channels; errors as for `run`."""
     trajectory = job.integrate(watch)
     project = _near_constraints(job.settings)
-    rows = job.mechanics.report(trajectory.t, trajectory.q, trajectory.u, project=project)
+    rows, left_out = reported(job.mechanics, trajectory, project)
     if not len(rows.t):
         raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
-    statistics = {"name": job.settings.solver, **trajectory.statistics}
+    statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
     if project:
-        statistics["drift"] = float(rows.drift.max())
-    outcome, message = _ending(rows, trajectory)
+        statistics["drift"] = float(np.nanmax(rows.drift))
+    outcome, message = _ending(job, rows, trajectory)
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels_of(job.mechanics.system, rows), outcome=outcome,
-        message=message, notes=tuple(_notes(job, trajectory)), solver=statistics,
+        name=job.data.name, time=rows.t, channels=channels_of(job.data, job.mechanics.system, rows), outcome=outcome,
+        message=message, notes=(*_notes(job, trajectory), *left_out), solver=statistics,
         history=trajectory.history, not_unique=job.redundancy.not_unique,
+        requested=frozenset(job.data.requested_channels()),
+        presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
 
 
-def _ending(rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
+def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
     """How the run ended, and the sentence for it: also stopped where states have no accelerations and reactions."""
     if len(rows.t) == len(trajectory.t):
         return trajectory.outcome, trajectory.message
-    t = trajectory.t[len(rows.t)]
-    return Outcome.STOPPED, f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
+    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    return Outcome.STOPPED, sentence + suspect(job.mechanics, t, q, u)
 
 
 def _near_constraints(settings: RunSettings) -> bool:
@@ -179,25 +220,8 @@ def output_grid(settings: RunSettings) -> Grid:
     return Grid(start, end, np.linspace(start, end, points))
 
 
-def channels_of(system: System, rows: OutputRows) -> dict[str, np.ndarray]:
-    """All channels by name: bodies, joints and forces, energies, constraint violations."""
-    channels: dict[str, np.ndarray] = {}
-    for k, body in enumerate(system.bodies):
-        for state, names in zip((rows.q, rows.u, rows.acceleration), BODY_CHANNELS, strict=True):
-            for offset, name in enumerate(names):
-                channels[f"{body}.{name}"] = state[:, 3 * k + offset]
-    channels |= requests(system, rows.values)
-    channels |= reactions(system, rows.values)
-    kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
-    channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
-    channels["energy.total"] = kinetic + potential
-    channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
-    return channels
-
-
 def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
-    if job.choice:
-        yield job.choice
+    yield from notes_of(job.data)
     if job.redundancy.findings:
         from .redundancy import note_sentences
 
@@ -206,5 +230,6 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    if job.settings.solver == "projected" and job.mechanics.system.n_values("switch"):
-        yield "projected does not locate the corners that forces have in the state (contacts, step, abs); bdf does"
+    fixed = job.settings.solver == "projected" and job.settings.scheme not in ADAPTIVE
+    if fixed and job.mechanics.system.first_limit:
+        yield f"{job.settings.scheme} does not locate the corners that forces have in the state (contacts, step, abs); dopri5, dop853 and bdf do"

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
+from ..solve.storage import release
 from ..solve.trajectory import History, Outcome
+from .error_bars import ErrorBar
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,6 +37,14 @@ class Solution(Mapping[str, np.ndarray]):
         The solver's own steps and their orders, where it tells them.
     not_unique : tuple of str
         Channels of reactions that rigid bodies do not determine; what they hold is one of many possible values.
+    requested : frozenset of str
+        Channels that are requests, not of bodies or elements.
+    presolve : tuple of str
+        What was left out of the solution because it follows from the rest, a sentence each.
+    errors : mapping of str to ErrorBar
+        How far channels may lie from the truth, where the run was verified.
+    verification : tuple of str
+        What the run was compared with, a sentence each.
     """
 
     name: str
@@ -46,6 +56,10 @@ class Solution(Mapping[str, np.ndarray]):
     solver: dict[str, Any]
     history: History
     not_unique: tuple[str, ...] = ()
+    requested: frozenset[str] = frozenset()
+    presolve: tuple[str, ...] = ()
+    errors: Mapping[str, ErrorBar] = field(default_factory=dict)
+    verification: tuple[str, ...] = ()
 
     @property
     def step_times(self) -> np.ndarray:
@@ -80,17 +94,18 @@ class Solution(Mapping[str, np.ndarray]):
     def energy_drift(self) -> float:
         """Largest change of the total energy since the start, J."""
         total = self.channels["energy.total"]
-        return float(np.max(np.abs(total - total[0])))
+        return float(np.nanmax(np.abs(total - total[0])))
 
 
 def channel_ranges(solution: Solution) -> dict[str, dict[str, float]]:
-    """First, last, least and largest value of every channel, and when the latter two occur."""
+    """First, last, least and largest value of every channel, and when the latter two occur; nan where it has no value."""
     ranges = {}
     for name, values in solution.channels.items():
-        low, high = int(np.argmin(values)), int(np.argmax(values))
+        low, high = (0, 0) if np.isnan(values).all() else (int(np.nanargmin(values)), int(np.nanargmax(values)))
         ranges[name] = {
             "first": float(values[0]), "last": float(values[-1]),
             "min": float(values[low]), "max": float(values[high]),
             "t_min": float(solution.time[low]), "t_max": float(solution.time[high]),
         }  # fmt: skip
+        release(values)
     return ranges

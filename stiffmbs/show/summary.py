@@ -6,8 +6,11 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
-from ..analyse.reactions import COMPONENTS
+import numpy as np
+
 from ..solve.trajectory import Outcome
+from .error_bars import UNKNOWN
+from .force_table import NOT_UNIQUE, force_table
 from .solution import Solution, channel_ranges
 
 if TYPE_CHECKING:
@@ -15,10 +18,6 @@ if TYPE_CHECKING:
 
     from .check import Report
 
-ROUNDING = 1e-12
-"""Part of the largest force below which a force is shown as zero."""
-NOT_UNIQUE = "*"
-"""Stands behind the range of a reaction that has no unique value."""
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
@@ -30,12 +29,24 @@ def as_json(scene: str, solution: Solution) -> str:
             "status": STATUS[solution.outcome],
             "message": solution.message,
             "notes": list(solution.notes),
+            "presolve": list(solution.presolve),
             "time": {"start": float(solution.time[0]), "end": float(solution.time[-1])},
             "solver": solution.solver,
             "not_unique": list(solution.not_unique),
-            "channels": channel_ranges(solution),
+            **({"verification": list(solution.verification)} if solution.verification else {}),
+            "channels": _with_errors(solution),
         }
     )
+
+
+def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
+    """The ranges of all channels, of a verified run with their errors; null where nothing is known."""
+    ranges = channel_ranges(solution)
+    if solution.verification:
+        for name, cell in ranges.items():
+            bar = solution.errors.get(name, UNKNOWN)
+            cell |= {"error": bar.over_time, "min_error": bar.least, "max_error": bar.greatest}
+    return ranges
 
 
 def check_as_json(scene: str, report: Report) -> str:
@@ -71,7 +82,11 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
     console.print(f"{solution.name or scene}: {start:g} s to {end:g} s, {solution.message}", highlight=False)
     for note in solution.notes:
         console.print(f"note: {note}", highlight=False)
-    table = _force_table(solution)
+    for sentence in solution.presolve:
+        console.print(f"presolve: {sentence}", highlight=False)
+    for sentence in solution.verification:
+        console.print(f"verified: {sentence}", highlight=False)
+    table = force_table(solution)
     if table.row_count:
         console.print("force and torque on the first body, least .. greatest (N, N m):", highlight=False)
         console.print(table)
@@ -80,39 +95,15 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
     total = solution.channels["energy.total"]
     console.print(
         f"energy: {total[0]:.9g} J at the start, changes by at most {solution.energy_drift():.3g} J; "
-        f"constraints hold to {solution.channels['constraint.position'].max():.2g} in position, "
-        f"{solution.channels['constraint.velocity'].max():.2g} in velocity",
+        f"constraints hold to {np.nanmax(solution.channels['constraint.position']):.2g} in position, "
+        f"{np.nanmax(solution.channels['constraint.velocity']):.2g} in velocity",
         highlight=False,
     )
     console.print(_solver_line(solution.solver), highlight=False)
     console.print(f"results: {results}", highlight=False, soft_wrap=True)
 
 
-def _force_table(solution: Solution) -> Any:
-    from rich.table import Table
-
-    table = Table()
-    table.add_column("element")
-    for component in COMPONENTS:
-        table.add_column(component, justify="right", no_wrap=True)
-    ranges = channel_ranges(solution)
-    elements = dict.fromkeys(name.partition(".")[0] for name in ranges if name.endswith(".torque"))
-    rows = {element: [ranges[f"{element}.{component}"] for component in COMPONENTS] for element in elements}
-    noise = ROUNDING * max(
-        (abs(cell[end]) for cells in rows.values() for cell in cells for end in ("min", "max")), default=0
-    )
-    for element, cells in rows.items():
-        names = [f"{element}.{component}" for component in COMPONENTS]
-        shown = [" .. ".join(_shown(cell[end], noise) for end in ("min", "max")) for cell in cells]
-        marks = [NOT_UNIQUE * (name in solution.not_unique) for name in names]
-        table.add_row(element, *(text + mark for text, mark in zip(shown, marks, strict=True)))
-    return table
-
-
-def _shown(value: float, noise: float) -> str:
-    return "0" if abs(value) <= noise else f"{value:.5g}"
-
-
 def _solver_line(solver: dict[str, Any]) -> str:
-    counts = ", ".join(f"{value} {name}" for name, value in solver.items() if isinstance(value, int))
-    return f"solver: {solver['name']}, {counts}, {solver['seconds'] * 1e3:.1f} ms"
+    linear = [f"linear solver {solver['linear_solver']}"] if "linear_solver" in solver else []
+    counts = [f"{value} {name}" for name, value in solver.items() if isinstance(value, int)]
+    return f"solver: {', '.join([solver['name'], *linear, *counts])}, {solver['seconds'] * 1e3:.1f} ms"

@@ -1,5 +1,5 @@
 """Initial values and integrators.  They see a `System`, never a kind of element."""
 
-from . import bdf, kinematic, projected
+from . import auto, bdf, kinematic, projected
 
-SOLVERS = {"bdf": bdf.solve, "projected": projected.solve, "kinematic": kinematic.solve}
+SOLVERS = {"auto": auto.solve, "bdf": bdf.solve, "projected": projected.solve, "kinematic": kinematic.solve}

@@ -1,57 +1,230 @@
-"""The choice between the implicit and the explicit integrator, by the spectrum of the scene."""
+"""The explicit integrator, and the implicit one where and while the scene is stiff: a run may change hands on its way.
+
+How short stability would keep explicit steps, the fastest rate of the motion tells: asked at the start, and where the
+explicit steps show, at no cost, that stability and not accuracy holds them back.  How long BDF's steps would be,
+nothing tells in advance (a vibration that rings, or that BDF's own order makes ring, shortens them a hundredfold): it
+is tried, for as long as it keeps ahead, and best from the start, before explicit steps have followed every vibration.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 import numpy as np
 
-from ..compile.system import PLANAR
 from ..describe.settings import RunSettings
+from ..errors import SolverError
+from . import bdf, cost
+from .engine import Reached
+from .explicit import DOP853
+from .explicit.adaptive import AdaptiveRun, Leaving
+from .explicit.integration import Integration
+from .fastest_rate import fastest_rate
+from .initial import InitialValues
 from .mechanics import Mechanics
-from .spectrum import spectrum
+from .restart import restarted
+from .trajectory import Grid, History, Outcome, Trajectory, Watch, summed
 
-STIFF = 60.0
-"""Ratio of the fastest rate to that of the motion from which the implicit integrator pays: an explicit step of order 8
-goes as far as 5.6 over the fastest rate and costs about three steps of BDF, which takes some 30 per unit of the motion
-(measured on the half-car, where their times meet at 1e6 N/m in the bushings)."""
-MOST_VELOCITIES = 900
-"""Velocities up to which the dense spectrum costs less than what a wrong choice would."""
+LOOK = 32
+"""Explicit steps between two looks at what holds them back."""
+HELD_BACK = 0.05
+"""Part of those steps that stability held back, from which on the scene counts as stiff: where it holds all of them,
+steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
+WORTH_A_TRIAL = 6.0
+"""What is left for explicit steps must cost so many trials of the implicit integrator before one is made."""
+BEHIND, FAIR_TRIAL = 1.1, 200
+"""The implicit integrator is left when so many steps of it have cost so much more than explicit ones on the same way."""
+AMENDS = 3.0
+"""After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
+as many times after each further one."""
+MOST_TOLD = 3
+"""Changes of hand that the note tells one by one."""
 
 
-def choose(mechanics: Mechanics, settings: RunSettings, t: float) -> tuple[RunSettings, str]:
-    """The settings with a solver in place of ``auto``, and the reason in one line.
+def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+    """Integrate with `dop853`, and with `bdf` while that is cheaper; the contract is in `stiffmbs.solve.trajectory`."""
+    mechanics.forget_pivots()
+    return _Shared(mechanics, grid, settings, watch).run(start)
 
-    An explicit method follows the fastest vibration whether it matters or not; an implicit one follows what the
-    tolerance asks for.  Events and friction, whose corners ask for many restarts, go to ``bdf`` too.
 
-    Returns
-    -------
-    RunSettings, str
-    """
-    system = mechanics.system
-    if system.n_values("switch"):
-        return _with(settings, "bdf"), "auto chose bdf: the scene has contacts or other corners in its state"
-    if system.n_u > MOST_VELOCITIES:
-        return _with(settings, "bdf"), f"auto chose bdf: {system.n_u} velocities are too many for a dense spectrum"
-    found = spectrum(mechanics, t)
-    motion = max(found.slowest, _rate_of_motion(mechanics, t), 1.0 / settings.duration)
-    ratio = found.fastest / motion
-    facts = (
-        f"the fastest rate is {found.fastest:.3g} 1/s (damping ratio {found.damping:.2g}), "
-        f"{ratio:.3g} times that of the motion"
+@dataclass
+class _Pace:
+    """The way of an integrator between two looks: time, steps."""
+
+    t: float
+    steps: int = 0
+    tried: int = 0
+    held: int = 0
+
+
+@dataclass(frozen=True)
+class _Effort:
+    """What the implicit integrator has done so far."""
+
+    steps: int
+    cost: float
+
+
+class _Shared:
+    """One run that two integrators share."""
+
+    def __init__(self, mechanics: Mechanics, grid: Grid, settings: RunSettings, watch: Watch) -> None:
+        self._mechanics, self._grid, self._watch = mechanics, grid, watch
+        self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
+        self._unknowns = n = cost.unknowns(mechanics)
+        self._explicit_step = cost.of_explicit_step(mechanics)
+        self._implicit_step = cost.of_implicit_step(n)
+        self._trial = cost.of_implicit_start(n) + FAIR_TRIAL * self._implicit_step
+        self._implicit: bdf.Integrator | None = None
+        self._pace = _Pace(grid.start)
+        self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
+        self._amends = 0.0  # what explicit steps must have cost before the next trial
+        self._legs: list[Trajectory] = []
+        self._told: list[str] = []
+        self._gave_up = False  # whether explicit steps could not go on
+
+    def run(self, start: InitialValues) -> Trajectory:
+        """All legs, put together; all of them again by the implicit integrator where explicit steps could not go on.
+
+        They stop at singular poses, near which no other integrator could start: an integrator passes them on its way.
+        """
+        t: float | None = self._grid.start
+        explicit = not self._is_stiff_at_once(start)
+        while t is not None:
+            try:
+                at = start if t == self._grid.start else restarted(self._mechanics, t, *self._state)
+            except SolverError as error:
+                self._legs[-1] = replace(self._legs[-1], outcome=Outcome.STOPPED, message=str(error))
+                break
+            t = self._explicit_leg(at, t) if explicit else self._implicit_leg(at, t)
+            explicit = not explicit and not self._gave_up
+        return self._together()
+
+    def _is_stiff_at_once(self, start: InitialValues) -> bool:
+        """Whether BDF is to be tried from the first on."""
+        worth, rate = self._worth_a_trial(self._grid.start, start.q, start.u)
+        if worth:
+            self._told.append(f"bdf, as the fastest rate is {rate:.3g} 1/s")
+        return worth
+
+    def _worth_a_trial(self, t: float, q: np.ndarray, u: np.ndarray) -> tuple[bool, float]:
+        """Whether steps as short as stability asks for at a state are so many that trying BDF costs little; the rate."""
+        rate = fastest_rate(self._mechanics, t, q, u)
+        self._explicit_cost = self._explicit_step * rate / DOP853.stability
+        return (self._grid.end - t) * self._explicit_cost > WORTH_A_TRIAL * self._trial, rate
+
+    def _rest(self, t: float) -> Grid:
+        """What is left of the grid."""
+        times = self._grid.times
+        if t == self._grid.start:
+            return self._grid
+        return Grid(t, self._grid.end, None if times is None else np.append(t, times[times > t]))
+
+    def _explicit_leg(self, start: InitialValues, t: float) -> float | None:
+        """Explicit steps from t on; the time at which they were left, or None at the end."""
+        self._pace = _Pace(t)
+        run = AdaptiveRun(DOP853, self._mechanics, start, self._rest(t), self._settings, self._watch)
+        leg = run.integrate(Leaving(LOOK, self._should_try_implicit))
+        if run.left and leg.outcome is Outcome.STOPPED:
+            self._gave_up, self._legs = True, []
+            self._told = [f"bdf, as explicit steps {leg.message}"]
+            return self._grid.start
+        self._legs.append(replace(leg, solver="projected"))
+        if not run.left:
+            return None
+        self._state = run.work.q.copy(), run.work.u.copy()
+        return run.work.t
+
+    def _should_try_implicit(self, work: Integration) -> bool:
+        """Whether stability holds the explicit steps back, for so long a way that trying BDF costs little beside it."""
+        seen = _Pace(
+            work.t, work.count("steps"), work.count("steps") + work.count("rejected"), work.count("stiff_steps")
+        )
+        before, self._pace = self._pace, seen
+        held = (seen.held - before.held) / (seen.steps - before.steps)
+        if held < HELD_BACK:
+            return False
+        if seen.tried * self._explicit_step < self._amends:
+            return False
+        worth, rate = self._worth_a_trial(work.t, work.q, work.u)
+        if worth:
+            self._told.append(
+                f"bdf from t = {work.t:.4g} s on, as stability held back {100 * held:.0f} % of the steps "
+                f"(fastest rate {rate:.3g} 1/s)"
+            )
+        return worth
+
+    def _implicit_leg(self, start: InitialValues, t: float) -> float | None:
+        """Implicit steps from t on; the time at which they were left, or None at the end."""
+        self._implicit = self._implicit or bdf.Integrator(self._mechanics, self._settings)
+        self._implicit.engine.pause_after(FAIR_TRIAL)
+        self._pace, self._before = _Pace(t), self._effort()
+        pays = None if self._gave_up else self._implicit_pays
+        leg = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
+        self._legs.append(replace(leg, solver="bdf"))
+        reached = self._implicit.reached
+        assert reached is not None  # it reports its end at the least
+        if leg.outcome is not Outcome.DONE or reached.t >= self._grid.end:
+            return None
+        self._state = self._implicit.split(reached.y)
+        self._amends = max(AMENDS * self._trial, 2.0 * self._amends)
+        self._told.append(f"projected again from t = {reached.t:.4g} s on, as bdf took shorter steps than they pay for")
+        return reached.t
+
+    def _implicit_pays(self, reached: Reached) -> bool:
+        """Whether BDF keeps ahead of explicit steps, over so many of its steps that its start does not count."""
+        effort = self._effort()
+        taken, way = effort.steps - self._before.steps, reached.t - self._pace.t
+        if taken < FAIR_TRIAL:
+            return True
+        spent = effort.cost - self._before.cost
+        self._pace, self._before = _Pace(reached.t), effort
+        return spent < BEHIND * way * self._explicit_cost
+
+    def _effort(self) -> _Effort:
+        """The implicit integrator's, but for the small steps after each of its starts at corners and events."""
+        assert self._implicit is not None
+        counted = self._implicit.statistics()
+        starts = int(counted["corners"]) + int(counted["events"])
+        small = cost.STEPS_OF_A_START * starts
+        work = cost.of_implicit_work(self._unknowns, int(counted["residuals"]), int(counted["jacobians"]))
+        return _Effort(int(counted["steps"]) - small, work - small * self._implicit_step)
+
+    def _together(self) -> Trajectory:
+        """The legs as one trajectory, and how it came about."""
+        told = self._told[:MOST_TOLD]
+        if len(self._told) > MOST_TOLD:
+            told += [f"and so on, {len(self._told)} changes in all"]
+        note = "auto chose " + ", then ".join(told if self._legs[0].solver == "bdf" else ["projected dop853", *told])
+        return replace(
+            self._legs[0] if len(self._legs) == 1 else _joined(self._legs),
+            note="; ".join([note, *dict.fromkeys(leg.note for leg in self._legs if leg.note)]),
+            solver=", ".join(dict.fromkeys(leg.solver for leg in self._legs)),
+        )
+
+
+def _joined(legs: Sequence[Trajectory]) -> Trajectory:
+    """Legs as one trajectory; each begins with the row at which the last one ended."""
+    t, q, u = (
+        np.concatenate([getattr(leg, name)[int(k > 0) :] for k, leg in enumerate(legs)]) for name in ("t", "q", "u")
     )
-    if ratio > STIFF:
-        return _with(settings, "bdf"), f"auto chose bdf: {facts}, so the scene is stiff"
-    return _with(settings, "projected"), f"auto chose projected dop853: {facts}, so the scene is not stiff"
+    return replace(legs[-1], t=t, q=q, u=u, statistics=_summed(legs), history=_history(legs))
 
 
-def _with(settings: RunSettings, solver: str) -> RunSettings:
-    return settings.model_copy(update={"solver": solver, "scheme": "dop853"})
+def _last_of_each_kind(legs: Sequence[Trajectory]) -> list[Trajectory]:
+    """Every explicit leg, and the last implicit one: its integrator counts from its first start on."""
+    implicit = [leg for leg in legs if leg.solver == "bdf"]
+    return [leg for leg in legs if leg.solver != "bdf"] + implicit[-1:]
 
 
-def _rate_of_motion(mechanics: Mechanics, t: float) -> float:
-    """How fast the coordinates change at the start for their size, 1/s."""
-    u, acceleration = mechanics.state.u, mechanics.accelerate(t)[1]
-    size = max(mechanics.system.size, 1e-300)
-    speeds = np.abs(u) / np.tile([size, size, 1.0], len(u) // PLANAR)
-    pulls = np.abs(acceleration) / np.tile([size, size, 1.0], len(u) // PLANAR)
-    return float(max(speeds.max(initial=0.0), np.sqrt(pulls.max(initial=0.0))))
+def _summed(legs: Sequence[Trajectory]) -> dict[str, int | float | str]:
+    """The counters of all legs, and their time."""
+    seconds = summed([{"seconds": leg.statistics["seconds"]} for leg in legs])
+    return {**summed([leg.statistics for leg in _last_of_each_kind(legs)]), **seconds}
+
+
+def _history(legs: Sequence[Trajectory]) -> History:
+    """The steps of all legs; orders where all are known."""
+    t = np.concatenate([leg.history.t for leg in _last_of_each_kind(legs)])
+    return History(np.sort(t), np.empty(0, dtype=int))

@@ -3,62 +3,84 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from ..compile.corners import corner_times
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from .engine import Engine, Reached
+from .error_control import CHOSEN, ErrorControl
 from .formulations import FORMULATIONS
-from .initial import VELOCITIES, InitialValues
+from .held_switches import HeldSwitches
+from .initial import InitialValues
+from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
 from .native_engine import NativeEngine
-from .newton import newton_tolerance
+from .newton import newton_tolerance, stiffness_at
 from .relaxation import relax
 from .restart import restarted
 from .sundae import SundaeEngine
+from .sundials.choice import chosen
 from .sundials.libraries import available
-from .sundials.ordering import narrowed
-from .tolerances import absolute_tolerances
+from .suspect import suspect
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
-OUT_OF_THE_ERROR_TEST = 1e15
-"""Absolute tolerance of multipliers: huge, so that they count neither in the error test, where index-2 problems would
-fail, nor in Newton's convergence test, where IDA's own suppression leaves them (Andrews' mechanism then stops)."""
-
+MOST_JUMPS = 3
+"""Jumps of velocities that are told one by one."""
 WORTH_TELLING = 1e-2
 """Change of a velocity at a corner, in parts of the largest, that is told."""
-MARGIN = 0.3
-"""Part of the tolerance asked for that IDA is given, as the errors of many steps add up (measured with the native
-driver's settings: errors below those of IDA's own settings at the full tolerance, in less time)."""
 
 
-def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+def solve(
+    mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch,
+    control: ErrorControl | None = None,
+) -> Trajectory:  # fmt: skip
     """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`.
 
     At corners in time, and where a force changes its law (a contact closes), the integrator stops and starts anew.
     """
-    integrator = _Integrator(mechanics, settings)
-    system = mechanics.system
+    mechanics.forget_pivots()
+    return integrated(Integrator(mechanics, settings, control), start, grid, watch)
+
+
+def integrated(
+    integrator: Integrator,
+    start: InitialValues,
+    grid: Grid,
+    watch: Watch,
+    pays: Callable[[Reached], bool] | None = None,
+) -> Trajectory:
+    """Integrate with an integrator that may be used again.
+
+    Parameters
+    ----------
+    pays : callable, optional
+        Asked now and then whether to go on; where it does not, the run is left where `integrator.reached` says.
+    """
+    system = integrator.mechanics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
         for reached in integrator.run(start, grid):
-            rows.extend(reached.times, *np.split(reached.rows, [system.n_q], axis=1))
+            rows.extend(reached.times, *integrator.equations.states(reached.rows))
             watch(reached.t)
+            integrator.reached = reached
             if reached.failure:
-                outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {reached.failure}"
+                likely = suspect(integrator.mechanics, reached.t, *integrator.split(reached.y))
+                outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {reached.failure}{likely}"
+            elif pays and not pays(reached):
+                break
     except SolverError as error:
         outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {**integrator.statistics(), "seconds": time.perf_counter() - begun}
-    return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history(), integrator.note)
+    return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history(), integrator.note())
 
 
 def _just_after(t: float) -> float:
@@ -66,64 +88,102 @@ def _just_after(t: float) -> float:
     return t + 4 * np.finfo(float).eps * abs(t)
 
 
-class _Integrator:
-    """IDA over the pieces of a run: from corner to corner, from event to event."""
+def _natural(mechanics: Mechanics, settings: RunSettings) -> Equations:
+    """The equations with their unknowns in the natural order."""
+    return Equations(FORMULATIONS[settings.formulation](settings), mechanics.system, mechanics.coordinates)
 
-    def __init__(self, mechanics: Mechanics, settings: RunSettings) -> None:
-        self.mechanics, self.settings = mechanics, settings
-        self.equations = narrowed(Equations(FORMULATIONS[settings.formulation](settings), mechanics.system))
-        self.note = ""
-        self.engine = self._engine()
-        self._events = self._corners = 0
 
-    def _engine(self) -> Engine:
-        """The native driver where SUNDIALS' libraries are as it needs them, else scikit-sundae's callbacks."""
-        state, longest = self.mechanics.state, self.settings.max_step
+def _native(mechanics: Mechanics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine]:
+    """The native driver, where SUNDIALS' libraries are as it needs them."""
+    equations, matrix = chosen(_natural(mechanics, settings))
+    return equations, NativeEngine(equations, mechanics.state, matrix, settings, control)
+
+
+def _through_callbacks(mechanics: Mechanics, settings: RunSettings) -> tuple[Equations, Engine]:
+    """The driver by scikit-sundae's callbacks."""
+    equations = _natural(mechanics, settings)
+    tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # Newton's iteration stays as IDA has it
+    return equations, SundaeEngine(equations, mechanics.state, *tolerances, settings.max_step)
+
+
+class Integrator:
+    """IDA over the pieces of a run: from corner to corner, from event to event.
+
+    Attributes
+    ----------
+    reached : Reached or None
+        Where it was last heard of.
+    """
+
+    def __init__(self, mechanics: Mechanics, settings: RunSettings, control: ErrorControl | None = None) -> None:
+        control = control or CHOSEN[mechanics.system.of_body.dimensions]
+        self.mechanics, self.settings, self.control = mechanics, settings, control
+        self.reached: Reached | None = None
+        self._notes: list[str] = []
         native, reason = available()
         if native:
-            return NativeEngine(self.equations, state, *self._tolerances(MARGIN), longest)
-        self.note = f"IDA runs through scikit-sundae's callbacks, which is slower: {reason}"
-        return SundaeEngine(self.equations, state, *self._tolerances(1.0), longest)
+            self.equations, self.engine = mechanics.kept(
+                "bdf", (settings, control), lambda: _native(mechanics, settings, control)
+            )
+            self.engine.forget()
+        else:
+            self.equations, self.engine = _through_callbacks(mechanics, settings)
+            self._notes.append(
+                f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
+            )
+        self._jumps: list[str] = []
+        self._events = self._corners = 0
+        self._held = HeldSwitches(mechanics)
 
-    def _tolerances(self, margin: float) -> tuple[float, np.ndarray]:
-        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts those in the error test."""
-        at, system = self.equations.at, self.mechanics.system
-        tested = self.equations.formulation.tested
-        correction = margin * np.sqrt(self.equations.n / sum(len(at[name]) for name in tested))
-        atol = np.full(self.equations.n, OUT_OF_THE_ERROR_TEST)
-        for name in tested:
-            atol[at[name]] = absolute_tolerances(system, self.settings)
-        return self.settings.rtol * correction, atol * correction
+    def note(self) -> str:
+        """What the user should know: how IDA runs, jumps of velocities, an order held down."""
+        more = len(self._jumps) - MOST_JUMPS
+        jumps = [*self._jumps[:MOST_JUMPS], *([f"and {more} more such jumps"] if more > 0 else [])]
+        return "; ".join(filter(None, (*self._notes, *jumps, self.engine.note())))
 
     def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """q and u from a vector of unknowns."""
-        return y[self.equations.at["q"]], y[self.equations.at["u"]]
+        (q,), (u,) = self.equations.states(y[None, self.equations.independent])
+        return q, u
 
     def run(self, start: InitialValues, grid: Grid) -> Iterator[Reached]:
         """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
         t = grid.start
-        for stop in (*corner_times(self.mechanics.system, grid.start, grid.end), grid.end):
+        self._jumps.clear()
+        for stop in (*self.mechanics.corner_times(grid.start, grid.end).tolist(), grid.end):
             while _just_after(t) < stop:
+                refuse_beyond_limits(self.mechanics, t, start.q, start.u)
+                self._held.begin(t, start.q, start.u)
                 self._begin(start, t)
                 for reached in self._leg(t, stop, grid):
-                    yield reached
+                    yield reached if not reached.failure else self._explained(reached)
                 if reached.failure:
                     return
                 t = reached.t
                 if t < grid.end:
                     q, u = self.split(reached.y)
+                    self._held.note(t, q, u, self._steps(), reached.fired)
                     start = restarted(self.mechanics, t, q, u)
                     self._tell_jump(t, start.u - u)
                     yield self._at_once(start, t, grid)
                     self._events += t < stop
                     self._corners += t >= stop
 
+    def _steps(self) -> int:
+        return int(self.engine.statistics()["steps"])
+
+    def _explained(self, reached: Reached) -> Reached:
+        """A failure in the words of the force that causes it, where it jumps back and forth."""
+        jumping = self._held.failed(reached.t, *self.split(reached.y))
+        return replace(reached, failure=jumping or reached.failure)
+
     def _tell_jump(self, t: float, change: np.ndarray) -> None:
         """Note a change of velocities at a corner that no error of the integrator explains: a drive jumped."""
         k = int(np.argmax(np.abs(change)))
         if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self.mechanics.state.u)))):
-            name = f"{self.mechanics.system.bodies[k // 3]}.{VELOCITIES[k % 3]}"
-            self.note = (
+            system = self.mechanics.system
+            name = system.name_of(k, system.of_body.velocities)
+            self._jumps.append(
                 f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); no force shows that blow"
             )
 
@@ -133,24 +193,32 @@ class _Integrator:
             return self.engine.by_steps(stop)
         return self.engine.to_times(grid.times[(grid.times > _just_after(t)) & (grid.times <= stop)], stop)
 
-    @staticmethod
-    def _at_once(start: InitialValues, t: float, grid: Grid) -> Reached:
+    def _at_once(self, start: InitialValues, t: float, grid: Grid) -> Reached:
         """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs."""
-        state = np.concatenate([start.q, start.u])
+        state = self.equations.coordinates.state(start.q, start.u)
         times = np.empty(0) if grid.times is None else grid.times[(grid.times > t) & (grid.times <= _just_after(t))]
         return Reached(times, np.tile(state, (len(times), 1)), t, state)
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        at = self.equations.at
-        y, yp = np.zeros(self.equations.n), np.zeros(self.equations.n)
-        y[at["q"]], y[at["u"]] = start.q, start.u
-        yp[at["q"]], yp[at["u"]] = start.u, start.acceleration
+        equations, at = self.equations, self.equations.at
+        state, coordinates = self.mechanics.state, equations.coordinates
+        state.q[:], state.u[:], state.a[:] = start.q, start.u, start.acceleration
+        state.lam[:], state.mu[:] = start.lam, 0.0
+        equations.start_from(start.q)
+        y, yp = np.zeros(equations.n), np.zeros(equations.n)
+        y[equations.independent] = coordinates.state(start.q, start.u)
+        yp[equations.independent] = coordinates.state(
+            self.mechanics.position_rates(start.q, start.u), start.acceleration
+        )
         solved = at["lam"] != ABSENT
-        multipliers = yp if self.equations.formulation.integrated else y
+        multipliers = yp if equations.formulation.integrated else y
         multipliers[at["lam"][solved]] = start.lam[solved]
         relax(self.mechanics, self.settings, t)
-        self.engine.begin(t, y, yp, newton_tolerance(self.mechanics, self.settings, t))
+        stiffness = stiffness_at(self.mechanics, t)
+        newton = self.control.newton or newton_tolerance(stiffness, self.settings)
+        self.engine.leave_out(self._held.waits)
+        self.engine.begin(t, y, yp, newton, stiffness)
 
-    def statistics(self) -> dict[str, int | float]:
-        """IDA's counters, and how often it started anew."""
+    def statistics(self) -> dict[str, int | float | str]:
+        """The linear solver, IDA's counters, and how often it started anew."""
         return {**self.engine.statistics(), "corners": self._corners, "events": self._events}

@@ -8,8 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..compile.equations import Equations
-from ..compile.state import State
+from .newton import Stiffness
 from .trajectory import History
 
 
@@ -19,13 +18,14 @@ class Reached:
 
     Attributes
     ----------
-    times, rows : ndarrays, shapes (k,), (k, n_q + n_u)
-        Instants asked for on the way (or ends of steps), and q and u there.
+    times, rows : ndarrays, shapes (k,), (k, 2 * independent)
+        Instants asked for on the way (or ends of steps), and the independent coordinates and velocities there
+        (`stiffmbs.compile.equations.Equations.states` makes all of them).
     t : float
     y : ndarray, shape (n,)
         Where it is now, with all unknowns.
-    at_event : bool
-        Whether a switch stopped it.
+    fired : tuple of int
+        The switches that stopped it by changing their sign; empty where none did.
     failure : str
         Why it cannot go on; empty where it can.
     """
@@ -34,30 +34,25 @@ class Reached:
     rows: np.ndarray
     t: float
     y: np.ndarray
-    at_event: bool = False
+    fired: tuple[int, ...] = ()
     failure: str = ""
 
 
 class Engine(Protocol):
-    """A driver of IDA.
+    """A driver of IDA."""
 
-    Parameters
-    ----------
-    equations : Equations
-        In the order that suits the driver's matrices.
-    state : State
-        The working memory of residual and Jacobian.
-    rtol : float
-    atol : ndarray, shape (n,)
-        Of each unknown; huge for those that are left out of the error test.
-    max_step : float
-        s; 0 for none.
-    """
+    def forget(self) -> None:
+        """Forget counters, history and pivots of an earlier run."""
 
-    def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None: ...
+    def leave_out(self, waits: np.ndarray) -> None:
+        """Do not look at each switch for so many steps from the next start on."""
 
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float) -> None:
-        """Start, or start anew, at consistent values; Newton's iteration may leave a part of the tolerance."""
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
+        """Start, or start anew, at consistent values.
+
+        Newton's iteration may leave a part of the tolerance; states within its long steps are
+        brought back to the equations.
+        """
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
@@ -65,8 +60,14 @@ class Engine(Protocol):
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
 
-    def statistics(self) -> dict[str, int | float]:
-        """Counters since the first start."""
+    def pause_after(self, steps: int) -> None:
+        """Report at the latest after about so many steps."""
+
+    def note(self) -> str:
+        """What the user should know of the way it went; empty for nothing."""
+
+    def statistics(self) -> dict[str, int | float | str]:
+        """The linear solver, and counters since the first start."""
 
     def history(self) -> History:
         """Ends of the steps, and their orders where they are known."""

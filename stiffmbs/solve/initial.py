@@ -2,20 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..compile.system import PLANAR
+from ..compile.system import System
 from ..errors import AssemblyError
 from .failures import FAILURES
 from .mechanics import POSITION_TOLERANCE, Mechanics
 from .native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
+from .nearest_turns import take_nearest_turns
 
-POSITIONS, VELOCITIES = ("x", "y", "angle"), ("vx", "vy", "omega")
-"""What a body's coordinates and velocities are called."""
+PLACES, RATES = ("m", "rad"), ("m/s", "rad/s")
+"""Units of centres of mass and of turns, on the level of positions and on that of velocities."""
 WORTH_TELLING = 1e-9
 """Moves of a coordinate (m, rad, m/s, rad/s) below this are not mentioned."""
+
+
+@dataclass(frozen=True)
+class Move:
+    """A change that assembly made.
+
+    Attributes
+    ----------
+    body, coordinate : str
+        Such as ``bar`` and ``vx``; a turn in space is an ``angle``, a change of its rate one of ``omega``.
+    unit : str
+    change : float
+    """
+
+    body: str
+    coordinate: str
+    unit: str
+    change: float
 
 
 @dataclass(frozen=True)
@@ -26,36 +46,37 @@ class InitialValues:
     ----------
     q, u, acceleration, lam : ndarrays
         Coordinates, velocities, accelerations and multipliers that satisfy the constraints on every level.
-    moved : tuple of (str, str, float)
-        Body, coordinate and change, for every coordinate or velocity that had to be changed noticeably.
+    moved : tuple of Move
+        Of every coordinate or velocity that had to be changed noticeably.
     """
 
     q: np.ndarray
     u: np.ndarray
     acceleration: np.ndarray
     lam: np.ndarray
-    moved: tuple[tuple[str, str, float], ...]
+    moved: tuple[Move, ...]
 
     def sentence(self) -> str:
         """What was moved, in words; empty where nothing was."""
-        parts = [_largest(self.moved, POSITIONS), _largest(self.moved, VELOCITIES)]
+        parts = [_largest(move for move in self.moved if move.unit in units) for units in (PLACES, RATES)]
         told = " and ".join(part for part in parts if part)
         return f"to satisfy the joints at the start, assembly changed {told}" if told else ""
 
 
-def _largest(moved: tuple[tuple[str, str, float], ...], coordinates: tuple[str, ...]) -> str:
-    changes = [move for move in moved if move[1] in coordinates]
+def _largest(moves: Iterator[Move]) -> str:
+    changes = sorted(moves, key=lambda move: -abs(move.change))
     if not changes:
         return ""
-    body, coordinate, change = max(changes, key=lambda move: abs(move[2]))
-    others = len({name for name, _, _ in changes}) - 1
-    return f"{body}.{coordinate} by {change:.3g}" + (f" ({others} other bodies by less)" if others else "")
+    others = len({move.body for move in changes}) - 1
+    largest = f"{changes[0].body}.{changes[0].coordinate} by {changes[0].change:.3g} {changes[0].unit}"
+    return largest + (f" ({others} other {'bodies' if others > 1 else 'body'} by less)" if others else "")
 
 
 def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
     """Make the described start consistent.
 
-    Positions by Newton's smallest moves, velocities by the smallest correction in the mass matrix, accelerations
+    Positions by Newton's smallest moves, velocities by the smallest correction in the mass matrix (of those that are not
+    given before those that are), accelerations
     and multipliers from [M J^T; J 0][u'; lam] = [f; gamma].
 
     Raises
@@ -66,22 +87,48 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
     """
     system, state = mechanics.system, mechanics.state
     q0, u0 = system.q.copy(), system.u.copy()
+    take_nearest_turns(mechanics, t)
     status = mechanics.assemble(t)
     if status < 0:
         raise AssemblyError(_sentence(mechanics, NO_CONVERGENCE if status == SINGULAR else status, t))
+    _close_open_rates(mechanics, t)
     status = mechanics.correct_velocities(t)
     if status < 0:
         raise AssemblyError(_sentence(mechanics, status, t))
+    state.count_anew(t)
     status, acceleration = mechanics.accelerate(t)
     if status < 0:
         raise AssemblyError(_sentence(mechanics, status, t))
-    changes = ((state.q - q0, POSITIONS), (state.u - u0, VELOCITIES))
-    moved = tuple(
-        (system.bodies[k // PLANAR], labels[k % PLANAR], float(change[k]))
-        for change, labels in changes
-        for k in np.flatnonzero(np.abs(change) > WORTH_TELLING)
+    of_body = system.of_body
+    of_position = _moves(system, system.move(q0, state.q), (*of_body.positions[: of_body.linear], "angle"), PLACES)
+    of_velocity = _moves(
+        system, np.where(system.open_rates, 0.0, state.u - u0), (*of_body.velocities[: of_body.linear], "omega"), RATES
     )
+    moved = (*of_position, *of_velocity)
     return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam[: system.n_c].copy(), moved)
+
+
+def _close_open_rates(mechanics: Mechanics, t: float) -> None:
+    """Have velocities that are not given follow those that are: their smallest change that satisfies J u + C_t = 0 best."""
+    system, state = mechanics.system, mechanics.state
+    ways = np.flatnonzero(system.open_rates)
+    if not len(ways):
+        return
+    state.evaluate("motion", t)
+    rows = np.flatnonzero(system.active)
+    by_energy = state.matrix("motion", "J")[np.ix_(rows, ways)] / np.sqrt(system.mass[ways])
+    follow, *_ = np.linalg.lstsq(by_energy, -state.vector("motion", "V")[rows], rcond=None)
+    state.u[ways] += follow / np.sqrt(system.mass[ways])
+
+
+def _moves(system: System, change: np.ndarray, labels: tuple[str, ...], units: tuple[str, str]) -> Iterator[Move]:
+    """The changes that are worth telling, from all, shape (n_u,); a turn in space is told by its angle."""
+    straight = system.of_body.linear
+    for body, own in zip(system.bodies, change.reshape(-1, system.of_body.n_u), strict=True):
+        turn = float(own[-1]) if len(own) == straight + 1 else float(np.linalg.norm(own[straight:]))
+        for label, much in zip(labels, (*own[:straight].tolist(), turn), strict=True):
+            if abs(much) > WORTH_TELLING:
+                yield Move(body, label, units[label == labels[-1]], much)
 
 
 def _sentence(mechanics: Mechanics, status: int, t: float) -> str:

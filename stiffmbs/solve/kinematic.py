@@ -11,6 +11,7 @@ from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .failures import FAILURES
 from .initial import InitialValues
+from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
@@ -54,6 +55,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
                 motion.go_past(corner)
                 corner = next(corners)
             motion.go_to(t)
+            refuse_beyond_limits(mechanics, t, motion.q, motion.u)
             rows.append(t, motion.q, motion.u)
             watch(t)
     except SolverError as error:
@@ -67,9 +69,9 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
 def _refuse_freedoms(mechanics: Mechanics) -> None:
     system = mechanics.system
     equations = int(np.sum(system.active & system.holonomic))
-    if equations != system.n_q:
+    if equations != system.n_u:
         raise InputError(
-            f"kinematic analysis: found {equations} independent position equations for {system.n_q} coordinates, "
+            f"kinematic analysis: found {equations} independent position equations for {system.n_u} freedoms of the bodies, "
             "expected as many: joints and drives that fix every coordinate"
         )
 
@@ -112,7 +114,8 @@ class _Motion:
     def _step(self, t: float, h: float) -> bool:
         """Try one step; whether positions and velocities came out near their prediction."""
         state, mechanics = self._mechanics.state, self._mechanics
-        predicted_q, predicted_u = self.q + h * self.u + h * h / 2 * self.a, self.u + h * self.a
+        step = h * self.u + h * h / 2 * self.a
+        predicted_q, predicted_u = mechanics.system.of_body.moved(self.q, step), self.u + h * self.a
         state.q[:], state.u[:] = predicted_q, predicted_u
         moves = mechanics.assemble(t, most=MOST_MOVES)
         self._status = min(moves, 0)
@@ -133,6 +136,7 @@ class _Motion:
         """Make the state at hand, with its accelerations, the one that is reached; whether it has them."""
         state = self._mechanics.state
         self._polish(t)
+        state.count_anew(t)
         self._status, acceleration = self._mechanics.accelerate(t)
         if self._status == 0:
             self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration
@@ -140,7 +144,8 @@ class _Motion:
 
     def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
         own = np.linalg.norm(h * self.u) + np.linalg.norm(h * h / 2 * self.a)
-        return bool(np.linalg.norm(q - predicted) <= LARGEST_SURPRISE * own + 1e-9)
+        miss = self._mechanics.system.move(predicted, q)
+        return bool(np.linalg.norm(miss) <= LARGEST_SURPRISE * own + 1e-9)
 
     def _polish(self, t: float) -> None:
         """Take positions to rounding, by two more moves whether they get there or not, and velocities with them."""
@@ -160,10 +165,7 @@ class _Motion:
         directions, _, _ = np.linalg.svd(state.matrix("motion", "J")[system.active])
         names = [name for (name, _), active in zip(system.equations, system.active, strict=True) if active]
         involved = list(dict.fromkeys(names[k] for k in np.argsort(-np.abs(directions[:, -1]))[:4]))
-        pose = ", ".join(
-            f"{body} at ({self.q[3 * k]:.6g}, {self.q[3 * k + 1]:.6g}) m, {np.degrees(self.q[3 * k + 2]):.6g} deg"
-            for k, body in enumerate(system.bodies[:6])
-        )
+        pose = ", ".join(f"{body} at {system.of_body.place(self.q, k)}" for k, body in enumerate(system.bodies[:6]))
         more = ", ..." if len(system.bodies) > 6 else ""
         return (
             f"the mechanism locks at t = {self.t:.9g} s (dead centre): the drives ask for more than "

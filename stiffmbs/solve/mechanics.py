@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar, cast
 
 import numpy as np
 
+from ..compile.coordinates import Coordinates, all_independent
+from ..compile.corners import corner_times
 from ..compile.layout import MECHANICS, packed
-from ..compile.routines import Routine
+from ..compile.routines import together
 from ..compile.state import State
 from ..compile.system import System
 from .eliminated import Eliminated
 from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
+from .storage import blocks, release, room
 
-_MODULE = "stiffmbs.solve.native.mechanics"
-ASSEMBLE = Routine(_MODULE, "assemble", "int64(float64, float64, int64, int64*)")
-CORRECT_VELOCITIES = Routine(_MODULE, "correct_velocities", "int64(float64, int64*)")
-ACCELERATE = Routine(_MODULE, "accelerate", "int64(float64, float64*, int64*)")
-OUTPUT_POINTS = Routine(
-    _MODULE,
-    "output_points",
-    "int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
+T = TypeVar("T")
+ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS = together(
+    "stiffmbs.solve.native.mechanics",
+    assemble="int64(float64, float64, int64, int64*)",
+    correct_velocities="int64(float64, int64*)",
+    accelerate="int64(float64, float64*, int64*)",
+    output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
 )
 
 POSITION_TOLERANCE = 1e-12
@@ -64,6 +68,9 @@ class Mechanics:
 
     Attributes
     ----------
+    coordinates : Coordinates
+        Those that integrators may take for unknowns, all unless set otherwise.  The block systems always hold all of
+        them, so that every reaction is found.
     state : State
         The current q, u and lam.
     table : ndarray of int
@@ -72,6 +79,7 @@ class Mechanics:
 
     def __init__(self, system: System) -> None:
         self.system = system
+        self.coordinates: Coordinates = all_independent(system)
         self.state = State(system)
         for term_set in ("motion", "output"):
             self.state.load(term_set)
@@ -79,6 +87,10 @@ class Mechanics:
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
         self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
         self._status = np.zeros(1, dtype=np.int64)
+        self._kept: dict[str, tuple[object, object]] = {}
+        counting = system.term("acceleration", "counting")
+        self._counting = counting.source.astype(np.int64), counting.row.astype(np.int64)
+        self._corners = np.inf, -np.inf, np.empty(0)
         self.table = packed(
             MECHANICS,
             {
@@ -90,13 +102,36 @@ class Mechanics:
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
                 "status": self._status,
+                "n_counting": len(counting.row),
+                "counting_source": self._counting[0],
+                "counting_row": self._counting[1],
             },
         )
+
+    def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
+        """What a solver has set up for this state and such settings; made where there is none, one for each name."""
+        key = (settings, self.coordinates)
+        if name not in self._kept or self._kept[name][0] != key:
+            self._kept[name] = (key, make())
+        return cast(T, self._kept[name][1])
+
+    def forget_pivots(self) -> None:
+        """Have pivots sought anew, so that a run's rounding does not hang on earlier runs."""
+        for system in (self._positions, self._velocities, self._accelerations):
+            system.forget_pivots()
 
     @cached_property
     def eliminated(self) -> Eliminated:
         """The quicker way to accelerations that explicit steps take where it serves."""
         return Eliminated(self.state)
+
+    def corner_times(self, start: float, end: float) -> np.ndarray:
+        """The corners in time strictly between two instants, sought once for all runs within them."""
+        first, last, times = self._corners
+        if not first <= start <= end <= last:
+            times = corner_times(self.system, start, end)
+            self._corners = start, end, times
+        return times[(times > start) & (times < end)]
 
     @property
     def _at(self) -> int:
@@ -115,6 +150,14 @@ class Mechanics:
         acceleration = np.empty(self.system.n_u)
         return ACCELERATE.load()(t, acceleration.ctypes.data, self._at), acceleration
 
+    def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """q' at a state at which accelerations were just computed, so that the rates of the counters of turns are known."""
+        rates = self.system.of_body.position_rates(q, u)
+        source, row = self._counting
+        if len(row):
+            rates[row] = self.state.values["acceleration"][source]
+        return rates
+
     def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
         """What is reported at given instants and states, up to the first that has no solution.
 
@@ -126,14 +169,19 @@ class Mechanics:
         """
         system, count = self.system, len(t)
         n_output = system.n_values("output")
-        t, q, u = (np.array(rows, dtype=float) for rows in (t, q, u))
-        acceleration = np.empty((count, system.n_u))
-        lam, values = np.empty((count, system.n_c)), np.empty((count, n_output))
-        largest = np.empty((count, 3))
-        rows = (q, u, acceleration, lam, values, largest)
-        addresses = [array.ctypes.data for array in rows]
-        tolerance = POSITION_TOLERANCE
-        done = OUTPUT_POINTS.load()(count, t.ctypes.data, project, tolerance, n_output, *addresses, self._at)
+        widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 3)
+        rows = [room(count, width) for width in widths]
+        done = 0
+        for block in blocks(count):
+            rows[0][block], rows[1][block] = q[block], u[block]
+            times = np.array(t[block], dtype=float)
+            addresses = [array[block].ctypes.data for array in rows]
+            done = block.start + OUTPUT_POINTS.load()(
+                len(times), times.ctypes.data, project, POSITION_TOLERANCE, n_output, *addresses, self._at
+            )
+            release(*rows, q, u)
+            if done < block.stop:
+                break
         q, u, acceleration, lam, values, largest = (array[:done] for array in rows)
         position, velocity, drift = largest.T
         return OutputRows(t[:done], q, u, acceleration, lam, values, position, velocity, drift, int(self._status[0]))

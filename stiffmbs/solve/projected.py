@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..describe.settings import RunSettings
 from .explicit import SCHEMES
-from .explicit.adaptive import solve_adaptively
+from .explicit.adaptive import AdaptiveRun
 from .explicit.fixed import euler_cromer, runge_kutta, solve_with_fixed_steps
 from .initial import InitialValues
 from .mechanics import Mechanics
@@ -18,9 +18,12 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     correction in the mass matrix (Hairer, Wanner, Solving Ordinary Differential Equations II, 1996, ch. VII.2,
     "projection methods").
     """
+    mechanics.forget_pivots()
     if settings.scheme == "euler_cromer":
-        return solve_with_fixed_steps(euler_cromer(mechanics, start, settings), grid, settings, watch)
+        return solve_with_fixed_steps(mechanics, euler_cromer(mechanics, start, settings), grid, settings, watch)
     scheme = SCHEMES[settings.scheme]
     if scheme.adaptive:
-        return solve_adaptively(scheme, mechanics, start, grid, settings, watch)
-    return solve_with_fixed_steps(runge_kutta(scheme, mechanics, start, grid, settings), grid, settings, watch)
+        return AdaptiveRun(scheme, mechanics, start, grid, settings, watch).integrate()
+    return solve_with_fixed_steps(
+        mechanics, runge_kutta(scheme, mechanics, start, grid, settings), grid, settings, watch
+    )

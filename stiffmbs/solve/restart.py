@@ -31,6 +31,7 @@ def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, proj
     if project:
         _go_on(mechanics.assemble(t), t)
         _go_on(mechanics.correct_velocities(t), t)
+    state.count_anew(t)
     status, acceleration = mechanics.accelerate(t)
     _go_on(status, t)
     return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), ())

@@ -5,14 +5,13 @@ All three are [D J^T; J 0] [x; w] = [a; b], solved by one sparse LU whose patter
 
 from __future__ import annotations
 
-import heapq
-
 import numpy as np
 
-from ..compile.equations import ABSENT, Block, Equations, Formulation, Product
+from ..compile.equations import Equations
+from ..compile.formulation import Block, Formulation, Product
 from ..compile.layout import FACTORS, packed
 from ..compile.state import State
-from ..compile.system import PLANAR
+from .elimination_order import elimination_order
 
 _SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
 
@@ -28,13 +27,22 @@ ACCELERATIONS = Formulation(
 
 POSITION_STEP = Formulation(
     name="position step",
-    unknowns=("u", "mu"),
+    unknowns=("q", "mu"),
     residual_set="position",
     matrix_set="position",
     residual=(Product("mu", -1, "C"),),
-    matrix=(Block("u", "u", "I"), Block("u", "mu", "C_q.T"), Block("mu", "u", "C_q")),
+    matrix=(
+        Block("q", "q", "I"),
+        Block("q", "q", "I:turning", constant=3),
+        Block("q", "mu", "C_q.T"),
+        Block("mu", "q", "C_q"),
+    ),
 )
-"""[I C_q^T; C_q 0] [dq; w] = [0; -C]: Newton's smallest move towards the constraints."""
+"""[W C_q^T; C_q 0] [dq; w] = [0; -C]: Newton's smallest move towards the constraints, in m and rad.
+
+A turn by a small angle moves a quaternion by half of it, so that W is 4 there: a model has the same smallest move in the
+plane and in space.
+"""
 
 VELOCITY_STEP = Formulation(
     name="velocity step",
@@ -66,65 +74,20 @@ class SaddlePoint:
         self.equations_table, self._slots = self.equations.table()
         n = self.equations.n
         rows, columns = self.equations.pattern
-        order, fill = elimination_order(self.equations)
-        room = ROOM_FOR_PIVOTING * fill + min(n * n, 4096) + n
+        order = elimination_order(self.equations)
+        room = ROOM_FOR_PIVOTING * order.fill + min(n * n, 4096) + n
         ints, floats = (lambda k: np.zeros(k, dtype=np.int64)), np.zeros
+        self._ready = ints(1)
         self._arrays = {
-            "n": n, "capacity": room, "ready": ints(1),
+            "n": n, "capacity": room, "ready": self._ready,
             "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64),
-            "a_row": rows.astype(np.int64), "a": floats(len(rows)), "scale": np.ones(n), "order": order,
+            "a_row": rows.astype(np.int64), "a": floats(len(rows)), "scale": np.ones(n), "order": order.unknowns,
             "l_start": ints(n + 1), "l_row": ints(room), "l": floats(room),
             "u_start": ints(n + 1), "u_row": ints(room), "u": floats(room),
             "pivot": ints(n), "work": floats(n), "b": floats(n), "previous": floats(n), "stack": ints(4 * n), "x": floats(n),
         }  # fmt: skip
         self.factors_table = packed(FACTORS, self._arrays)
 
-
-def elimination_order(equations: Equations) -> tuple[np.ndarray, int]:
-    """An order of elimination of a block system's unknowns with little fill: minimum degree on bodies and joints.
-
-    Bodies and joints are eliminated whole; a joint waits until one of its bodies is gone, as its own diagonal
-    block is zero before.
-
-    Returns
-    -------
-    ndarray of int, int
-        The unknowns in their order, and the entries that each triangle then has if pivots stay on the diagonal.
-    """
-    system = equations.system
-    at_u, at_multiplier = (equations.at[name] for name in equations.formulation.unknowns)
-    n_bodies = len(system.bodies)
-    joints = [
-        (group.first_row + e * group.record.n_equations, group.record.n_equations,
-         {int(at) // PLANAR for at in group.index[e, : 2 * group.kind.n_bodies : 2] if at < system.n_q})
-        for group in system.groups if group.record.n_equations for e in range(group.count)
-    ]  # fmt: skip
-    neighbours: list[set[int]] = [set() for _ in range(n_bodies + len(joints))]
-    for k, (_, _, bodies) in enumerate(joints):
-        for body in bodies:
-            neighbours[n_bodies + k].add(body)
-            neighbours[body].add(n_bodies + k)
-    queue = [(len(neighbours[k]), k) for k in range(n_bodies)]
-    heapq.heapify(queue)
-    gone = [False] * len(neighbours)
-    size = [PLANAR] * n_bodies + [count for _, count, _ in joints]
-    order: list[int] = []
-    fill = 0
-    while queue:
-        degree, node = heapq.heappop(queue)
-        if gone[node] or degree != len(neighbours[node]):
-            continue
-        gone[node] = True
-        if node < n_bodies:
-            order += [*at_u[PLANAR * node : PLANAR * (node + 1)]]
-        else:
-            first, count, _ = joints[node - n_bodies]
-            order += [at for at in at_multiplier[first : first + count] if at != ABSENT]
-        around = neighbours[node]
-        fill += size[node] * (size[node] + sum(size[other] for other in around))
-        for other in around:
-            neighbours[other] |= around
-            neighbours[other] -= {node, other}
-        for other in around:
-            heapq.heappush(queue, (len(neighbours[other]), other))
-    return np.array(order, dtype=np.int64), fill
+    def forget_pivots(self) -> None:
+        """Have the pivots sought anew with the next factorisation."""
+        self._ready[0] = 0

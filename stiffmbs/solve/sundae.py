@@ -14,7 +14,7 @@ from ..compile.layout import IDA, packed
 from ..compile.routines import Routine
 from ..compile.state import State
 from .engine import Reached
-from .sundials.matrices import DENSE_UP_TO
+from .newton import Stiffness
 from .trajectory import History
 
 _MODULE = "stiffmbs.solve.native.ida_callbacks"
@@ -24,6 +24,8 @@ SWITCHES = Routine(_MODULE, "switches", "void(float64, int64, int64, int64, int6
 
 HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
 """Numbers before the first time in the history (as in `stiffmbs.solve.native.ida_callbacks`), and times kept."""
+DENSE_UP_TO = 90
+"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
 MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
 TOGETHER = 20
 """Output times that are handed over together, as a handing over costs more than a step."""
@@ -40,6 +42,11 @@ class Callbacks:
     state : State
     dense : bool
         Whether the Jacobian is a full matrix, or the values of the pattern's entries by columns.
+
+    Attributes
+    ----------
+    waits : ndarray of int
+        For how many steps each switch is still left out (`stiffmbs.solve.native.watched`).
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
@@ -50,10 +57,12 @@ class Callbacks:
         slots = rows * equations.n + columns if dense else None
         self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
         self._history[3] = HISTORY_ROOM
+        n_switches = state.system.n_values("switch")
+        self._sides, self.waits = np.zeros(n_switches), np.zeros(n_switches, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
             "state": state.table, "equations": self._equations_table, "history": self._history,
-            "array_header": object.__basicsize__, "n_switches": state.system.n_values("switch"),
+            "array_header": object.__basicsize__, "n_switches": n_switches, "sides": self._sides, "waits": self.waits,
         }  # fmt: skip
         table = packed(IDA, fields)
         self._kept = (state, equations, slot_of_entry, table)
@@ -88,8 +97,9 @@ class Callbacks:
         return switches
 
     def begin(self, t: float) -> None:
-        """Go on with the history from an instant at which IDA starts anew."""
+        """Go on with the history from an instant at which IDA starts anew, and look at the switches' sides again."""
         self._history[0] = t
+        self._sides[:] = 0.0
 
     @property
     def steps(self) -> int:
@@ -108,14 +118,27 @@ class Callbacks:
 
 
 class SundaeEngine:
-    """IDA through scikit-sundae; the contract is in `stiffmbs.solve.engine.Engine`."""
+    """IDA through scikit-sundae; the contract is in `stiffmbs.solve.engine.Engine`.
+
+    Parameters
+    ----------
+    equations : Equations
+    state : State
+        The working memory of residual and Jacobian.
+    rtol : float
+    atol : ndarray, shape (n,)
+        Of each unknown; huge for those that are left out of the error test.
+    max_step : float
+        s; 0 for none.
+    """
 
     def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None:
         from sksundae.ida import IDA as SundialsIda
 
         self.equations = equations
-        self._reported = np.concatenate([equations.at["q"], equations.at["u"]])
+        self._reported = equations.independent
         dense = equations.n <= DENSE_UP_TO
+        self._linear_solver = f"{'dense' if dense else 'SuperLU_MT'}, {equations.n} unknowns"
         self.callbacks = Callbacks(equations, state, dense)
         options: dict[str, Any] = {"linsolver": "dense"} if dense else self._sparse()
         n_switches = state.system.n_values("switch")
@@ -138,7 +161,14 @@ class SundaeEngine:
         pattern = csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.equations.n,) * 2)
         return {"linsolver": "sparse", "sparsity": pattern}
 
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float) -> None:
+    def forget(self) -> None:
+        """Each run has a driver of its own."""
+
+    def leave_out(self, waits: np.ndarray) -> None:
+        """Do not look at each switch for so many steps."""
+        self.callbacks.waits[:] = waits
+
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
         """Start, or start anew, at consistent values; scikit-sundae keeps IDA's own tolerance of Newton's iteration."""
         for name, count in self._since.items():
             self._before[name] += count
@@ -153,7 +183,7 @@ class SundaeEngine:
             yield reached
             if self._interrupted:
                 raise KeyboardInterrupt
-            if reached.at_event or reached.failure:
+            if reached.fired or reached.failure:
                 return
         if not ends_there:
             yield self._reached(self._ida.step(stop, method="normal", tstop=stop), False)
@@ -178,21 +208,33 @@ class SundaeEngine:
         while True:
             reached = self._reached(self._ida.step(stop, method="onestep", tstop=stop), True)
             yield reached
-            if reached.at_event or reached.failure or reached.t >= stop:
+            if reached.fired or reached.failure or reached.t >= stop:
                 return
 
     def _reached(self, result: Any, asked_for: bool) -> Reached:
         self._since = {"residuals": result.nfev, "jacobians": result.njev}
         failure = result.message.rstrip(".").lower() if result.status < 0 else ""
-        at_event = result.status == ROOT_FOUND
-        rows = 1 if asked_for and not failure and not at_event else 0
+        fired = tuple(map(int, np.flatnonzero(result.i_events[-1]))) if result.status == ROOT_FOUND else ()
+        rows = 1 if asked_for and not failure and not fired else 0
         times, y = np.array([result.t])[:rows], np.asarray(result.y)
-        return Reached(times, y[None, self._reported][:rows], result.t, y, at_event, failure)
+        return Reached(times, y[None, self._reported][:rows], result.t, y, fired, failure)
 
-    def statistics(self) -> dict[str, int | float]:
-        """Counters since the first start."""
+    def pause_after(self, steps: int) -> None:
+        """It reports after each few output times as it is."""
+
+    def note(self) -> str:
+        """Nothing: its orders are IDA's own affair."""
+        return ""
+
+    def statistics(self) -> dict[str, int | float | str]:
+        """The linear solver, and counters since the first start."""
         calls = {name: self._before[name] + self._since[name] for name in self._before}
-        return {"steps": self.callbacks.steps, "rejected": self.callbacks.rejected, **calls}
+        return {
+            "linear_solver": self._linear_solver,
+            "steps": self.callbacks.steps,
+            "rejected": self.callbacks.rejected,
+            **calls,
+        }
 
     def history(self) -> History:
         """Ends of the steps; their orders are not known here."""

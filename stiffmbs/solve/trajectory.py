@@ -11,11 +11,19 @@ A solver is a function in a file of its own: `solve(mechanics, start, grid, sett
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+
+from ..describe.settings import RunSettings
+from .storage import BLOCK, release, room
+
+if TYPE_CHECKING:
+    from .initial import InitialValues
+    from .mechanics import Mechanics
 
 Watch = Callable[[float], None]
 
@@ -69,6 +77,8 @@ class Trajectory:
         The solver's own steps, as far as it tells them.
     note : str
         What the user should know besides; empty for nothing.
+    solver : str
+        Which solvers have worked, where that was not for the user to say.
     """
 
     t: np.ndarray
@@ -76,9 +86,10 @@ class Trajectory:
     u: np.ndarray
     outcome: Outcome
     message: str
-    statistics: dict[str, int | float]
+    statistics: Mapping[str, int | float | str]
     history: History = field(default_factory=lambda: History(np.empty(0), np.empty(0, dtype=int)))
     note: str = ""
+    solver: str = ""
 
     @property
     def step_times(self) -> np.ndarray:
@@ -86,13 +97,31 @@ class Trajectory:
         return self.history.t
 
 
+class Solver(Protocol):
+    """See above."""
+
+    def __call__(
+        self, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch, /
+    ) -> Trajectory: ...
+
+
+def summed(parts: Sequence[Mapping[str, int | float | str]]) -> dict[str, int | float | str]:
+    """Statistics of several runs as one: counts add up, orders do not, and words are put in a row."""
+    together: dict[str, int | float | str] = {}
+    for name in dict.fromkeys(name for part in parts for name in part):
+        values = [part[name] for part in parts if name in part]
+        numbers = [value for value in values if not isinstance(value, str)]
+        words = "; ".join(dict.fromkeys(map(str, values)))
+        together[name] = (max(numbers) if name == "order" else sum(numbers)) if numbers else words
+    return together
+
+
 class Rows:
     """Growing storage for states: appended to row by row, whatever their number."""
 
     def __init__(self, n_q: int, n_u: int, expected: int = 1024) -> None:
-        self._t = np.empty(expected)
-        self._q, self._u = np.empty((expected, n_q)), np.empty((expected, n_u))
-        self._count = 0
+        self._t, self._q, self._u = room(expected), room(expected, n_q), room(expected, n_u)
+        self._count = self._released = 0
 
     def append(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Store one state."""
@@ -106,12 +135,21 @@ class Rows:
         added = slice(self._count, self._count + len(t))
         self._t[added], self._q[added], self._u[added] = t, q, u
         self._count += len(t)
+        if self._count - self._released > BLOCK:
+            release(self._t, self._q, self._u)
+            self._released = self._count
 
     def _make_room(self, count: int) -> None:
         while self._count + count > len(self._t):
-            self._t, self._q, self._u = (np.concatenate([a, np.empty_like(a)]) for a in (self._t, self._q, self._u))
+            self._t, self._q, self._u = (_doubled(array) for array in (self._t, self._q, self._u))
 
     @property
     def stored(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times, positions and velocities stored so far."""
         return self._t[: self._count], self._q[: self._count], self._u[: self._count]
+
+
+def _doubled(array: np.ndarray) -> np.ndarray:
+    larger = room(2 * len(array), *array.shape[1:])
+    larger[: len(array)] = array
+    return larger

@@ -1,1 +1,1 @@
-"""Benchmark problems, one per file; `contestants` gives the ways to solve it."""
+"""Benchmark problems: `BENCHMARKS` of each file, the smallest first."""

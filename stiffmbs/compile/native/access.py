@@ -2,71 +2,59 @@
 
 from __future__ import annotations
 
-from collections import namedtuple
 from collections.abc import Callable
 from typing import Any
 
-from llvmlite import ir
-from numba import njit, types
-from numba.extending import intrinsic
-
 from ..layout import ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, MECHANICS, SCHEME, STATE, Layout
+from ..translate.code import Code, constant
+from ..translate.values import Builtin, Operand, Record, Value, builtin
 
-compiled = njit(error_model="numpy")
-"""Marks a function for use in compiled routines: a division by zero gives infinity, nothing raises."""
+
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Marks a function for use in compiled routines: written in the language of `stiffmbs.compile.translate`."""
+    return function
 
 
-@intrinsic
-def floats(typing_context, address):
+def _pointer(code: Code, kind: str, address: Operand) -> Value:
+    return code.put_value(kind, f"inttoptr {code.integer(address).typed} to ptr")
+
+
+@builtin
+def floats(code: Code, address: Operand) -> Value:
     """The doubles at an address."""
-    return _pointer_to(types.float64)
+    return _pointer(code, "floats", address)
 
 
-@intrinsic
-def ints(typing_context, address):
+@builtin
+def ints(code: Code, address: Operand) -> Value:
     """The 64-bit integers at an address."""
-    return _pointer_to(types.int64)
+    return _pointer(code, "ints", address)
 
 
-def _pointer_to(item):
-    def code(context, builder, signature, arguments):
-        return builder.inttoptr(arguments[0], context.get_value_type(types.CPointer(item)))
-
-    return types.CPointer(item)(types.int64), code
-
-
-@intrinsic
-def shifted(typing_context, pointer, count):
+@builtin
+def shifted(code: Code, pointer: Value, count: Operand) -> Value:
     """The pointer to the item `count` places on."""
-
-    def code(context, builder, signature, arguments):
-        return builder.gep(arguments[0], [arguments[1]])
-
-    return pointer(pointer, types.int64), code
+    return Value(pointer.kind, code.item(pointer, count).text)
 
 
-@intrinsic
-def call_kernel(typing_context, kernel, count, index, number, t, q, u, a, lam, mu, place, value):
+@builtin
+def call_kernel(code: Code, kernel: Operand, *arguments: Value) -> None:
     """Call a kernel (`stiffmbs.compile.terms.KERNEL_SIGNATURE`) by its address."""
-    arguments_type = (kernel, count, index, number, t, q, u, a, lam, mu, place, value)
-
-    def code(context, builder, signature, arguments):
-        values = [context.get_value_type(kind) for kind in signature.args[1:]]
-        function = ir.FunctionType(ir.VoidType(), values)
-        builder.call(builder.inttoptr(arguments[0], function.as_pointer()), arguments[1:])
-        return context.get_dummy_value()
-
-    return types.void(*arguments_type), code
+    function = code.put_value("ints", f"inttoptr {code.integer(kernel).typed} to ptr")
+    code.put(f"call void {function.text}({', '.join(argument.typed for argument in arguments)})")
 
 
-def view_of(name: str, layout: Layout) -> Callable[..., Any]:
-    """A compiled function that turns a table laid out by `layout` into a named tuple of pointers and numbers."""
-    fields = namedtuple(name, list(layout))  # type: ignore[misc]
-    reads = {"int": "table[{}]", "ints": "ints(table[{}])", "floats": "floats(table[{}])"}
-    arguments = ", ".join(reads[kind].format(column) for column, kind in enumerate(layout.values()))
-    namespace: dict[str, Any] = {"fields": fields, "ints": ints, "floats": floats}
-    exec(f"def view(table):\n    return fields({arguments})\n", namespace)  # made from the layout above
-    return compiled(namespace["view"])
+def view_of(name: str, layout: Layout) -> Builtin:
+    """A function of compiled code that turns a table laid out by `layout` into a record of pointers and numbers."""
+
+    def view(code: Code, table: Value) -> Record:
+        fields = {}
+        for column, (field, kind) in enumerate(layout.items()):
+            entry = code.load(code.item(table, constant(column)))
+            fields[field] = entry if kind == "int" else _pointer(code, kind, entry)
+        return Record(name, fields)
+
+    return Builtin(view)
 
 
 state_view = view_of("State", STATE)

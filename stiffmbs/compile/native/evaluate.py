@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from math import cos, sin
+
 from ..layout import CALL
-from .access import call_kernel, compiled, floats, ints, state_view
+from .access import call_kernel, compiled, floats, ints, shifted, state_view
+from .orientation import TURN_STRIDE, share_orientation
 
 POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH = range(6)
 CALL_WIDTH = len(CALL)
@@ -12,13 +15,23 @@ CALL_WIDTH = len(CALL)
 @compiled
 def evaluate(s, term_set, t):
     """Compute all terms of a set at the state held in `s`; returns a pointer to their values."""
+    turned = ints(s.turned[term_set])
+    for k in range(s.n_turned[term_set]):
+        at = turned[k]
+        if s.spatial:
+            share_orientation(shifted(s.q, at + 3), shifted(s.turn, TURN_STRIDE * at))
+            continue
+        angle = s.q[at + 2]
+        cosine, sine = cos(angle), sin(angle)  # both before a store, so that one call finds them
+        s.turn[at] = cosine
+        s.turn[at + 1] = sine
     calls = ints(s.calls[term_set])
     values = floats(s.values[term_set])
     for k in range(s.n_calls[term_set]):
         at = CALL_WIDTH * k
         call_kernel(
             calls[at], calls[at + 1], ints(calls[at + 2]), floats(calls[at + 3]),
-            t, s.q, s.u, s.a, s.lam, s.mu, ints(calls[at + 4]), values,
+            t, s.q, s.turn, s.u, s.a, s.lam, s.mu, ints(calls[at + 4]), values,
         )  # fmt: skip
     return values
 
@@ -27,15 +40,16 @@ def evaluate(s, term_set, t):
 def load(s, e, y, yp):
     """Take q, u, mu and lam out of a vector of unknowns, and accelerations out of its derivative.
 
-    Where the formulation integrates the multipliers, they are derivatives too.
+    Coordinates that stand still keep what the state holds.  Where the formulation integrates the multipliers, they
+    are derivatives too.
     """
-    if e.has_q:
-        for k in range(s.n_q):
-            s.q[k] = y[e.at_q[k]]
-    if e.has_u:
-        for k in range(s.n_u):
-            s.u[k] = y[e.at_u[k]]
-            s.a[k] = yp[e.at_u[k]]
+    for k in range(e.n_moving_q):
+        at = e.moving_q[k]
+        s.q[at] = e.offset[at] + e.q_ratio[at] * y[e.q_from[k]]
+    for k in range(e.n_moving_u):
+        at = e.moving_u[k]
+        s.u[at] = e.u_ratio[at] * y[e.u_from[k]]
+        s.a[at] = e.u_ratio[at] * yp[e.u_from[k]]
     multipliers = yp if e.integrated else y
     if e.has_mu:
         for k in range(s.n_c):

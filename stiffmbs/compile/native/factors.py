@@ -155,7 +155,7 @@ def refactor(f):
 
 
 @compiled
-def _equilibrate(f):
+def equilibrate(f):
     """Scales for a block matrix [D J^T; J 0]: 1/sqrt(D) for its first unknowns, rows of unit length for its multipliers.
 
     Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill.
@@ -177,7 +177,8 @@ def _equilibrate(f):
 
 
 @compiled
-def _scale(f):
+def scale(f):
+    """Multiply the matrix by the scales of its rows and columns."""
     for column in range(f.n):
         for p in range(f.a_start[column], f.a_start[column + 1]):
             f.a[p] *= f.scale[f.a_row[p]] * f.scale[column]
@@ -190,14 +191,14 @@ def factored(f):
     The matrix in `f` is overwritten by the scaled one.
     """
     if f.ready[0]:
-        _scale(f)
+        scale(f)
         if refactor(f) == DONE:
             return DONE
         for column in range(f.n):
             for p in range(f.a_start[column], f.a_start[column + 1]):
                 f.a[p] /= f.scale[f.a_row[p]] * f.scale[column]
-    _equilibrate(f)
-    _scale(f)
+    equilibrate(f)
+    scale(f)
     return factor(f)
 
 

@@ -27,7 +27,7 @@ def _piece_area(number, piece, z):
 
 @compiled
 def spline(number, at, x, order):
-    """The order-th derivative of the table at ``number[at]`` (`stiffmbs.compile.kind.spline_data`); -1 for its integral.
+    """The order-th derivative of the table at ``number[at]`` (`stiffmbs.compile.table_values.spline_data`); -1 for its integral.
 
     Outside its points it goes on with the slope of its end, or repeats.  The integral starts at the first point.
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, WithJsonSchema, field_validator
@@ -11,6 +10,7 @@ from .. import si
 from ..element import Force, Symbolic
 from ..formula_field import OfDeflection
 from ..marker import Marker
+from .matrix import check_symmetric, from_diagonal, product
 
 _AS_WRITTEN = WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})
 
@@ -67,25 +67,14 @@ class Bushing(Force):
     law_angle: OfDeflection | None = Field(None, description="moment against the rotation added over s (rad), N m")
     axes: Literal["j", "ground"] = Field("j", description="whether x and y are marker j's or the ground's axes")
 
+    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
+
     @field_validator("stiffness", "damping", mode="before")
     @classmethod
-    def _diagonal(cls, found: Any) -> Any:
-        """Three numbers stand for a matrix without coupling."""
-        if not isinstance(found, list | tuple) or any(isinstance(part, list | tuple) for part in found):
-            return found
-        return tuple(tuple(part if k == row else None for k in range(3)) for row, part in enumerate(found))
-
-    @field_validator("stiffness", "damping")
-    @classmethod
-    def _symmetric(cls, matrix: Any) -> Any:
-        for row, column in itertools.combinations(range(3), 2):
-            one, other = matrix[row][column] or 0.0, matrix[column][row] or 0.0
-            if abs(one - other) > 1e-12 * max(abs(one), abs(other)):
-                raise ValueError(
-                    f"found {one:g} in row {row + 1}, column {column + 1} and {other:g} across the diagonal, "
-                    "expected a symmetric matrix"
-                )
-        return matrix
+    def _rows(cls, found: Any) -> Any:
+        if isinstance(found, list | tuple) and len(found) != 3:
+            raise ValueError(f"found {len(found)} entries, expected 3, or 3 rows of a symmetric matrix")
+        return from_diagonal(found)
 
     @staticmethod
     def deformation(e: Symbolic) -> tuple[Any, Any, Any]:
@@ -98,7 +87,7 @@ class Bushing(Force):
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         """preload - K s - C s' - law(s) on each deformation."""
         s = Bushing.deformation(e)
-        elastic, viscous = _product(e.stiffness, s), _product(e.damping, [e.rate(part) for part in s])
+        elastic, viscous = product(e.stiffness, s), product(e.damping, [e.rate(part) for part in s])
         laws = [law(part) if law is not None else 0 for law, part in zip(_laws(e), s, strict=True)]
         return [(e.preload[k] - elastic[k] - viscous[k] - laws[k], s[k]) for k in range(3)]
 
@@ -106,7 +95,7 @@ class Bushing(Force):
     def potential(e: Symbolic) -> Any:
         """1/2 s^T K s - preload . s and the integrals of the laws; zero where one has no simple integral."""
         s = Bushing.deformation(e)
-        elastic = _product(e.stiffness, s)
+        elastic = product(e.stiffness, s)
         of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]
         if None in of_laws:
             return 0
@@ -115,8 +104,3 @@ class Bushing(Force):
 
 def _laws(e: Symbolic) -> tuple[Any, Any, Any]:
     return e.law_x, e.law_y, e.law_angle
-
-
-def _product(matrix: Any, vector: Any) -> list[Any]:
-    """Matrix times vector, without the entries that are None."""
-    return [sum(k * part for k, part in zip(row, vector, strict=True) if k is not None) for row in matrix]

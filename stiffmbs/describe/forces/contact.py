@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from .. import si
 from ..element import Symbolic
-from ..fields import Measured
 from ..marker import Marker
+from .contact_law import ContactLaw
 from .friction import Friction
 
 
-class Contact(Friction):
+class Contact(ContactLaw):
     """A point or circle about marker i that presses on a line or circle of marker j, with friction.
 
     Where the gap is closed by delta = -gap > 0 the surfaces repel each other with
@@ -37,9 +37,6 @@ class Contact(Friction):
     radius: si.LengthOrZero = Field(0.0, description="of the circle about i, m; 0 for a point")
     surface: Literal["line", "circle", "hole"] = Field("line", description="what i meets")
     surface_radius: si.LengthOrZero = Field(0.0, description="of a circle or hole about j, m")
-    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
-    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
-    dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
 
     @model_validator(mode="after")
     def _fits(self) -> Contact:
@@ -49,8 +46,6 @@ class Contact(Friction):
             raise ValueError(
                 f"found a circle of radius {self.radius:g} in a hole of {self.surface_radius:g}, expected a wider hole"
             )
-        if self.static_friction is not None and self.friction is None:
-            raise ValueError("found static_friction alone, expected friction too")
         return self
 
     @staticmethod
@@ -60,15 +55,6 @@ class Contact(Friction):
             return (e.i.point - e.j.point).dot(e.j.normal) - e.radius
         distance = e.distance(e.i.point, e.j.point)
         return (distance - e.surface_radius if e.surface == "circle" else e.surface_radius - distance) - e.radius
-
-    @staticmethod
-    def pressure(e: Symbolic) -> Any:
-        """The normal force N, zero without contact."""
-        from sympy import And, Piecewise
-
-        gap = Contact.gap(e)
-        damped = 1 - e.dissipation * e.rate(gap)
-        return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
@@ -96,14 +82,3 @@ class Contact(Friction):
         arm = outward * distance - e.radius
         across = outward / distance
         return [(across * d[1], d[0]), (-across * d[0], d[1]), (e.radius, e.i.angle), (arm, e.j.angle)]
-
-    @staticmethod
-    def potential(e: Symbolic) -> Any:
-        from sympy import Piecewise
-
-        gap, power = Contact.gap(e), e.exponent + 1
-        return Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
-
-    @staticmethod
-    def switches(e: Symbolic) -> Any:
-        return (Contact.gap(e),)

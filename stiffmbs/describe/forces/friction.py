@@ -9,6 +9,18 @@ from pydantic import Field
 from .. import si
 from ..element import Force, Symbolic
 
+TINY = 1e-18
+"""N^2, added under the root of a reaction, so that its derivative exists where the reaction vanishes."""
+AT_REST = 1e-6
+"""Part of the smoothed speed that is added to a sliding speed in the same way."""
+
+
+def magnitude(*parts: Any, tiny: Any = TINY) -> Any:
+    """Of a vector by its components, with a derivative where it vanishes."""
+    from sympy import sqrt
+
+    return sqrt(sum(part**2 for part in parts) + tiny)
+
 
 class Friction(Force):
     """Base of forces with dry friction: Coulomb's law with Stribeck's falling branch, smoothed where sliding turns round.
@@ -28,6 +40,12 @@ class Friction(Force):
     smooth_velocity: si.PositiveVelocity = Field(
         1e-4, description="sliding speed below which friction is smoothed, m/s"
     )
+
+    @classmethod
+    def per_speed(cls, e: Symbolic, *sliding: Any) -> Any:
+        """mu over the speed, for a sliding velocity of several components: what turns it into the friction, finite at rest."""
+        speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.smooth_velocity) ** 2))
+        return cls.coefficient(e, speed) / speed
 
     @staticmethod
     def coefficient(e: Symbolic, v: Any) -> Any:

@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 from .. import si
 from ..element import Force, Symbolic
-from ..marker import Marker
+from ..marker import MarkerReference
 
 
 class Weight(Force):
-    """The model's gravity on one body; made by the model, not written in scenes (hence without a kind)."""
+    """The model's gravity on one body; made by the model, not written in scenes (hence without a kind).
+
+    It acts at the centre of mass of the body that carries `i`, wherever `i` sits on it: no angle has a part in it.
+    """
 
     kind: ClassVar[str] = ""
 
-    i: Marker
+    i: MarkerReference
     mass: si.Mass
-    gravity: tuple[si.Acceleration, si.Acceleration]
+    gravity: tuple[si.Acceleration, ...]
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
-        return [(e.mass * e.gravity[0], e.i.point[0]), (e.mass * e.gravity[1], e.i.point[1])]
+        return [(e.mass * g, x) for g, x in zip(e.gravity, e.i.body.origin, strict=True)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        return -e.mass * (e.gravity[0] * e.i.point[0] + e.gravity[1] * e.i.point[1])
+        return -e.mass * sum(g * x for g, x in zip(e.gravity, e.i.body.origin, strict=True))
+
+
+def weights(bodies: Mapping[str, Any], gravity: tuple[float, ...]) -> Iterator[tuple[str, Weight]]:
+    """The weights of bodies, of the plane or of space, by the bodies' names, if there is gravity."""
+    for name, body in bodies.items() if any(gravity) else ():
+        yield name, Weight(i=MarkerReference(body=name), mass=body.mass, gravity=gravity)

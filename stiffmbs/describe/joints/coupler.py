@@ -39,8 +39,8 @@ class Coupler(Relation):
         return scale
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
-        return [e.joint_1.coordinate - e.scale * e.joint_2.coordinate - e.offset]
+    def relation(e: Symbolic) -> Any:
+        return e.joint_1.coordinate - e.scale * e.joint_2.coordinate - e.offset
 
     @staticmethod
     def point(e: Symbolic) -> Any:

@@ -12,6 +12,7 @@ from ..element import Joint, JointReference, Symbolic
 from ..exactly_one import exactly_one
 from ..formula_field import Formula, OfPosition, OfTime
 from ..joint_reference import unfit_joints
+from ..marker import MarkerReference
 
 
 class Drive(Joint):
@@ -21,16 +22,27 @@ class Drive(Joint):
     no position form, so that the coordinate starts where it is drawn.  Haug, Computer Aided Kinematics and Dynamics of
     Mechanical Systems (1989), section 3.5.
 
-    The reaction is what the motor does to its first body (marker i of the joint, or the first body that the formula
-    names): ``motor.torque`` on an angle, ``motor.fx motor.fy`` along a displacement.  As for every joint it is
-    -J^T lam: the torque on a driven angle is minus the multiplier.
+    The reaction is what the motor does to its first body: ``motor.torque`` on an angle, ``motor.fx motor.fy`` along a
+    displacement.  That is the body of marker i of the joint; for a formula the body of the drive's own marker `i`, or
+    without one the first body that the formula names, whose centre of mass is then the torque's point.  As for every
+    joint the reaction is -J^T lam: the torque on a driven angle is minus the multiplier.
+
+    Angles count whole turns, so that they may be driven over any number of them.  In space a drawing tells an angle up to
+    whole turns; it starts in the turn that is nearest to s(0).  A joint with two coordinates is named with the one to
+    drive, ``sleeve.angle``.
     """
 
     kind: ClassVar[str] = "drive"
     equations: ClassVar[tuple[str, ...]] = ("motion",)
 
     type: Literal["drive"] = "drive"
-    joint: JointReference | None = Field(None, description="joint whose coordinate is driven")
+    i: MarkerReference | None = Field(
+        None, description="marker of the body on which the action of a driven coordinate is reported"
+    )
+    j: MarkerReference | None = Field(None, description="marker on which requests may ask for the reaction")
+    joint: JointReference | None = Field(
+        None, description="joint whose coordinate is driven, or one of its coordinates"
+    )
     driven: OfPosition | None = Field(
         None, alias="coordinate", description="what is driven, in place of a joint: crank.angle, dm(bar.end, ground)"
     )
@@ -49,6 +61,8 @@ class Drive(Joint):
     @model_validator(mode="after")
     def _one_of_each(self) -> Drive:
         exactly_one(("joint", self.joint), ("coordinate", self.driven))
+        if self.joint is not None and (self.i is not None or self.j is not None):
+            raise ValueError("found the markers i or j beside a joint, expected those of the joint alone")
         exactly_one(("position", self.prescribed_position), ("velocity", self.prescribed_velocity))
         return self
 
@@ -57,7 +71,9 @@ class Drive(Joint):
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        return [] if e.prescribed_position is None else [_driven(e) - _at(e.prescribed_position, e.t)]
+        if e.prescribed_position is None:
+            return []
+        return [_driven(e) - _at(e.prescribed_position, e.t)]
 
     @staticmethod
     def velocity(e: Symbolic) -> Any:
@@ -65,8 +81,10 @@ class Drive(Joint):
 
     @staticmethod
     def point(e: Symbolic) -> Any:
-        """The joint's point; without a joint the first body's centre of mass."""
-        return e.frames[0].origin if e.joint is None else e.joint.i.point
+        """The joint's point; without a joint that of marker i, or the first body's centre of mass."""
+        if e.joint is not None:
+            return e.joint.i.point
+        return e.frames[0].origin if e.i is None else e.i.point
 
 
 def _driven(e: Symbolic) -> Any:

@@ -11,7 +11,10 @@ from ..marker import Marker
 
 
 class Fixed(Joint):
-    """Weld: two markers coincide in place and direction."""
+    """Weld: two markers coincide in place and direction.
+
+    The reaction is a force of any direction and a torque.
+    """
 
     kind: ClassVar[str] = "fixed"
     equations: ClassVar[tuple[str, ...]] = ("x", "y", "angle")

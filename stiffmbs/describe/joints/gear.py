@@ -9,7 +9,6 @@ from pydantic import Field, field_validator
 from .. import si
 from ..element import JointReference, Symbolic
 from .relation import Relation
-from .revolute import Revolute
 
 
 class Gear(Relation):
@@ -26,7 +25,7 @@ class Gear(Relation):
 
     kind: ClassVar[str] = "gear"
     equations: ClassVar[tuple[str, ...]] = ("mesh",)
-    wanted = {"joint_1": Revolute, "joint_2": Revolute}
+    wanted = {"joint_1": "angle", "joint_2": "angle"}
     carried: ClassVar[bool] = True
 
     type: Literal["gear"] = "gear"
@@ -43,8 +42,8 @@ class Gear(Relation):
         return ratio
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
-        return [e.joint_1.coordinate + e.ratio * e.joint_2.coordinate - e.offset]
+    def relation(e: Symbolic) -> Any:
+        return e.joint_1.coordinate + e.ratio * e.joint_2.coordinate - e.offset
 
     @staticmethod
     def point(e: Symbolic) -> Any:

@@ -19,6 +19,7 @@ class PointOnLine(Joint):
 
     kind: ClassVar[str] = "point_on_line"
     equations: ClassVar[tuple[str, ...]] = ("normal",)
+    coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
 
     type: Literal["point_on_line"] = "point_on_line"
     i: Marker = Field(description="marker of the body with the pin, on which the reaction is reported")
@@ -29,6 +30,6 @@ class PointOnLine(Joint):
         return [(e.i.point - e.j.point).dot(e.j.normal)]
 
     @staticmethod
-    def coordinate(e: Symbolic) -> Any:
+    def displacement(e: Symbolic) -> Any:
         """The displacement of the pin along the line, from marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)

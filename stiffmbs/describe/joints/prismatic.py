@@ -13,12 +13,15 @@ from ..marker import Marker
 class Prismatic(Joint):
     """Slider: marker i stays on the line through marker j along j's axis and keeps j's direction.
 
+    The reaction is a force across the line and a torque; along the line it has no component.
+
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.13, with the angle itself in
     place of its sine.
     """
 
     kind: ClassVar[str] = "prismatic"
     equations: ClassVar[tuple[str, ...]] = ("normal", "angle")
+    coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
 
     type: Literal["prismatic"] = "prismatic"
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
@@ -29,6 +32,6 @@ class Prismatic(Joint):
         return [(e.i.point - e.j.point).dot(e.j.normal), e.i.angle - e.j.angle]
 
     @staticmethod
-    def coordinate(e: Symbolic) -> Any:
+    def displacement(e: Symbolic) -> Any:
         """The displacement of marker i along the axis of marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)

@@ -8,9 +8,7 @@ from pydantic import Field, field_validator
 
 from .. import si
 from ..element import JointReference, Symbolic
-from .prismatic import Prismatic
 from .relation import Relation
-from .revolute import Revolute
 
 
 class RackAndPinion(Relation):
@@ -27,7 +25,7 @@ class RackAndPinion(Relation):
 
     kind: ClassVar[str] = "rack_and_pinion"
     equations: ClassVar[tuple[str, ...]] = ("mesh",)
-    wanted = {"rack": Prismatic, "pinion": Revolute}
+    wanted = {"rack": "displacement", "pinion": "angle"}
     carried: ClassVar[bool] = True
 
     type: Literal["rack_and_pinion"] = "rack_and_pinion"
@@ -46,8 +44,8 @@ class RackAndPinion(Relation):
         return radius
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
-        return [e.rack.coordinate - e.pitch_radius * e.pinion.coordinate - e.offset]
+    def relation(e: Symbolic) -> Any:
+        return e.rack.coordinate - e.pitch_radius * e.pinion.coordinate - e.offset
 
     @staticmethod
     def point(e: Symbolic) -> Any:

@@ -13,11 +13,14 @@ from ..marker import Marker
 class Revolute(Joint):
     """Pin: a point of body i and a point of body j coincide.
 
+    The reaction is a force at the pin, of any direction; it has no torque.
+
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.10.
     """
 
     kind: ClassVar[str] = "revolute"
     equations: ClassVar[tuple[str, ...]] = ("x", "y")
+    coordinates: ClassVar[tuple[str, ...]] = ("angle",)
 
     type: Literal["revolute"] = "revolute"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
@@ -28,6 +31,6 @@ class Revolute(Joint):
         return e.i.point - e.j.point
 
     @staticmethod
-    def coordinate(e: Symbolic) -> Any:
+    def angle(e: Symbolic) -> Any:
         """The angle of marker i against marker j."""
         return e.i.angle - e.j.angle

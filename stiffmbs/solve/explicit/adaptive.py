@@ -3,81 +3,134 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.corners import corner_times
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
 from ..initial import InitialValues
+from ..limits import refuse_beyond_limits
 from ..mechanics import Mechanics
 from ..restart import restarted
+from ..suspect import suspect
 from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
+from .chatter import Chatter
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
 
-ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64*)")
-PAUSED, AT_END = 0, 1
-"""Statuses of a call: to be called again, and done."""
+ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)")
+PAUSED, AT_END, AT_EVENT = 0, 1, 2
+"""Statuses of a call: to be called again, done, and stopped where a force changes its law."""
 WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
+MOST_LOOKS_APART = 16
+SOON = 8
+"""A look comes sooner where stability holds back one in so many of the steps until then."""
 
 
-def solve_adaptively(
-    scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch
-) -> Trajectory:
-    """Integrate with a scheme that estimates its error; the contract is in `stiffmbs.solve.trajectory`.
+@dataclass(frozen=True)
+class Leaving:
+    """When a run is to be left to another solver: asked after so many steps of a leg, then after a few times as many."""
+
+    first: int
+    pays: Callable[[Integration], bool]
+
+
+class AdaptiveRun:
+    """One integration with a scheme that estimates its error, from corner to corner and from event to event.
 
     Steps are not cut by output times: states there come from the scheme's interpolant.  They are cut by corners in
-    time, which long steps of a motion at rest would jump over.
+    time, which long steps of a motion at rest would jump over, and where a force changes its law (a contact closes).
+
+    Attributes
+    ----------
+    work : Integration
+    left : bool
+        Whether the run was left to another solver on its way, or could not go on.
     """
-    system = mechanics.system
-    work = Integration(scheme, mechanics, start, grid, settings)
-    rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
-    own_steps = grid.times is None
-    if own_steps:
-        rows.append(grid.start, start.q, start.u)
-    outcome, message, status = Outcome.DONE, Outcome.DONE.value, AT_END
-    advance = ADVANCE.load()
-    corners = corner_times(system, grid.start, grid.end)
-    begun = time.perf_counter()
-    try:
-        for stop in (*corners, grid.end):
-            work.h = first_step(scheme, mechanics, start, work.t, grid.end, settings)
-            status = PAUSED
-            while status == PAUSED:
-                status = advance(stop, work.room, own_steps, work.at)
-                work.collect(rows)
-                watch(work.t)
-            if status < 0:
-                break
-            if stop < grid.end:
-                start = restarted(mechanics, stop, work.q, work.u, settings.projection)
-                work.begin(start)
-    except SolverError as error:
-        outcome, message = Outcome.STOPPED, str(error)
-    except KeyboardInterrupt:
-        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-    if status < 0:
-        outcome, message = Outcome.STOPPED, f"stopped at t = {work.t:.9g} s: {REASONS[status]}"
-    elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
-        message = f"{message}; {stiff_sentence(work)}"
-    statistics: dict[str, int | float] = {n: work.count(n) for n in ("steps", "rejected", "accelerations")}
-    statistics["corners"] = int(np.sum(corners < work.t))
-    statistics["seconds"] = time.perf_counter() - begun
-    history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
-    return Trajectory(*rows.stored, outcome, message, statistics, history)
+
+    def __init__(
+        self, scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch
+    ) -> None:  # fmt: skip
+        system = mechanics.system
+        self.work = work = Integration(scheme, mechanics, start, grid, settings)
+        self.left = False
+        self._scheme, self._mechanics, self._start, self._grid = scheme, mechanics, start, grid
+        self._settings, self._watch = settings, watch
+        self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
+        if grid.times is None:
+            self._rows.append(grid.start, start.q, start.u)
+        self._corners = mechanics.corner_times(grid.start, grid.end)
+        self._chatter, self._events = Chatter(system), 0
+
+    def integrate(self, leaving: Leaving | None = None) -> Trajectory:
+        """Integrate to the end, or to where the run is left; the contract is in `stiffmbs.solve.trajectory`."""
+        work, status = self.work, AT_END
+        outcome, message = Outcome.DONE, Outcome.DONE.value
+        begun = time.perf_counter()
+        try:
+            for stop in (*self._corners, self._grid.end):
+                status = AT_EVENT
+                while status == AT_EVENT and not self.left:
+                    status = self._leg(float(stop), leaving)
+                if status < 0 or self.left:
+                    break
+        except SolverError as error:
+            outcome, message = Outcome.STOPPED, str(error)
+        except KeyboardInterrupt:
+            outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
+        if status < 0:
+            self.left = True
+            likely = suspect(self._mechanics, work.t, work.q.copy(), work.u.copy())
+            outcome, message = Outcome.STOPPED, f"stopped at t = {work.t:.9g} s: {REASONS[status]}{likely}"
+        elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
+            message = f"{message}; {stiff_sentence(work)}"
+        history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
+        statistics = {**self._statistics(), "seconds": time.perf_counter() - begun}
+        return Trajectory(*self._rows.stored, outcome, message, statistics, history)
+
+    def _leg(self, stop: float, leaving: Leaving | None) -> int:
+        """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
+        work, advance, status = self.work, ADVANCE.load(), PAUSED
+        most = min(leaving.first, work.room) if leaving else work.room
+        work.h = first_step(self._scheme, self._mechanics, self._start, work.t, self._grid.end, self._settings)
+        while status == PAUSED:
+            held = max(1, most // SOON) if leaving else most
+            status = advance(stop, most, held, self._grid.times is None, work.at)
+            work.collect(self._rows)
+            self._watch(work.t)
+            most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
+            if status == PAUSED and leaving and leaving.pays(work):
+                self.left = True
+                advance(work.t, 1, 1, self._grid.times is None, work.at)  # the rows up to here
+                work.collect(self._rows)
+                return status
+        if status >= 0 and work.t < self._grid.end:
+            self._start = restarted(self._mechanics, work.t, work.q, work.u, self._settings.projection)
+            refuse_beyond_limits(self._mechanics, work.t, self._start.q, self._start.u)
+            switch = work.begin(self._start)
+            if status == AT_EVENT:
+                self._events += 1
+                self._chatter.note(work.t, work.count("steps"), switch)
+        return status
+
+    def _statistics(self) -> dict[str, int | float]:
+        counted = {name: self.work.count(name) for name in ("steps", "rejected", "accelerations")}
+        return {**counted, "corners": int(np.sum(self._corners < self.work.t)), "events": self._events}
 
 
 def first_step(
     scheme: Scheme, mechanics: Mechanics, start: InitialValues, t: float, end: float, settings: RunSettings
 ) -> float:
     """A first step whose error will be small (Hairer, Norsett, Wanner I, ch. II.4, "starting step size"), s."""
-    atol = np.tile(absolute_tolerances(mechanics.system, settings), 2)
-    y, rate = np.concatenate([start.q, start.u]), np.concatenate([start.u, start.acceleration])
+    atol = absolute_tolerances(mechanics.system, settings)
+    y = np.concatenate([start.q, start.u])
+    rate = np.concatenate([mechanics.position_rates(start.q, start.u), start.acceleration])
     scale = atol + settings.rtol * np.abs(y)
 
     def size(vector: np.ndarray) -> float:
@@ -85,9 +138,10 @@ def first_step(
 
     of_state, of_rate = size(y), size(rate)
     h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 else 1e-6
-    mechanics.state.q[:], mechanics.state.u[:] = start.q + h * start.u, start.u + h * start.acceleration
+    q, u = mechanics.system.of_body.moved(start.q, h * start.u), start.u + h * start.acceleration
+    mechanics.state.q[:], mechanics.state.u[:] = q, u
     status, acceleration = mechanics.accelerate(t + h)
-    change = size(np.concatenate([mechanics.state.u, acceleration]) - rate) / h
+    change = size(np.concatenate([mechanics.position_rates(q, u), acceleration]) - rate) / h
     largest = max(of_rate, change)
     if status < 0 or not np.isfinite(largest):
         return h

@@ -12,7 +12,9 @@ import numpy as np
 
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
+from ...errors import SolverError
 from ..initial import InitialValues
+from ..limits import refuse_beyond_limits
 from ..mechanics import POSITION_TOLERANCE, Mechanics
 from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
 from .integration import Integration
@@ -70,7 +72,9 @@ def runge_kutta(
     return Stepper(work.q, work.u, take, scheme.stages)
 
 
-def solve_with_fixed_steps(stepper: Stepper, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+def solve_with_fixed_steps(
+    mechanics: Mechanics, stepper: Stepper, grid: Grid, settings: RunSettings, watch: Watch
+) -> Trajectory:
     """Integrate with steps of one length; the contract is in `stiffmbs.solve.trajectory`.
 
     Between two output times the step is the largest that is no longer than the one asked for and divides the time
@@ -89,8 +93,11 @@ def solve_with_fixed_steps(stepper: Stepper, grid: Grid, settings: RunSettings, 
                 outcome, message = Outcome.STOPPED, f"stopped after t = {t:.9g} s: {REASONS[status]}"
                 break
             steps += count
+            refuse_beyond_limits(mechanics, end, stepper.q, stepper.u)
             rows.append(end, stepper.q, stepper.u)
             watch(end)
+    except SolverError as error:
+        outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.layout import EXPLICIT, SCHEME, packed
+from ...compile.layout import EXPLICIT, packed
 from ...describe.settings import RunSettings
 from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
@@ -40,19 +40,23 @@ class Integration:
         n = self._n_q + len(start.u)
         self.room = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
         self.step_times: list[np.ndarray] = []
-        self._scheme, self._eliminated = _arrays_of(scheme), mechanics.eliminated
+        self._mechanics = mechanics
+        self._scheme, self._eliminated = scheme, mechanics.eliminated
         self._end = scheme.stages
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
-        counters = ("dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
+        n_switches = mechanics.system.n_values("switch")
+        mechanics.state.load("switch")
+        counters = ("at_event", "dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
         self._arrays: dict[str, Any] = {
             "mechanics": mechanics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
-            "scheme": packed(SCHEME, self._scheme), "n": n,
+            "scheme": scheme.table, "n": n,
             "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
-            "rtol": np.array([settings.rtol]), "atol": np.concatenate([atol, atol]),
+            "rtol": np.array([settings.rtol]), "atol": atol,
             "longest": np.array([settings.max_step or np.inf]),
             "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
-            "t": np.array([grid.start]), "t_before": np.array([grid.start]),
+            "t": np.array([grid.start]), "t_before": np.array([grid.start]), "span": np.zeros(1),
+            "n_switches": n_switches, "sides": np.zeros(n_switches),
             "h": np.array([settings.step]), "last_error": np.array([SMALLEST_ERROR]),
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
@@ -93,11 +97,20 @@ class Integration:
         """Velocities reached."""
         return self._arrays["y"][self._n_q :]
 
-    def begin(self, start: InitialValues) -> None:
-        """Go on from consistent values at the time reached."""
+    def begin(self, start: InitialValues) -> int:
+        """Go on from consistent values at the time reached; the first switch that has changed since the last step, or -1."""
         self.q[:], self.u[:] = start.q, start.u
-        self._arrays["k"][self._end] = np.concatenate([start.u, start.acceleration])
+        rates = self._mechanics.position_rates(start.q, start.u)
+        self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
         self._arrays["last_error"][0] = SMALLEST_ERROR
+        self._arrays["at_event"][0] = 0
+        state, sides = self._mechanics.state, self._arrays["sides"]
+        state.q[:], state.u[:] = start.q, start.u
+        state.evaluate("switch", self.t)
+        found = state.values["switch"][: len(sides)]
+        changed = np.flatnonzero(np.sign(found) != np.sign(sides))
+        sides[:] = found
+        return int(changed[0]) if len(changed) else -1
 
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
@@ -110,14 +123,3 @@ class Integration:
         rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :])
         self._arrays["rows"][0] = 0
         self.step_times.append(self._arrays["ends"][np.arange(before, self.count("steps")) % self.room])
-
-
-def _arrays_of(scheme: Scheme) -> dict[str, Any]:
-    return {
-        "stages": scheme.stages, "extended": scheme.extended, "n_errors": len(scheme.errors),
-        "n_dense": len(scheme.dense), "error_needs_end": scheme.error_needs_end,
-        "c": np.array(scheme.c, dtype=float), "a": scheme.matrix(scheme.a),
-        "errors": scheme.matrix(scheme.errors), "dense": scheme.matrix(scheme.dense),
-        "exponent": np.array([scheme.exponent]), "memory": np.array([scheme.memory]),
-        "stability": np.array([scheme.stability]),
-    }  # fmt: skip

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
 import numpy as np
+
+from ...compile.layout import SCHEME, packed
 
 Row = Mapping[int, float]
 """The coefficients of a sum over stages that are not zero, by stage."""
@@ -64,6 +68,23 @@ class Scheme:
     def error_needs_end(self) -> bool:
         """Whether the estimate asks for the stage at the step's end."""
         return any(self.stages in row for row in self.errors)
+
+    @cached_property
+    def _arrays(self) -> dict[str, Any]:
+        """What the table points to."""
+        return {
+            "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
+            "n_dense": len(self.dense), "error_needs_end": self.error_needs_end,
+            "c": np.array(self.c, dtype=float), "a": self.matrix(self.a),
+            "errors": self.matrix(self.errors), "dense": self.matrix(self.dense),
+            "exponent": np.array([self.exponent]), "memory": np.array([self.memory]),
+            "stability": np.array([self.stability]),
+        }  # fmt: skip
+
+    @cached_property
+    def table(self) -> np.ndarray:
+        """Addresses for compiled code (`stiffmbs.compile.layout.SCHEME`)."""
+        return packed(SCHEME, self._arrays)
 
     def matrix(self, rows: tuple[Row, ...]) -> np.ndarray:
         """Rows of coefficients as a full matrix, one column for each stage."""

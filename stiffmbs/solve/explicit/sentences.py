@@ -15,7 +15,7 @@ REASONS = {
     NOT_FINITE: "the motion has grown beyond all numbers; the step is too long for the stiffness of the scene",
     STEP_TOO_SMALL: "the step that the tolerance asks for has become too small: the motion has a singularity there, or "
     + _USE_BDF,
-    STIFF: f"more than 100 million steps would be left, each as short as stability asks for; {_USE_BDF}",
+    STIFF: f"steps as short as stability asks for would take more than ten minutes to the end; {_USE_BDF}",
 }
 """By status."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ...compile.equations import Formulation
+from ...compile.formulation import Formulation
 from ...describe.settings import RunSettings
 from .i3 import I3
 from .index1 import index1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...compile.equations import Block, Formulation, Product
+from ...compile.formulation import Block, Formulation, Product
 
 I3 = Formulation(
     name="I3",
@@ -15,7 +15,7 @@ I3 = Formulation(
         Product("lam", +1, "C"), Product("lam", +1, "V:rates"),
     ),
     matrix=(
-        Block("q", "q", "I", constant=0, cj=1), Block("q", "u", "Z", -1),
+        Block("q", "q", "I", constant=0, cj=1), Block("q", "u", "Z", -1), Block("q", "q", "Z_q", -1),
         Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
         Block("u", "q", "G_lam"), Block("u", "lam", "J.T"), Block("u", "lam", "f_lam", -1),
         Block("lam", "q", "C_q"), Block("lam", "q", "V_q:rates"), Block("lam", "u", "J:rates"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...compile.equations import Block, Formulation, Product
+from ...compile.formulation import Block, Formulation, Product
 
 
 def index1(stabilisation: float) -> Formulation:
@@ -29,7 +29,7 @@ def index1(stabilisation: float) -> Formulation:
             Product("lam", 2 * b, "V"), Product("lam", b * b, "C"),
         ),
         matrix=(
-            Block("q", "q", "I", constant=0, cj=1), Block("q", "u", "Z", -1),
+            Block("q", "q", "I", constant=0, cj=1), Block("q", "u", "Z", -1), Block("q", "q", "Z_q", -1),
             Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
             Block("u", "q", "G_lam"), Block("u", "lam", "J.T"), Block("u", "lam", "f_lam", -1),
             Block("lam", "q", "A_q"), Block("lam", "u", "gamma_u", -1), Block("lam", "u", "J", constant=2 * b, cj=1),

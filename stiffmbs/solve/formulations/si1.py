@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...compile.equations import Block, Formulation, Product
+from ...compile.formulation import Block, Formulation, Product
 
 SI1 = Formulation(
     name="SI1",
@@ -16,7 +16,7 @@ SI1 = Formulation(
         Product("lam", +1, "V"),
     ),
     matrix=(
-        Block("q", "q", "I", constant=0, cj=1), Block("q", "q", "G_mu"), Block("q", "u", "Z", -1),
+        Block("q", "q", "I", constant=0, cj=1), Block("q", "q", "G_mu"), Block("q", "u", "Z", -1), Block("q", "q", "Z_q", -1),
         Block("q", "mu", "C_q.T", constant=0, cj=1),
         Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
         Block("u", "q", "G_lam"), Block("u", "lam", "J.T", constant=0, cj=1),

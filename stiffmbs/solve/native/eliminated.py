@@ -14,30 +14,40 @@ LOST = 1e-8
 
 @compiled
 def _assemble(r, values):
-    """S = J M^-1 J^T by slots, a = M^-1 f and b = J a - gamma."""
+    """S = j j^T by slots with j = J M^-1/2, a = M^-1/2 f and b = j a - gamma."""
     for k in range(r.n_u):
         r.a[k] = 0.0
     for k in range(r.n_f):
         r.a[r.f_row[k]] += values[r.f_source[k]]
     for k in range(r.n_u):
-        r.a[k] *= r.inverse_mass[k]
+        r.a[k] *= r.scale[k]
     for k in range(r.n):
         r.b[k] = 0.0
     for k in range(r.n_gamma):
         r.b[r.gamma_row[k]] -= values[r.gamma_source[k]]
     for k in range(r.n_j):
-        r.b[r.j_row[k]] += values[r.j_source[k]] * r.a[r.j_column[k]]
+        value = values[r.j_source[k]] * r.j_scale[k]
+        r.j[k] = value
+        r.b[r.j_row[k]] += value * r.a[r.j_column[k]]
+    at = 0
     for k in range(r.n_slots):
-        r.s[k] = 0.0
-    for k in range(r.n_products):
-        r.s[r.product_slot[k]] += values[r.product_first[k]] * values[r.product_second[k]] * r.product_weight[k]
+        total = 0.0
+        end = r.product_end[k]
+        while at < end:
+            total += r.j[r.product_first[at]] * r.j[r.product_second[at]]
+            at += 1
+        r.s[k] = total
     for k in range(r.n):
         r.diagonal[k] = r.s[r.column_start[k]]
 
 
 @compiled
-def _solve(r):
-    """S = L D L^T column by column and L D L^T x = b, x overwriting b; whether all pivots kept enough digits."""
+def _factored(r):
+    """S = L D L^T column by column, and b overwritten by D^-1 L^-1 b on the way; whether all pivots kept enough digits.
+
+    The diagonal slots of `s` receive 1/D.
+    """
+    at = 0
     for k in range(r.n):
         first = r.column_start[k]
         end = r.column_start[k + 1]
@@ -47,22 +57,36 @@ def _solve(r):
         inverse = 1.0 / pivot
         r.s[first] = inverse
         b = r.b[k]
+        r.b[k] = b * inverse
         for p in range(first + 1, end):
             r.l[p] = r.s[p] * inverse
             r.b[r.row[p]] -= r.l[p] * b
-        at = r.update_start[k]
         for p in range(first + 1, end):
             value = r.l[p]
             for below in range(p, end):
                 r.s[r.update_slot[at]] -= value * r.s[below]
                 at += 1
-        r.b[k] = b * inverse
+    return True
+
+
+@compiled
+def _forward(r):
+    """b overwritten by D^-1 L^-1 b."""
+    for k in range(r.n):
+        b = r.b[k]
+        for p in range(r.column_start[k] + 1, r.column_start[k + 1]):
+            r.b[r.row[p]] -= r.l[p] * b
+        r.b[k] = b * r.s[r.column_start[k]]
+
+
+@compiled
+def _backward(r):
+    """b overwritten by L^-T b."""
     for k in range(r.n - 1, -1, -1):
         value = r.b[k]
         for p in range(r.column_start[k] + 1, r.column_start[k + 1]):
             value -= r.l[p] * r.b[r.row[p]]
         r.b[k] = value
-    return True
 
 
 @compiled
@@ -70,14 +94,32 @@ def eliminated_accelerations(r, s, t):
     """Accelerations (in r.a) and multipliers (in lam) at the current state; whether that could be done."""
     values = evaluate(s, ACCELERATION, t)
     _assemble(r, values)
-    if not _solve(r):
+    r.ready[0] = _factored(r)
+    if not r.ready[0]:
         return False
+    _backward(r)
     for k in range(r.n_j):
-        column = r.j_column[k]
-        r.a[column] -= values[r.j_source[k]] * r.b[r.j_row[k]] * r.inverse_mass[column]
+        r.a[r.j_column[k]] -= r.j[k] * r.b[r.j_row[k]]
+    for k in range(r.n_u):
+        r.a[k] *= r.scale[k]
     for k in range(s.n_c):
         s.lam[k] = r.b[r.at_lam[k]] if r.at_lam[k] >= 0 else 0.0
     return True
+
+
+@compiled
+def smallest_move(r, s, gaps):
+    """In r.a, the smallest change of velocities in the mass matrix, or move of the pose, that closes small gaps; by J and the
+    factors of the last accelerations."""
+    for k in range(s.n_c):
+        if r.at_lam[k] >= 0:
+            r.b[r.at_lam[k]] = gaps[k]
+    _forward(r)
+    _backward(r)
+    for k in range(r.n_u):
+        r.a[k] = 0.0
+    for k in range(r.n_j):
+        r.a[r.j_column[k]] -= r.j[k] * r.b[r.j_row[k]] * r.j_scale[k]
 
 
 def accelerate(t, acceleration, eliminated):

@@ -5,12 +5,14 @@ from __future__ import annotations
 from math import isfinite
 
 from stiffmbs.compile.native.access import compiled, factors_view, mechanics_view, state_view
+from stiffmbs.compile.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.mechanics import (
     MOST_MOVES,
     to_accelerations,
     to_position_constraints,
     to_velocity_constraints,
 )
+from stiffmbs.solve.native.stages import count_turns
 from stiffmbs.solve.native.statuses import NOT_FINITE
 
 
@@ -23,8 +25,10 @@ def _step(s, m, t, h, project, tolerance):
     acceleration = factors_view(m.acceleration_factors).b
     for k in range(s.n_u):
         s.u[k] += h * acceleration[k]
+    add_rates(s, s.u, h, s.q)
+    count_turns(s, m, h, s.q)
+    take_unit_length(s)
     for k in range(s.n_q):
-        s.q[k] += h * s.u[k]
         if not isfinite(s.q[k]):
             return NOT_FINITE
     if not project:

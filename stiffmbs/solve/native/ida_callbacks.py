@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from stiffmbs.compile.native.access import compiled, equations_view, floats, ida_view, ints, state_view
 from stiffmbs.compile.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+from stiffmbs.solve.native.watched import watched
 
 LAST_TIME, STEPS, REJECTED, ROOM = range(4)
 """What the head of the history holds; the times of the steps' ends follow it."""
@@ -59,6 +60,4 @@ def switches(t, y, yp, values, ida):
     s = state_view(c.state)
     load(s, equations_view(c.equations), _data(y, c.array_header), _data(yp, c.array_header))
     found = evaluate(s, SWITCH, t)
-    into = _data(values, c.array_header)
-    for k in range(c.n_switches):
-        into[k] = found[k]
+    watched(found, c.sides, c.waits, _data(values, c.array_header), c.n_switches)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from llvmlite import ir
-from numba import int32, types
-from numba.core import cgutils
-from numba.extending import intrinsic
-
 from stiffmbs.compile.layout import NATIVE_IDA
 from stiffmbs.compile.native.access import compiled, equations_view, floats, shifted, state_view, view_of
 from stiffmbs.compile.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+from stiffmbs.solve.native.balance import CURRENT, LONG, balance_view, balanced
+from stiffmbs.solve.native.calls import call_address, call_int, copy_bytes, int32
+from stiffmbs.solve.native.iteration import AGE, MADE
+from stiffmbs.solve.native.watched import watched
 
 OK, RECOVERABLE = 0, 1
 """What a callback returns: after a recoverable failure IDA tries a smaller step."""
@@ -18,50 +17,17 @@ STOP_RETURN, ROOT_RETURN = 1, 2
 """IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
 RETURNED, INTERNAL, SIZE = range(3)
 """Marks: the time of the returned state, the time that IDA has reached inside, the size of its last step."""
-SERVED, RECORDED, ORDER, TINY = range(4)
-"""Counts: output points served, steps in the history, order of the last step, tiny steps in succession."""
+SERVED, RECORDED, ORDER, TINY, SINCE, NEXT = range(6)
+"""Counts: output points served, steps in the history, order of the last step, tiny steps in succession, steps since the
+last sample, place of the next one."""
+SAMPLES, STEPS_APART = 16, 4
+"""The last states are kept as samples, one each few steps: the time and what is reported."""
 HISTORY_WIDTH = 3
 STALLED = -101
 MOST_TINY, TINY_STEP = 100, 2e-14
 """IDA would go on forever with steps below the precision of time: this many below this part of t are the end."""
 
 native_ida_view = view_of("NativeIda", NATIVE_IDA)
-
-
-@intrinsic
-def call_int(typing_context, function, arguments):
-    """Call a C function of the given address that returns an int; `arguments` is a tuple."""
-
-    def code(context, builder, signature, given):
-        values = cgutils.unpack_tuple(builder, given[1])
-        kind = ir.FunctionType(ir.IntType(32), [value.type for value in values])
-        return builder.call(builder.inttoptr(given[0], kind.as_pointer()), values)
-
-    return types.int32(types.int64, arguments), code
-
-
-@intrinsic
-def call_address(typing_context, function, argument):
-    """Call a C function of one pointer that returns a pointer; both as addresses."""
-
-    def code(context, builder, signature, given):
-        kind = ir.FunctionType(ir.IntType(64), [ir.IntType(64)])
-        return builder.call(builder.inttoptr(given[0], kind.as_pointer()), [given[1]])
-
-    return types.int64(types.int64, types.int64), code
-
-
-@intrinsic
-def copy_bytes(typing_context, target, source, count):
-    """Copy a number of bytes from one address to another."""
-
-    def code(context, builder, signature, given):
-        kind = ir.IntType(8).as_pointer()
-        to, of = builder.inttoptr(given[0], kind), builder.inttoptr(given[1], kind)
-        cgutils.raw_memcpy(builder, to, of, given[2], 1)
-        return context.get_dummy_value()
-
-    return types.void(types.int64, types.int64, types.int64), code
 
 
 @compiled
@@ -95,6 +61,8 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     e = equations_view(c.equations)
     load(s, e, _array(c, yy), _array(c, yp))
     a = floats(c.matrix)
+    c.balance_mark[CURRENT] = cj
+    c.iteration[AGE] = MADE
     add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
     for k in range(0, 6, 3):
         copy_bytes(c.pattern[k], c.pattern[k + 1], c.pattern[k + 2])
@@ -107,8 +75,7 @@ def switches(t, yy, yp, g, user_data):
     s = state_view(c.state)
     load(s, equations_view(c.equations), _array(c, yy), _array(c, yp))
     values = evaluate(s, SWITCH, t)
-    for k in range(c.n_switches):
-        g[k] = values[k]
+    watched(values, c.sides, c.waits, g, c.n_switches)
     return int32(OK if _finite(g, c.n_switches) else RECOVERABLE)
 
 
@@ -126,13 +93,8 @@ def _stepped(c, toward):
         c.history[row + 1] = float(c.count[ORDER])
         c.history[row + 2] = c.mark[SIZE]
         c.count[RECORDED] += 1
+        _sample(c)
     return STALLED if flag >= 0 and _stalled(c) else flag
-
-
-@compiled
-def _stalled(c):
-    c.count[TINY] = c.count[TINY] + 1 if abs(c.mark[SIZE]) < TINY_STEP * abs(c.mark[INTERNAL]) else 0
-    return c.count[TINY] >= MOST_TINY
 
 
 @compiled
@@ -142,10 +104,32 @@ def _report(c, values, row):
 
 
 @compiled
+def _sample(c):
+    c.count[SINCE] += 1
+    if c.count[SINCE] == STEPS_APART:
+        k = c.count[NEXT]
+        row = shifted(c.samples, k * (c.n_reported + 1))
+        row[0] = c.mark[RETURNED]
+        _report(c, _array(c, c.y), shifted(row, 1))
+        c.count[SINCE] = 0
+        c.count[NEXT] = k + 1 if k + 1 < SAMPLES else 0
+
+
+@compiled
+def _stalled(c):
+    c.count[TINY] = c.count[TINY] + 1 if abs(c.mark[SIZE]) < TINY_STEP * abs(c.mark[INTERNAL]) else 0
+    return c.count[TINY] >= MOST_TINY
+
+
+@compiled
 def _report_at(c, t, derivative, current, row):
     """What is reported of the solution, or of its derivative, at a time within the last step."""
     if t == c.mark[RETURNED]:
         _report(c, _array(c, current), row)
+        return int32(OK)
+    if c.mark[SIZE] > c.balance_mark[LONG] and balanced(c.balance, c.state, c.equations, t):
+        b = balance_view(c.balance)
+        _report(c, b.yp if derivative else b.y, row)
         return int32(OK)
     flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))
     _report(c, c.output, row)

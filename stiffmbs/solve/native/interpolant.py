@@ -12,10 +12,10 @@ from stiffmbs.solve.native.stages import add_stages, copied, take_stage
 
 
 @compiled
-def _prepare(x, c, s, m):
+def prepare(x, c, s, m):
     """The coefficients p_k of the last step; 0 or a negative status."""
     n = x.n
-    h = x.t[0] - x.t_before[0]
+    h = x.span[0]
     for row in range(c.stages + 1, c.extended):
         status = take_stage(x, c, s, m, row, h)
         if status < 0:
@@ -36,7 +36,8 @@ def _prepare(x, c, s, m):
 
 
 @compiled
-def _interpolated(x, c, theta, target):
+def interpolated(x, c, theta, target):
+    """The state at a part theta of the last step."""
     n = x.n
     for i in range(n):
         target[i] = 0.0
@@ -61,10 +62,10 @@ def store_rows(x, c, s, m):
             copied(target, x.y, x.n)
         else:
             if not x.dense_ready[0]:
-                status = _prepare(x, c, s, m)
+                status = prepare(x, c, s, m)
                 if status < 0:
                     return status
-            _interpolated(x, c, (time - x.t_before[0]) / (x.t[0] - x.t_before[0]), target)
+            interpolated(x, c, (time - x.t_before[0]) / x.span[0], target)
         x.row_t[x.rows[0]] = time
         x.rows[0] += 1
         x.next_time[0] += 1

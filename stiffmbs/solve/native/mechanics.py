@@ -15,6 +15,7 @@ from stiffmbs.compile.native.access import (
 )
 from stiffmbs.compile.native.evaluate import ACCELERATION, MOTION, OUTPUT, POSITION, add_entries, add_products, evaluate
 from stiffmbs.compile.native.factors import DONE, FULL, factored, solve
+from stiffmbs.compile.native.orientation import take_unit_length
 from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_ROOM, NOT_FINITE, SINGULAR
 
 MOST_MOVES = 20
@@ -29,12 +30,24 @@ ROUNDED_OFF = 1e-9
 
 
 @compiled
-def _largest(values, count):
+def largest_of(values, count):
+    """The largest magnitude; infinity where a number is not finite."""
     largest = 0.0
     for k in range(count):
         if not isfinite(values[k]):
             return float("inf")
         largest = max(largest, abs(values[k]))
+    return largest
+
+
+@compiled
+def largest_open(s, violation):
+    """The largest violation of positions beyond what redundant equations may be off by."""
+    largest = 0.0
+    for row in range(s.n_c):
+        if not isfinite(violation[row]):
+            return float("inf")
+        largest = max(largest, abs(violation[row]) - s.left_open[row])
     return largest
 
 
@@ -60,10 +73,10 @@ def _solved(s, equations, factors, values):
     if outcome == FULL:
         return NO_ROOM
     if outcome != DONE:
-        return SINGULAR if isfinite(_largest(f.a, f.a_start[f.n])) else NOT_FINITE
+        return SINGULAR if isfinite(largest_of(f.a, f.a_start[f.n])) else NOT_FINITE
     add_products(e, values, f.previous, f.previous, f.b)
     solve(f, f.b)
-    return 0 if isfinite(_largest(f.b, f.n)) else NOT_FINITE
+    return 0 if isfinite(largest_of(f.b, f.n)) else NOT_FINITE
 
 
 @compiled
@@ -71,8 +84,8 @@ def to_position_constraints(s, m, t, tolerance, most):
     """Newton's smallest moves until |C| <= tolerance, or rounding; the number of moves, or a negative status."""
     for move in range(most):
         values = evaluate(s, POSITION, t)
-        gap = _largest(values, s.n_c)
-        if gap <= max(tolerance, ROUNDING * _largest(s.q, s.n_q)):
+        gap = largest_open(s, values)
+        if gap <= max(tolerance, ROUNDING * largest_of(s.q, s.n_q)):
             return move
         if not isfinite(gap):
             return NOT_FINITE
@@ -82,6 +95,7 @@ def to_position_constraints(s, m, t, tolerance, most):
         step = factors_view(m.position_factors).b
         for k in range(s.n_q):
             s.q[k] += step[k]
+        take_unit_length(s)
     return NO_CONVERGENCE
 
 
@@ -163,6 +177,7 @@ def accelerate(t, acceleration, mechanics):
 def _output_point(s, m, t, project, tolerance, largest):
     """Bring the state back to the constraints where asked, then accelerations, multipliers and output terms."""
     largest[2] = 0.0
+    take_unit_length(s)
     if project:
         largest[2] = _largest_gap(s, evaluate(s, POSITION, t))
         status = to_position_constraints(s, m, t, tolerance, MOST_MOVES)

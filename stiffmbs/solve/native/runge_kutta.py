@@ -5,61 +5,22 @@ from __future__ import annotations
 from math import isfinite, sqrt
 
 from stiffmbs.compile.native.access import compiled, explicit_view, mechanics_view, scheme_view, shifted, state_view
+from stiffmbs.solve.native.attempt import arrive, attempt
+from stiffmbs.solve.native.events import end_at_event
 from stiffmbs.solve.native.interpolant import store_rows, store_step
-from stiffmbs.solve.native.mechanics import MOST_MOVES, to_position_constraints, to_velocity_constraints
-from stiffmbs.solve.native.stages import add_stages, copied, load_state, rates, take_stage, weighted
+from stiffmbs.solve.native.stages import add_stages, copied
 from stiffmbs.solve.native.statuses import NOT_FINITE
 
 STEP_TOO_SMALL, STIFF = -4, -5
-PAUSED, AT_END = 0, 1
+PAUSED, AT_END, AT_EVENT = 0, 1, 2
 SMALLEST_ERROR = 1e-4
 """What the step control remembers of an error at the least (as in DOPRI5)."""
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
 STRETCHED = 1.01
 """The last step may be this much longer than asked for, so that no tiny one is left."""
-STIFF_PART, ENOUGH_STEPS, TOO_MANY_STEPS = 0.1, 100_000, 1e8
-"""A run is given up when this part of its steps was held back by stability, after so many, with so many ahead."""
-
-
-@compiled
-def _arrive(x, c, s, m, t):
-    """Bring the new state y to the constraints, and take the rates there: the first stage of the next step.
-
-    Where the error estimate has asked for them they are kept: the correction is smaller than the error, and
-    evaluating them again changes no digit of it (measured), but costs a sixth of a step.
-    """
-    load_state(s, x.y)
-    if x.project:
-        status = to_position_constraints(s, m, t, x.tolerance[0], MOST_MOVES)
-        if status < 0:
-            return status
-        status = to_velocity_constraints(s, m, t)
-        if status < 0:
-            return status
-        copied(x.y, s.q, s.n_q)
-        copied(shifted(x.y, s.n_q), s.u, s.n_u)
-    if not c.error_needs_end:
-        status = rates(x, s, m, c.stages, t)
-        if status < 0:
-            return status
-    for i in range(x.n):
-        if not isfinite(x.y[i]):
-            return NOT_FINITE
-    return 0
-
-
-@compiled
-def _attempt(x, c, s, m, h):
-    """All stages of one step from y_before, and the new state in y; 0 or a negative status."""
-    for row in range(1, c.stages):
-        status = take_stage(x, c, s, m, row, h)
-        if status < 0:
-            return status
-    weighted(x, c, x.y, c.stages, h)
-    if c.error_needs_end:
-        load_state(s, x.y)
-        return rates(x, s, m, c.stages, x.t_before[0] + h)
-    return 0
+STIFF_PART, ENOUGH_STEPS, TOO_MANY_STEPS = 0.1, 10_000, 1e9
+"""A run is given up when this part of its steps was held back by stability, after so many, with so many ahead for each
+number of the state: some ten minutes."""
 
 
 @compiled
@@ -103,7 +64,7 @@ def _watch_stiffness(x, c, h):
 @compiled
 def _is_hopeless(x, end):
     """Whether stability holds the steps back and too many of them are left."""
-    return x.stiff_steps[0] > STIFF_PART * x.steps[0] and end - x.t[0] > TOO_MANY_STEPS * x.h[0]
+    return x.stiff_steps[0] > STIFF_PART * x.steps[0] and (end - x.t[0]) * x.n > TOO_MANY_STEPS * x.h[0]
 
 
 @compiled
@@ -134,15 +95,16 @@ def _step(x, c, s, m, end):
     while True:
         if t + STRETCHED * h >= end:
             h = end - t
-        status = _attempt(x, c, s, m, h)
+        status = attempt(x, c, s, m, h)
         error = _error(x, c, h) if status == 0 else 0.0
         if not isfinite(error):
             status = NOT_FINITE
         if status == 0 and error <= 1.0:
             t_new = end if h == end - t else t + h
-            status = _arrive(x, c, s, m, t_new)
+            status = arrive(x, c, s, m, t_new)
             if status == 0:
                 x.t[0] = t_new
+                x.span[0] = t_new - t
                 x.h[0] = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
                 x.last_error[0] = max(error, SMALLEST_ERROR)
                 _watch_stiffness(x, c, h)
@@ -155,22 +117,29 @@ def _step(x, c, s, m, end):
             return status if status < 0 else STEP_TOO_SMALL
 
 
-def advance(end, steps, own_steps, explicit):
-    """Integrate towards `end`, for so many steps or until the room for rows is full.
+def advance(end, steps, held, own_steps, explicit):
+    """Integrate towards `end`, for so many steps, until stability has held back `held` of them, or the room for rows is full.
 
-    AT_END, PAUSED (call again to go on), or a negative status.
+    AT_END, AT_EVENT (a force has changed its law there), PAUSED (call again to go on), or a negative status.
     """
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
     m = mechanics_view(x.mechanics)
     s = state_view(m.state)
+    held += x.stiff_steps[0]
     for _ in range(steps):
+        if x.stiff_steps[0] >= held:
+            return PAUSED
         stored = store_rows(x, c, s, m)
         if stored < 1:
             return stored
         if x.t[0] >= end:
             return AT_END
+        if x.at_event[0]:
+            return AT_EVENT
         status = _step(x, c, s, m, end)
+        if status >= 0 and x.n_switches:
+            status = end_at_event(x, c, s, m)
         if status < 0:
             return status
         x.ends[x.steps[0] % x.room] = x.t[0]
@@ -191,10 +160,10 @@ def fixed_steps(start, h, steps, explicit):
     for step in range(steps):
         x.t[0] = start + step * h
         _depart(x, c)
-        status = _attempt(x, c, s, m, h)
+        status = attempt(x, c, s, m, h)
         if status < 0:
             return status
-        status = _arrive(x, c, s, m, start + (step + 1) * h)
+        status = arrive(x, c, s, m, start + (step + 1) * h)
         if status < 0:
             return status
     return 0

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, eliminated_view, factors_view, shifted
+from stiffmbs.compile.native.access import compiled, eliminated_view, factors_view, floats, shifted
+from stiffmbs.compile.native.evaluate import ACCELERATION
+from stiffmbs.compile.native.orientation import add_rates
 from stiffmbs.solve.native.eliminated import eliminated_accelerations
 from stiffmbs.solve.native.mechanics import to_accelerations
 
@@ -40,18 +42,36 @@ def load_state(s, y):
 
 
 @compiled
+def accelerated(eliminates, eliminated, s, m, t, target):
+    """target = u' at the state at hand, by the elimination where it serves; 0 or a negative status."""
+    if eliminates:
+        r = eliminated_view(eliminated)
+        if eliminated_accelerations(r, s, t):
+            copied(target, r.a, s.n_u)
+            return 0
+    status = to_accelerations(s, m, t)
+    copied(target, factors_view(m.acceleration_factors).b, s.n_u)
+    return status
+
+
+@compiled
+def count_turns(s, m, factor, target):
+    """target += factor * the rates of the counters of turns, after accelerations at the state at hand."""
+    values = floats(s.values[ACCELERATION])
+    for k in range(m.n_counting):
+        target[m.counting_row[k]] += factor * values[m.counting_source[k]]
+
+
+@compiled
 def rates(x, s, m, stage, t):
     """k_stage = (q', u') at the state at hand; 0 or a negative status."""
     k = shifted(x.k, stage * x.n)
-    copied(k, s.u, s.n_q)
+    for i in range(s.n_q):
+        k[i] = 0.0
+    add_rates(s, s.u, 1.0, k)
     x.accelerations[0] += 1
-    if x.eliminates:
-        r = eliminated_view(x.eliminated)
-        if eliminated_accelerations(r, s, t):
-            copied(shifted(k, s.n_q), r.a, s.n_u)
-            return 0
-    status = to_accelerations(s, m, t)
-    copied(shifted(k, s.n_q), factors_view(m.acceleration_factors).b, s.n_u)
+    status = accelerated(x.eliminates, x.eliminated, s, m, t, shifted(k, s.n_q))
+    count_turns(s, m, 1.0, k)
     return status
 
 

@@ -1,6 +1,6 @@
 """How the compiled routines of the mechanics end: zero or a count, or one of these failures.
 
-Python reads them too, so nothing of numba is imported here; `stiffmbs.solve.failures` puts them into words.
+Python reads them too, so nothing of the compiler is imported here; `stiffmbs.solve.failures` puts them into words.
 """
 
 SINGULAR = -1

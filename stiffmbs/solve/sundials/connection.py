@@ -10,10 +10,12 @@ from ...compile.equations import Equations
 from ...compile.layout import NATIVE_IDA, packed
 from ...compile.routines import Routine
 from ...compile.state import State
-from .history import History
+from .balance import ENOUGH, LONG, Balance
+from .iteration import Iteration
 from .matrices import Matrix
 from .session import Session
 from .status import failure_sentence
+from .step_log import StepLog
 
 MODULE = "stiffmbs.solve.native.ida_loop"
 RESIDUAL = Routine(MODULE, "residual", "int32(float64, int64, int64, int64, int64*)")
@@ -23,9 +25,10 @@ JACOBIAN = Routine(
 SWITCHES = Routine(MODULE, "switches", "int32(float64, int64, int64, float64*, int64*)")
 
 RETURNED, INTERNAL, SIZE = range(3)
-SERVED, RECORDED, ORDER, TINY = range(4)
+SERVED, RECORDED, ORDER, TINY, SINCE, NEXT = range(6)
+SAMPLES = 16
 """Marks and counts, as in `stiffmbs.solve.native.ida_loop`."""
-MOST_STEPS = 4096
+MOST_STEPS = 2048
 """Steps of any one call of the loop."""
 
 
@@ -48,7 +51,11 @@ class Connection:
     mark, count : ndarrays
         What the loop leaves behind.
     n_switches : int
-    history : History
+    sides, waits : ndarrays, shape (n_switches,)
+        As in `stiffmbs.solve.native.watched`.
+    history : StepLog
+    samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
+        Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
     table : int
         Address of the table for compiled code.
     """
@@ -60,12 +67,15 @@ class Connection:
         self._session, self._state, self._equations = session, state, equations
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
         self.y, self.yp, self.output = np.zeros(n), np.zeros(n), np.zeros(n)
-        self.mark, self.count = np.zeros(3), np.zeros(4, dtype=np.int64)
-        self.history = History()
+        self.mark, self.count = np.zeros(3), np.zeros(6, dtype=np.int64)
+        self.history = StepLog()
+        self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self._assembled = matrix.assembled(session, self.y_vector)
+        self.balance, self._iteration = Balance(n), Iteration(n)
+        self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
         self.n_switches = equations.system.n_values("switch")
+        self.sides, self.waits = np.zeros(self.n_switches), np.zeros(self.n_switches, dtype=np.int64)
         for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "switch"):
             state.load(term_set)
         self._table = self._packed()
@@ -75,19 +85,23 @@ class Connection:
     def _packed(self) -> np.ndarray:
         address = self._session.libraries.address
         self._equations_table, self._slots = self._equations.table(self._assembled.slots)
+        self._state_table, self._calls = self._state.restricted(self._equations.used())
         return packed(
             NATIVE_IDA,
             {
-                "state": self._state.table, "equations": self._equations_table,
+                "state": self._state_table, "equations": self._equations_table,
                 "array_of": address("N_VGetArrayPointer"),
-                "matrix": self._assembled.values, "pattern": self._assembled.pattern, "n_switches": self.n_switches,
+                "matrix": self._assembled.values, "pattern": self._assembled.pattern,
+                "n_switches": self.n_switches, "sides": self.sides, "waits": self.waits,
                 "memory": self.memory, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
                 "n_reported": len(self.reported), "reported": self.reported,
                 "solve": address("IDASolve"), "interpolate": address("IDAGetDky"),
                 "time_of": address("IDAGetCurrentTime"), "order_of": address("IDAGetLastOrder"),
                 "step_of": address("IDAGetLastStep"),
-                "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS),
+                "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS), "samples": self.samples,
+                "balance_mark": self.balance.mark, "balance": self.balance.table,
+                "iteration": self._iteration.count,
             },
         )  # fmt: skip
 
@@ -118,6 +132,13 @@ class Connection:
         self.ask(function, *arguments, self.output_vector)
         return self.output.copy()
 
+    def forget(self) -> None:
+        """Drop the history, and the pivots that the linear solver has found."""
+        self.history.forget()
+        self.balance.forget()
+        if self._assembled.found is not None:
+            self._assembled.found[:] = 0
+
     def set_tolerances(self, rtol: float, atol: np.ndarray) -> None:
         """Tolerances, one absolute one for each unknown."""
         if np.shape(atol) != self.y.shape:
@@ -125,11 +146,23 @@ class Connection:
         self._atol = np.array(atol, dtype=float)
         self.ask("IDASVtolerances", rtol, self._session.vector(self._atol))
 
+    def balance_within(self, long_step: float, part: float) -> None:
+        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
+        if long_step < np.inf and not self.balance.ready:
+            self.balance.make_ready(self._session, self._matrix, self.memory, self.y_vector)
+        self.balance.mark[[LONG, ENOUGH]] = long_step, part
+
     def suppress(self, suppressed: np.ndarray) -> None:
         """Leave unknowns out of the error test."""
         self._id = np.where(suppressed, 0.0, 1.0)
         self.ask("IDASetId", self._session.vector(self._id))
         self.ask("IDASetSuppressAlg", 1)
+
+    def doubt_rates(self) -> None:
+        """Have Newton's iteration judged by a convergence rate that worsens with the age of the iteration matrix."""
+        solver = self._iteration.solver(self._session, self.memory, self.y_vector)
+        self.ask("IDASetNonlinearSolver", solver)
+        self._iteration.take_over(self._session, solver)
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and keep the history of the call; returns IDA's last flag."""

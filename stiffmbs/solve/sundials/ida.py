@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import weakref
 from typing import Any
 
@@ -11,22 +10,21 @@ import numpy as np
 from ...compile.equations import Equations
 from ...compile.routines import Routine
 from ...compile.state import State
-from .connection import INTERNAL, MODULE, MOST_STEPS, RETURNED, SERVED, TINY, Connection
-from .history import History
-from .matrices import Matrix, chosen
+from .connection import INTERNAL, MODULE, MOST_STEPS, NEXT, RETURNED, SERVED, SINCE, TINY, Connection
+from .matrices import Matrix
 from .session import Session
 from .statistics import Statistics
 from .status import Status, failure_sentence
+from .step_log import StepLog
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
 STOP_RETURN, ROOT_RETURN = 1, 2
 """IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
-LONGEST_CALL = 0.1
-"""Time, s, after which a call returns, for progress and interruption."""
-FIRST_CALL = 64
-"""Steps of the first call, before the time of a step is known."""
+LONGEST_CALL, STEP = 0.1, 1e-7
+"""Time, s, after which a call returns, for progress and interruption; of a step for each unknown, by a rough measure (a clock
+would make results hang on the machine's mood, as Newton's iteration is eased between calls)."""
 
 
 class NativeIda:
@@ -40,6 +38,8 @@ class NativeIda:
     equations : Equations
     state : State
         The working memory of residual and Jacobian.
+    matrix : Matrix
+        How the iteration matrix is stored and factored (`stiffmbs.solve.sundials.choice`).
     rtol : float
         Relative tolerance.
     atol : ndarray, shape (n,)
@@ -55,10 +55,11 @@ class NativeIda:
         Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
     renewal : float, optional
         Relative change of cj from which the iteration matrix is made anew (IDASetDeltaCjLSetup); 0.25 by default.
+    doubtful : bool
+        Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix
+        (`stiffmbs.solve.native.iteration`); IDA's own test trusts it until cj changes.
     reported : ndarray of int, optional
         The unknowns that are given at output times; all by default.
-    matrix : Matrix, optional
-        How the iteration matrix is stored and factored (`stiffmbs.solve.sundials.matrices`); by its pattern by default.
 
     Attributes
     ----------
@@ -84,6 +85,7 @@ class NativeIda:
         self,
         equations: Equations,
         state: State,
+        matrix: Matrix,
         rtol: float,
         atol: np.ndarray,
         *,
@@ -92,11 +94,11 @@ class NativeIda:
         suppressed: np.ndarray | None = None,
         newton: float | None = None,
         renewal: float | None = None,
+        doubtful: bool = False,
         reported: np.ndarray | None = None,
-        matrix: Matrix | None = None,
     ) -> None:
         n = equations.n
-        self.matrix = matrix or chosen(n, *equations.pattern)
+        self.matrix = matrix
         session = Session(self.matrix.libraries())
         self._finalizer = weakref.finalize(self, session.close)
         self._ida = ida = Connection(
@@ -104,7 +106,8 @@ class NativeIda:
         )
         self.y, self.yp, self.n_switches = ida.y, ida.yp, ida.n_switches
         self._statistics = Statistics(session.libraries, ida.memory)
-        self._pace, self._flag, self._begun = FIRST_CALL, 0, False
+        self._flag, self._begun = 0, False
+        self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
         ida.set_tolerances(rtol, atol)
         self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
         if suppressed is not None:
@@ -115,6 +118,8 @@ class NativeIda:
             ida.ask("IDASetNonlinConvCoef", newton)
         if renewal is not None:
             ida.ask("IDASetDeltaCjLSetup", renewal)
+        if doubtful:
+            ida.doubt_rates()
 
     @property
     def t(self) -> float:
@@ -122,15 +127,42 @@ class NativeIda:
         return float(self._ida.mark[RETURNED])
 
     @property
-    def history(self) -> History:
+    def history(self) -> StepLog:
         """Time, order and size of each step."""
         return self._ida.history
+
+    @property
+    def samples(self) -> np.ndarray:
+        """Every fourth of the last 64 steps since the beginning: time and reported unknowns, the earliest first."""
+        newest = int(self._ida.count[NEXT])
+        rows: np.ndarray = np.roll(self._ida.samples, -newest, axis=0)
+        return rows[~np.isnan(rows[:, 0])]
+
+    def pause_after(self, steps: int) -> None:
+        """Have `advance` and `steps` return after so many steps at the latest."""
+        self._pace = min(self._pace, steps)
+
+    def leave_out(self, waits: np.ndarray) -> None:
+        """Do not look at each switch for so many steps from the next beginning on."""
+        self._ida.waits[:] = waits
 
     def leave_to_newton(self, part: float) -> None:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
         self._ida.ask("IDASetNonlinConvCoef", part)
 
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0) -> None:
+    def balance_within(self, long_step: float, part: float) -> None:
+        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
+        self._ida.balance_within(long_step, part)
+
+    def forget(self) -> None:
+        """Forget counters, history and pivots, as if it had never begun."""
+        self._begun = False
+        self._statistics.forget()
+        self._ida.forget()
+
+    def begin(
+        self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0, highest_order: int | None = None
+    ) -> None:
         """Start, or start again, from consistent values.
 
         Parameters
@@ -139,14 +171,20 @@ class NativeIda:
         y, yp : ndarrays, shape (n,)
         first_step : float
             Size of the first step, s; 0 lets IDA choose it.
+        highest_order : int, optional
+            Of the formulas from here on; IDA cannot lower it on its way.
         """
         if self._begun:
             self._statistics.keep()
         self.y[:], self.yp[:] = y, yp
         self._ida.ask("IDAReInit", t, self._ida.y_vector, self._ida.yp_vector)
         self._ida.ask("IDASetInitStep", first_step)
+        if highest_order is not None:
+            self._ida.ask("IDASetMaxOrd", highest_order)
         self._ida.mark[[RETURNED, INTERNAL]] = t
-        self._ida.count[TINY] = 0
+        self._ida.count[[TINY, SINCE]] = 0
+        self._ida.samples[:] = np.nan
+        self._ida.sides[:] = 0.0
         self.history.begin(t)
         self._begun, self._flag = True, 0
 
@@ -155,7 +193,7 @@ class NativeIda:
     ) -> tuple[int, Status]:
         """Go on towards `stop`, and report at the output times on the way.
 
-        Returns early, with `Status.GOING`, after about 0.1 s of work: call again with the times that are left.
+        Returns early, with `Status.GOING`, after some 0.1 s of work: call again with the times that are left.
 
         Parameters
         ----------
@@ -200,12 +238,7 @@ class NativeIda:
             raise ValueError(f"output rows: found {rows.dtype} of shape {rows.shape}, expected float64 of {expected}")
 
     def _run(self, loop: Routine, *arguments: Any) -> None:
-        """Call a compiled loop, and set the number of steps of the next call by the time this one took."""
-        begun = time.perf_counter()
         self._flag = self._ida.run(loop, *arguments)
-        seconds = time.perf_counter() - begun
-        wanted = self._pace * LONGEST_CALL / max(seconds, 1e-9)
-        self._pace = int(np.clip(wanted, 1, min(MOST_STEPS, 8 * self._pace)))
 
     def _status(self) -> Status:
         if self._flag < 0:
@@ -220,7 +253,7 @@ class NativeIda:
         """After `Status.ROOT`: for each switch +1 or -1 where it rose or fell through zero, else 0."""
         found = np.zeros(self.n_switches, dtype=np.intc)
         self._ida.ask("IDAGetRootInfo", found.ctypes.data)
-        return found
+        return found * self._ida.sides.astype(np.intc)
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
         """The solution, or one of its derivatives up to the last order, at a time within the last step.

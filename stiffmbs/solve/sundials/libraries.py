@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -63,13 +63,18 @@ class Libraries:
         assert address is not None
         return address
 
+    @cached_property
+    def _with_threads(self) -> ctypes.CDLL | None:
+        """The library that works with OpenMP."""
+        return next((lib for lib in self.loaded if hasattr(lib, "omp_set_num_threads")), None)
+
     @contextmanager
     def on_one_thread(self) -> Iterator[None]:
         """Keep OpenMP, which SuperLU_MT uses, from starting threads of its own that only wait for one another.
 
         Measured: on a machine with other work to do they make one small factorization last 15 ms instead of 0.03.
         """
-        chosen = next((lib for lib in self.loaded if hasattr(lib, "omp_set_num_threads")), None)
+        chosen = self._with_threads
         if chosen is None:
             yield
             return

@@ -1,4 +1,4 @@
-"""Iteration matrices and the linear solvers that go with them: dense, banded, sparse; and the choice among them."""
+"""Iteration matrices and the linear solvers that go with them: dense, banded, sparse."""
 
 from __future__ import annotations
 
@@ -9,13 +9,6 @@ import numpy as np
 
 from .libraries import COMPRESSED_COLUMNS, Libraries, ida_libraries, sparse_libraries
 from .session import Session
-
-DENSE_UP_TO = 90
-"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
-BAND_WORTH_IT = 0.25
-"""Bandwidth, as a part of the number of unknowns, below which the banded solver beats the others (measured on chains of 10 and 100 rods)."""
-WIDEST_BAND = 90
-"""Bandwidth above which the sparse solver takes the place of the banded one."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +26,10 @@ class Assembled:
     pattern : ndarray of int
         Address in the matrix, address of what is to be written there, and bytes, for each of the two index arrays:
         IDA clears them together with the values before each new matrix.
-    kept : tuple of ndarray
+    kept : tuple
         What must live as long.
+    found : ndarray of int or None
+        Zero where the solver has to find its pivots anew; None where it always does.
     """
 
     matrix: int
@@ -42,7 +37,8 @@ class Assembled:
     values: int
     slots: np.ndarray | None
     pattern: np.ndarray
-    kept: tuple[np.ndarray, ...] = ()
+    kept: tuple[object, ...] = ()
+    found: np.ndarray | None = None
 
 
 class Matrix(Protocol):
@@ -73,7 +69,7 @@ class Dense:
         return ida_libraries()
 
     def sentence(self) -> str:
-        return f"dense matrix of {self.n} unknowns"
+        return f"dense, {self.n} unknowns"
 
     def assembled(self, session: Session, y: int) -> Assembled:
         """A SUNDenseMatrix with SUNLinSol_Dense."""
@@ -107,7 +103,7 @@ class Banded:
         return ida_libraries()
 
     def sentence(self) -> str:
-        return f"banded matrix of {self.n} unknowns, {self.lower} diagonals below and {self.upper} above"
+        return f"banded, {self.n} unknowns wide {self.lower + self.upper + 1}"
 
     def assembled(self, session: Session, y: int) -> Assembled:
         """A SUNBandMatrix with SUNLinSol_Band."""
@@ -132,7 +128,7 @@ class Sparse:
         return sparse_libraries()
 
     def sentence(self) -> str:
-        return f"sparse matrix of {self.n} unknowns with {len(self.rows)} entries"
+        return f"SuperLU_MT, {self.n} unknowns, {len(self.rows)} entries"
 
     def assembled(self, session: Session, y: int) -> Assembled:
         """A SUNSparseMatrix with SUNLinSol_SuperLUMT; its pattern is written anew with every matrix."""
@@ -154,12 +150,3 @@ class Sparse:
 
 def _no_pattern() -> np.ndarray:
     return np.zeros(6, dtype=np.int64)
-
-
-def chosen(n: int, rows: np.ndarray, columns: np.ndarray) -> Matrix:
-    """The storage that is cheapest for a pattern: rows and columns of its entries, by columns."""
-    banded = Banded(n, rows, columns)
-    width = banded.lower + banded.upper
-    if width <= WIDEST_BAND and width < BAND_WORTH_IT * n:
-        return banded
-    return Dense(n, rows, columns) if n <= DENSE_UP_TO else Sparse(n, rows, columns)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.equations import Equations
-from .matrices import DENSE_UP_TO, Banded, chosen
 
 
 def narrowed(equations: Equations) -> Equations:
-    """The same equations in the order of reverse Cuthill and McKee, where a banded matrix then serves; else as they are.
+    """The same equations in the order of reverse Cuthill and McKee.
 
     In a chain the unknowns of a body come to stand beside those of its neighbours and of the joints between them.
 
@@ -22,8 +21,6 @@ def narrowed(equations: Equations) -> Equations:
     ----------
     Cuthill and McKee, Reducing the bandwidth of sparse symmetric matrices, Proc. 24th ACM Nat. Conf. (1969) 157-172.
     """
-    if equations.n <= DENSE_UP_TO:
-        return equations
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -32,5 +29,4 @@ def narrowed(equations: Equations) -> Equations:
     order = reverse_cuthill_mckee(csr_matrix((np.ones(2 * len(rows)), entries), shape=(n, n)), symmetric_mode=True)
     place = np.empty(n, dtype=np.int64)
     place[order] = np.arange(n)
-    ordered = Equations(equations.formulation, equations.system, place)
-    return ordered if isinstance(chosen(n, *ordered.pattern), Banded) else equations
+    return equations.reordered(place)

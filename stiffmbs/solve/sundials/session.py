@@ -41,6 +41,10 @@ class Session:
         self._frees.callback(free, handle)
         return handle
 
+    def before_freed(self, undo: Callable[[], Any]) -> None:
+        """Have something undone before the objects made so far are freed."""
+        self._frees.callback(undo)
+
     def vector(self, values: np.ndarray) -> int:
         """An N_Vector whose values are those of an array, which must live as long."""
         handle = self.libraries.N_VMake_Serial(len(values), values.ctypes.data, self.context)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from collections import Counter
 
 from .libraries import Libraries
 
@@ -32,25 +31,35 @@ class Statistics:
 
     def __init__(self, libraries: Libraries, memory: int) -> None:
         self._libraries, self._memory = libraries, memory
-        self._before: Counter[str] = Counter()
+        self._before = dict.fromkeys(COUNTERS, 0)
+        self._order = ctypes.c_int()
+        self._value = ctypes.c_long()
+        self._at = ctypes.byref(self._value)
+        self._read = {name: getattr(libraries, function) for name, function in COUNTERS.items()}
 
-    def _now(self) -> Counter[str]:
-        found = Counter[str]()
-        for name, function in COUNTERS.items():
-            value = ctypes.c_long()
-            getattr(self._libraries, function)(self._memory, ctypes.byref(value))
-            found[name] = value.value
+    def _now(self) -> dict[str, int]:
+        found = {}
+        for name, read in self._read.items():
+            read(self._memory, self._at)
+            found[name] = self._value.value
         return found
+
+    def _total(self) -> dict[str, int]:
+        return {
+            name: before + now for (name, before), now in zip(self._before.items(), self._now().values(), strict=True)
+        }
 
     def keep(self) -> None:
         """Add what has been counted to the sum, before a restart sets IDA's counters to zero."""
-        self._before.update(self._now())
+        self._before = self._total()
+
+    def forget(self) -> None:
+        """Begin with nothing counted, before IDA starts anew."""
+        self._before = dict.fromkeys(COUNTERS, 0)
 
     def counted(self) -> dict[str, int]:
         """All counters; `rejected` counts the steps tried in vain, `order` is the last step's."""
-        total = self._before + self._now()
-        order = ctypes.c_int()
-        self._libraries.IDAGetLastOrder(self._memory, ctypes.byref(order))
-        counted = {name: total[name] for name in COUNTERS}
-        rejected = counted["error_test_failures"] + counted["convergence_failures"]
-        return {**counted, "rejected": rejected, "order": order.value}
+        total = self._total()
+        self._libraries.IDAGetLastOrder(self._memory, ctypes.byref(self._order))
+        rejected = total["error_test_failures"] + total["convergence_failures"]
+        return {**total, "rejected": rejected, "order": self._order.value}

@@ -14,28 +14,47 @@ class Status(Enum):
     FAILED = "IDA cannot go on"
 
 
+_UNDEFINED = (
+    "a formula leaves its domain or a force grows without bound there: see sqrt, log and divisions in the scene"
+)
+_JUMP = (
+    "an equation jumps or bends where no corner is declared, or the tolerance is finer than the equations' own digits"
+)
+_INSIDE = "this is a fault of the program or of its libraries: please report it with the scene"
+
 FAILURES = {
-    -1: "too many steps in one call",
-    -2: "the tolerance asked for is finer than the numbers' own precision",
-    -3: "the error test failed too often, or with the smallest step",
-    -4: "Newton's iteration failed to converge too often, or with the smallest step",
-    -5: "the linear solver could not be started",
-    -6: "the linear solver failed to factor the iteration matrix",
-    -7: "the linear solver failed",
-    -8: "the residual failed",
-    -9: "the residual has no finite value however small the step",
-    -10: "the switches could not be evaluated",
-    -12: "the residual has no finite value at the start",
-    -14: "neither the residual nor the linear solver recovered, however small the step",
-    -22: "IDA was given an invalid argument",
-    -24: "an error weight became zero: the absolute tolerances must be greater than zero",
-    -25: "the derivative asked for is of higher order than the last step",
-    -26: "the time asked for is outside the last step",
-    -101: "the steps have shrunk to the precision of time: no solution was found beyond this instant",
+    -1: "too many steps in one call; give a shorter duration, or a looser rtol",
+    -2: "the tolerance asked for is finer than the numbers' own precision; give a larger rtol or atol",
+    -3: f"the error test failed too often, or with the smallest step: {_JUMP}; write jumps as step(), or give a looser rtol",
+    -4: f"Newton's iteration failed to converge too often, or with the smallest step: {_JUMP}, or the pose is singular; "
+    "give a looser rtol, or take solver projected",
+    -5: f"the linear solver could not be started: {_INSIDE}",
+    -6: f"the linear solver failed to factor the iteration matrix: {_INSIDE}",
+    -7: f"the linear solver failed: {_INSIDE}",
+    -8: f"the residual failed: {_INSIDE}",
+    -9: f"the residual has no finite value however small the step: {_UNDEFINED}",
+    -10: f"the switches could not be evaluated: {_UNDEFINED}, or the gap of a contact has no value",
+    -11: f"a bound on an unknown could not be kept: {_INSIDE}",
+    -12: f"the residual has no finite value at the start: {_UNDEFINED}",
+    -13: f"the line search for initial values failed: {_INSIDE}",
+    -14: f"neither the residual nor the linear solver recovered, however small the step: {_UNDEFINED}",
+    -16: f"the nonlinear solver could not be set up: {_INSIDE}",
+    -17: f"the nonlinear solver failed: {_INSIDE}",
+    -20: f"IDA was given no memory of its own: {_INSIDE}",
+    -21: "IDA found too little memory; give fewer bodies, or close other programs",
+    -22: f"IDA was given an invalid argument: {_INSIDE}",
+    -23: f"IDA was called before it was started: {_INSIDE}",
+    -24: "an error weight became zero: the absolute tolerances must be greater than zero; give an atol",
+    -25: "the derivative asked for is of higher order than the last step; ask for a lower one",
+    -26: "the time asked for is outside the last step; ask for one within it",
+    -27: f"IDA was given no vector for its answer: {_INSIDE}",
+    -101: "the steps have shrunk to the precision of time: no solution was found beyond this instant, as where the "
+    f"motion has a pole or a mechanism locks, or {_UNDEFINED}; look at the last rows, or end the run before",
 }
-"""IDA's flags below zero (ida.h) in words, and that of the loop (`stiffmbs.solve.native.ida_loop.STALLED`)."""
+"""IDA's flags below zero (ida.h) in words, with the likely cause and the remedy, and that of the loop
+(`stiffmbs.solve.native.ida_loop.STALLED`)."""
 
 
 def failure_sentence(flag: int) -> str:
     """Why IDA failed."""
-    return FAILURES.get(flag, f"IDA failed with flag {flag}")
+    return FAILURES.get(flag, f"IDA failed with flag {flag}: {_INSIDE}")

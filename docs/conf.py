@@ -1,0 +1,53 @@
+"""How Sphinx builds these pages: ``sphinx-build -W -n docs build/html``."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "extensions"))
+
+import stiffmbs  # noqa: E402
+
+project = "stiffmbs"
+version = release = stiffmbs.__version__
+copyright = "the authors of stiffmbs"
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "numpydoc",
+    "myst_parser",
+    "sphinx_click",
+    "sphinx_copybutton",
+    "matplotlib.sphinxext.plot_directive",
+    "kinds",
+    "scenes",
+]
+exclude_patterns = ["extensions"]
+suppress_warnings = ["toc.empty_glob"]  # a page that a pattern stands for may be missing
+default_role = "literal"
+
+html_theme = "furo"
+html_title = f"stiffmbs {version}"
+html_show_sphinx = False
+
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 3
+
+autodoc_typehints = "none"  # docstrings name types with their shapes and units
+numpydoc_show_class_members = False
+
+plot_working_directory = str(HERE.parent)  # scenes are read from examples/
+plot_html_show_formats = False
+plot_html_show_source_link = False
+plot_include_source = True
+plot_formats = [("png", 110)]
+plot_rcparams = {
+    "figure.figsize": (7, 3.6),
+    "figure.constrained_layout.use": True,
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+}
+plot_apply_rcparams = True
+
+copybutton_prompt_text = "$ "

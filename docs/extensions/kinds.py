@@ -1,0 +1,135 @@
+"""Reference pages made from the classes: every kind of joint and force, every described class, the Python interface.
+
+Three directives: ``kinds`` (``joints``, ``forces``, or those of space, ``spatial.joints`` ...), ``fields`` (a described
+class), ``interface`` (what a module's ``__all__`` lists besides elements).  A new kind appears by its existence.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from textwrap import dedent, indent
+from typing import Any
+
+from docutils import nodes
+from fields import field_table
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+import stiffmbs
+from stiffmbs.describe import model
+from stiffmbs.describe.element import Element, Force, Joint
+from stiffmbs.describe.fields import Described
+from stiffmbs.describe.spatial import model as spatial_model
+
+SECTIONS = {
+    "joints": ("stiffmbs", model.JOINTS),
+    "forces": ("stiffmbs", model.FORCES),
+    "spatial.joints": ("stiffmbs.spatial", spatial_model.JOINTS),
+    "spatial.forces": ("stiffmbs.spatial", spatial_model.FORCES),
+}
+"""The module that offers the classes, and the classes by kind."""
+EQUATIONS = {
+    Joint: ("relation", "position", "velocity", "displacement", "angle"),
+    Force: ("efforts", "powers", "potential"),
+}
+
+
+INNER = "body_type, data_type, handle_type, kinds"
+"""What models are made of."""
+
+
+class Kinds(SphinxDirective):
+    """All kinds of joints or forces, a section each."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        module, kinds = SECTIONS[self.arguments[0]]
+        text = "\n".join(line for kind in sorted(kinds) for line in section(module, kind, kinds[kind]))
+        return self.parse_text_to_nodes(text, allow_section_headings=True)
+
+
+class Fields(SphinxDirective):
+    """The class of a description, with its fields."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        module, _, name = self.arguments[0].rpartition(".")
+        described = getattr(importlib.import_module(module), name)
+        return self.parse_text_to_nodes("\n".join(field_table(described)))
+
+
+class Interface(SphinxDirective):
+    """What a module exports, but for the elements."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        module = importlib.import_module(self.arguments[0])
+        elements = {element.__name__ for _, kinds in SECTIONS.values() for element in kinds.values()}
+        names = [name for name in module.__all__ if name not in elements]
+        text = "\n".join(line for name in sorted(names) for line in documented(module.__name__, name))
+        return self.parse_text_to_nodes(text)
+
+
+def documented(module: str, name: str) -> Iterator[str]:
+    """The directives for one exported name."""
+    thing = getattr(importlib.import_module(module), name)
+    if inspect.isclass(thing):
+        yield f".. autoclass:: {module}.{name}"
+        if not issubclass(thing, Described | Exception):
+            yield from ("   :members:", "   :inherited-members:", f"   :exclude-members: {INNER}")
+        yield ""
+    elif callable(thing):
+        yield from (f".. autofunction:: {module}.{name}", "")
+    else:
+        yield from (f".. py:data:: {module}.{name}", f"   :value: {thing!r}", "")
+
+
+def section(module: str, kind: str, element: type[Element]) -> Iterator[str]:
+    """The section of one kind: its class, names of equations, fields, and its equations as they stand in the source."""
+    yield from (f".. _{module}.{kind}:", "", kind, "-" * len(kind), "")
+    shared = module != "stiffmbs" and element in SECTIONS["joints"][1].values()
+    yield from (f".. autoclass:: {module}.{element.__name__}", *(["   :no-index:"] if shared else []), "")
+    if names := getattr(element, "equations", ()):
+        yield from ("Equations: " + ", ".join(f"``{name}``" for name in names), "")
+    yield from field_table(element)
+    yield from ("In the source, ``e`` being the element with frames for its markers and symbols for its numbers:", "")
+    yield from (".. code-block:: python", "", indent("\n\n".join(sources(element)), "   "), "")
+
+
+def sources(element: type[Element]) -> Iterator[str]:
+    """The methods in which a class writes its equations."""
+    ((base, names),) = ((base, names) for base, names in EQUATIONS.items() if issubclass(element, base))
+    for name in names:
+        own, inherited = (inspect.getattr_static(owner, name, None) for owner in (element, base))
+        if own is not inherited:
+            source = dedent(inspect.getsource(getattr(element, name)))
+            yield source.removeprefix("@staticmethod\n").removeprefix("@classmethod\n").rstrip()
+
+
+def without_signature(app: Sphinx, what: str, name: str, thing: Any, *_: Any) -> tuple[str, str] | None:
+    """Described classes take their fields by keyword: the table has them."""
+    return ("", "") if inspect.isclass(thing) and issubclass(thing, Described) else None
+
+
+def write_schema(app: Sphinx, error: Exception | None) -> None:
+    """Put the JSON schema of scenes beside the pages, for editors."""
+    if error is None and app.builder.format == "html":
+        Path(app.outdir, "scene.schema.json").write_text(
+            json.dumps(stiffmbs.scene_schema(), indent=2), encoding="utf-8"
+        )
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    app.add_directive("kinds", Kinds)
+    app.add_directive("fields", Fields)
+    app.add_directive("interface", Interface)
+    app.connect("autodoc-process-signature", without_signature)
+    app.connect("build-finished", write_schema)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

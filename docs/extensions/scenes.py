@@ -1,0 +1,50 @@
+"""The page of examples: each scene with what its first lines say about it, and its figure, drawn when pages are built."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import indent
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from stiffmbs import load_scene
+
+PLOT = """\
+.. plot::
+   :include-source: false
+   :alt: {name}
+
+   import stiffmbs
+   from matplotlib import pyplot
+   from stiffmbs.show.figure import draw_on
+
+   scene = stiffmbs.load_scene("examples/{name}.yaml")
+   draw_on(pyplot.figure(), stiffmbs.run(scene), scene.figure)
+"""
+
+
+class Scenes(SphinxDirective):
+    """All scenes of a folder, a section each."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        folder = Path(self.env.srcdir, self.arguments[0])
+        text = "\n".join(self._section(path) for path in sorted(folder.glob("*.yaml")))
+        return self.parse_text_to_nodes(text, allow_section_headings=True)
+
+    def _section(self, path: Path) -> str:
+        self.env.note_dependency(str(path))
+        scene = load_scene(path)
+        figure = PLOT.format(name=path.stem) if scene.figure else ""
+        title = f"{scene.name}\n{'-' * len(scene.name)}\n"
+        source = ".. code-block:: yaml\n\n" + indent(path.read_text(encoding="utf-8"), "   ")
+        return f"{title}\n``examples/{path.name}``\n\n{figure}\n{source}\n"
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    app.add_directive("scenes", Scenes)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,133 @@
+"""Which joints in space could be of a kind that transmits less, so that every reaction is unique.
+
+A joint of a weaker kind between the same markers lets go of some components of its reaction.  With as many of them let go
+as equations are redundant, and these independent along the null space of J^T, nothing stays undetermined, and no freedom is added.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.placed_markers import marker_axes
+from .loop_equations import LoopEquations, Pose
+from .loops import LoopJoint
+from .transmitted import COMPONENTS, TRANSMITTED
+from .uniqueness import changes_of
+
+CLEARLY = 1e-3
+"""Least singular value, in parts of the largest reaction, of components that are independent."""
+MOST_JOINTS, MOST_CHANGED, MOST_TRIALS = 10, 4, 2000
+"""Joints to choose from, the last ones; joints to change at once; choices looked at."""
+IDEAL = ("spherical", "cylindrical", "revolute", "prismatic", "planar")
+"""Kinds that machines have; the others are parts of such, tried where these do not do."""
+
+Choice = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class _Option:
+    """A joint as a weaker kind.
+
+    Attributes
+    ----------
+    joint, kind : str
+    let_go : list of ndarray, shape (components, null vectors)
+        What it no longer transmits along each null vector, at each pose.
+    count : int
+        Equations that it has less.
+    """
+
+    joint: str
+    kind: str
+    let_go: list[np.ndarray]
+    count: int
+
+
+def replacements(
+    equations: LoopEquations, spaces: Sequence[tuple[Pose, np.ndarray]], joints: Sequence[LoopJoint]
+) -> list[Choice]:
+    """Joints and the kinds that they should have: each joint that does it alone, else a few together; empty where none do.
+
+    Parameters
+    ----------
+    spaces : sequence of (Pose, ndarray)
+        Poses, and null vectors of the scaled J^T there for what is redundant.
+    joints : sequence of LoopJoint
+        To choose from; the last is changed first.
+    """
+    count, last = spaces[0][1].shape[1], joints[-MOST_JOINTS:]
+    seen = [_in_marker_axes(equations, pose, space, last) for pose, space in spaces]
+    options = [list(_options(joint, [wrenches.get(joint.name) for wrenches in seen])) for joint in reversed(last)]
+    for kinds in (IDEAL, (*IDEAL, *(kind for kind in TRANSMITTED if kind not in IDEAL))):
+        usable = [[option for kind in kinds for option in of_joint if option.kind == kind] for of_joint in options]
+        alone = [(option,) for of_joint in usable for option in of_joint if _does((option,), count)]
+        if alone:
+            return [_named(choice) for choice in _one_each(alone)]
+        together = next(_together([part for part in usable if part], count), None)
+        if together:
+            return [_named(together)]
+    return []
+
+
+def _in_marker_axes(
+    equations: LoopEquations, pose: Pose, space: np.ndarray, joints: Sequence[LoopJoint]
+) -> dict[str, np.ndarray]:
+    """The joints' reactions along each null vector in the axes of their markers j, shape (6, vectors)."""
+    change, found = changes_of(equations, pose, space), {}
+    for joint in joints:
+        axes = marker_axes(equations.state.system, joint.name, "j", equations.state.q)
+        if axes is not None:
+            wrench = np.array([change[f"{joint.name}.{name}"] for name in COMPONENTS])
+            found[joint.name] = np.vstack([axes.T @ wrench[:3], axes.T @ wrench[3:]])
+    return found
+
+
+def _options(joint: LoopJoint, wrenches: Sequence[np.ndarray | None]) -> Iterator[_Option]:
+    transmits = TRANSMITTED.get(joint.element.kind, ())
+    for kind, kept in TRANSMITTED.items():
+        weaker = set(kept) < set(transmits) or (kept == transmits and len(kept) < len(joint.rows))
+        if weaker and all(wrench is not None for wrench in wrenches):
+            rows = [k for k, name in enumerate(COMPONENTS) if name not in kept]
+            let_go = [wrench[rows] for wrench in wrenches if wrench is not None]
+            yield _Option(joint.name, kind, let_go, len(joint.rows) - len(kept))
+
+
+def _does(choice: Sequence[_Option], count: int) -> bool:
+    """Whether options let go of as many components as equations are redundant, all of them independent."""
+    return sum(option.count for option in choice) == count and _independent(choice)
+
+
+def _independent(choice: Sequence[_Option]) -> bool:
+    count = sum(option.count for option in choice)
+    for parts in zip(*(option.let_go for option in choice), strict=True):
+        values = np.linalg.svd(np.vstack(parts), compute_uv=False)
+        if count > len(values) or values[count - 1] < CLEARLY:
+            return False
+    return True
+
+
+def _one_each(alone: Sequence[tuple[_Option]]) -> Iterator[tuple[_Option]]:
+    """Of each joint the first option."""
+    yield from {choice[0].joint: choice for choice in reversed(alone)}.values()
+
+
+def _together(options: Sequence[Sequence[_Option]], count: int) -> Iterator[tuple[_Option, ...]]:
+    """Choices of options of several joints that do it."""
+    trials = 0
+    for size in range(2, min(MOST_CHANGED, len(options)) + 1):
+        for joints in itertools.combinations(options, size):
+            for choice in itertools.product(*joints):
+                if sum(option.count for option in choice) == count:
+                    trials += 1
+                    if trials > MOST_TRIALS:
+                        return
+                    if _independent(choice):
+                        yield choice
+
+
+def _named(choice: Sequence[_Option]) -> Choice:
+    return tuple((option.joint, option.kind) for option in choice)

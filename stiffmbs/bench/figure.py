@@ -1,0 +1,39 @@
+"""Work-precision figures: run time over error, both logarithmic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from .benchmark import Row
+from .machine import machine
+from .sweep import at_target_rows
+
+
+def draw(problem: str, rows: Sequence[Row], folder: Path) -> Path:
+    """Draw the rows of a problem; peers are dashed.
+
+    Returns
+    -------
+    Path
+        Of the figure, ``PROBLEM.svg`` in the folder, which is made if need be.
+    """
+    from matplotlib.figure import Figure
+
+    measured = [row for row in rows if row.error > 0 and row not in at_target_rows(rows)]
+    figure = Figure(figsize=(8, 5.5), layout="constrained")
+    axes = figure.add_subplot()
+    for solver in dict.fromkeys(row.solver for row in measured):
+        own = sorted((r for r in measured if r.solver == solver), key=lambda r: r.seconds)
+        style = "--" if own[0].peer else "-"
+        axes.loglog([r.error for r in own], [r.seconds for r in own], style, marker=".", label=solver)
+    axes.invert_xaxis()
+    axes.set(xlabel="largest error, m or rad", ylabel="time of a solution, s", title=problem)
+    axes.grid(which="major", alpha=0.3)
+    axes.legend(fontsize="small")
+    found = machine()
+    figure.supxlabel(", ".join(f"{name} {value}" for name, value in found.items()), fontsize=5)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{problem}.svg"
+    figure.savefig(path)
+    return path

@@ -1,0 +1,20 @@
+"""Exudyn as it is imported for speed."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import sys
+from typing import Any
+
+FAST = "exudynFast"
+"""Of `sys`: whether exudyn is imported without its checks of ranges, as its documentation recommends for speed."""
+
+
+def module() -> Any:
+    """Exudyn, which would tell on standard output what it is."""
+    setattr(sys, FAST, True)
+    with contextlib.redirect_stdout(io.StringIO()):
+        import exudyn
+    exudyn.config.printToConsole = False
+    return exudyn

@@ -1,0 +1,17 @@
+"""Time from corner to corner, where a user starts an integrator anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+
+def legs_of(times: np.ndarray, corners: tuple[float, ...]) -> Iterator[tuple[np.ndarray, int]]:
+    """For each leg its times, ends included, and how many of them are output times after its begin."""
+    begun = times[0]
+    for end in (*corners, times[-1]):
+        inside = times[(times > begun) & (times <= end)]
+        beyond = [] if len(inside) and inside[-1] == end else [end]
+        yield np.concatenate([[begun], inside, beyond]), len(inside)
+        begun = end

@@ -1,0 +1,72 @@
+"""What the cache holds, by kind, and its removal."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from .cache import KERNEL, PART, RECORD, ROUTINE, cache_directory, own_directory
+
+KINDS = (RECORD, KERNEL, ROUTINE)
+OTHERS = "other"
+_ENTRY = re.compile(rf"({'|'.join(KINDS)})-[0-9a-f]{{40}}|{re.escape(PART)}.*|[0-9a-f]{{40}}")
+"""Names of entries, of files that a process left half written, and of the entries of earlier versions."""
+_DIRECTORY = re.compile(r"entries-[0-9a-f]{12}")
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A number of entries, and their size in bytes."""
+
+    entries: int
+    size: int
+
+
+def stored() -> dict[str, Stored]:
+    """What is kept, by kind; under `OTHERS` what this version on this machine does not use."""
+    sizes: dict[str, list[int]] = {kind: [] for kind in (*KINDS, OTHERS)}
+    for path in _files():
+        kind = path.name.partition("-")[0]
+        own = path.parent == own_directory() and kind in KINDS
+        sizes[kind if own else OTHERS].append(_size(path))
+    return {kind: Stored(len(found), sum(found)) for kind, found in sizes.items()}
+
+
+def clear() -> Stored:
+    """Remove all entries, and nothing else; returns what was removed.
+
+    Raises
+    ------
+    OSError
+        When an entry cannot be removed.
+    """
+    sizes = []
+    for path in list(_files()):
+        sizes.append(_size(path))
+        path.unlink(missing_ok=True)
+    for directory in _directories():
+        if not any(directory.iterdir()):
+            directory.rmdir()
+    return Stored(len(sizes), sum(sizes))
+
+
+def _files() -> Iterator[Path]:
+    for directory in (cache_directory(), *_directories()):
+        if directory.is_dir():
+            yield from (path for path in directory.iterdir() if _ENTRY.fullmatch(path.name) and path.is_file())
+
+
+def _directories() -> list[Path]:
+    root = cache_directory()
+    if not root.is_dir():
+        return []
+    return [path for path in root.iterdir() if _DIRECTORY.fullmatch(path.name) and path.is_dir()]
+
+
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:  # removed by another process
+        return 0

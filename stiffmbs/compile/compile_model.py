@@ -1,0 +1,124 @@
+"""From a model to its `System`: elements sorted by kind, kernels from the cache or newly made, every equation's row."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..describe.element import Element
+from ..describe.formula import FormulaError
+from ..describe.marker import GROUND
+from ..errors import InputError
+from .bodies import BODY_KINDS, BodyKind
+from .kind import Compilable, ElementData, Kind, sorted_out
+from .record import KindRecord, record_of
+from .system import Group, System
+
+
+def compile_model(model: Compilable) -> System:
+    """Compile a model: kernels from the cache or newly made, and every term's place.
+
+    Raises
+    ------
+    InputError
+        When an element's equations cannot be compiled; names the element.
+    """
+    bodies = tuple(model.bodies)
+    of_body = BODY_KINDS[model.dimensions]
+    sorted_elements: dict[Kind, list[_Member]] = {}
+    for name, element in model.elements():
+        try:
+            kind, data = sorted_out(element, model)
+        except FormulaError as error:
+            raise InputError(f"{name}: {error}") from None
+        sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
+    records = {kind: _record(kind, members[0].name) for kind, members in sorted_elements.items()}
+    rows, equations, holonomic = _rows(sorted_elements, records)
+    n_counters = sum(records[kind].n_counters * len(members) for kind, members in sorted_elements.items())
+    places = _Places(of_body, bodies, rows, n_counters)
+    groups = [_group(kind, records[kind], of_body, members, places) for kind, members in sorted_elements.items()]
+    coordinates = [c for body in model.bodies.values() for c in body.coordinates()]
+    return System(
+        bodies=bodies,
+        of_body=of_body,
+        q=np.array(coordinates + [0.0] * n_counters),
+        u=np.array([c for body in model.bodies.values() for c in body.rates()]),
+        open_rates=np.array([way for body in model.bodies.values() for way in body.open_rates()]),
+        mass=np.array([m for body in model.bodies.values() for m in body.masses()]),
+        principal_axes=_principal_axes(model),
+        groups=tuple(groups),
+        equations=tuple(equations),
+        holonomic=np.array(holonomic, dtype=bool),
+        active=np.ones(len(equations), dtype=bool),
+        size=model.size(),
+    )
+
+
+def _principal_axes(model: Compilable) -> np.ndarray:
+    """The quaternions of spatial bodies' principal axes in their own axes."""
+    if model.dimensions == 2:
+        return np.empty((len(model.bodies), 0))
+    return np.array([body.principal_axes() for body in model.bodies.values()])
+
+
+@dataclass(frozen=True)
+class _Member:
+    name: str
+    element: Element
+    data: ElementData
+
+
+def _record(kind: Kind, name: str) -> KindRecord:
+    try:
+        return record_of(kind)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+
+
+def _rows(
+    sorted_elements: Mapping[Kind, list[_Member]], records: Mapping[Kind, KindRecord]
+) -> tuple[dict[str, int], list[tuple[str, str]], list[bool]]:
+    """The first row of each joint, and for each row its joint and equation and whether it has a position form."""
+    first: dict[str, int] = {}
+    equations: list[tuple[str, str]] = []
+    holonomic: list[bool] = []
+    for kind, members in sorted_elements.items():
+        record = records[kind]
+        for member in members if record.n_equations else ():
+            first[member.name] = len(equations)
+            equations += [(member.name, label) for label in member.element.equation_names()]
+            holonomic += [k < record.n_holonomic for k in range(record.n_equations)]
+    return first, equations, holonomic
+
+
+class _Places:
+    """Where bodies, equations and counters of turns stand in a system; counters are given out one after the other."""
+
+    def __init__(self, of_body: BodyKind, bodies: tuple[str, ...], rows: Mapping[str, int], n_counters: int) -> None:
+        n_q, n_u = of_body.n_q, of_body.n_u
+        self.rows = rows
+        self._of_body = {name: (n_q * k, n_u * k) for k, name in enumerate(bodies)}
+        self._of_body[GROUND] = n_q * len(bodies) + n_counters, n_u * len(bodies)
+        self._counter = n_q * len(bodies)
+
+    def index(self, data: ElementData, first_number: int, n_counters: int) -> list[int]:
+        """An element's row of `Group.index`."""
+        counters = range(self._counter, self._counter + n_counters)
+        self._counter += n_counters
+        bodies = (place for body in data.bodies for place in self._of_body[body])
+        return [*bodies, first_number, *(self.rows[joint] for joint in data.joints), *counters]
+
+
+def _group(kind: Kind, record: KindRecord, of_body: BodyKind, members: list[_Member], places: _Places) -> Group:
+    numbers = [member.data.flat() for member in members]
+    starts = np.cumsum([0, *(len(own) for own in numbers)])
+    index = [
+        places.index(member.data, start, record.n_counters) for member, start in zip(members, starts, strict=False)
+    ]
+    return Group(
+        kind, record, of_body, tuple(m.name for m in members), tuple(m.element for m in members),
+        np.array(index, dtype=np.int64), np.concatenate([*numbers, [0.0]]),
+        places.rows[members[0].name] if record.n_equations else 0,
+    )  # fmt: skip

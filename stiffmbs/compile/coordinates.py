@@ -1,0 +1,65 @@
+"""Which coordinates a solver integrates, and how the others follow from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .system import System
+
+STILL = -1
+
+
+@dataclass(frozen=True, eq=False)  # arrays have no one truth value: two are the same if they are one object
+class Coordinates:
+    """Every coordinate is independent, moves in a constant ratio with one that is, or stands still.
+
+    q_k = offset_k + ratio_k q_l with l = leader_k; the offsets are those of any pose that satisfies the constraints.
+    Velocities likewise.
+
+    Attributes
+    ----------
+    leader : ndarray of int, shape (n_q,)
+        The coordinate that each moves with, itself where it is independent; `STILL` for those that stand still.
+    ratio : ndarray, shape (n_q,)
+    u_leader, u_ratio : ndarrays, shape (n_u,)
+        The same for velocities.
+    fulfilled : ndarray of bool, shape (n_c,)
+        The equations that are satisfied whatever the independent coordinates do.
+    """
+
+    leader: np.ndarray
+    ratio: np.ndarray
+    u_leader: np.ndarray
+    u_ratio: np.ndarray
+    fulfilled: np.ndarray
+
+    @cached_property
+    def independent(self) -> np.ndarray:
+        """Which coordinates are independent, shape (n_q,)."""
+        return self.leader == np.arange(len(self.leader))
+
+    @cached_property
+    def independent_u(self) -> np.ndarray:
+        """Which velocities are independent, shape (n_u,)."""
+        return self.u_leader == np.arange(len(self.u_leader))
+
+    def relation(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Leaders and ratios of the coordinates (``q``) or velocities (``u``)."""
+        return (self.leader, self.ratio) if name == "q" else (self.u_leader, self.u_ratio)
+
+    def state(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """The independent coordinates, then the independent velocities."""
+        return np.concatenate([q[self.independent], u[self.independent_u]])
+
+    def offset(self, q: np.ndarray) -> np.ndarray:
+        """The offsets of all coordinates, from a pose."""
+        return q - self.ratio * q[self.leader]  # the ratio of what stands still is zero
+
+
+def all_independent(system: System) -> Coordinates:
+    """Coordinates without any relation: the constraint equations hold them together."""
+    q, u = np.arange(system.n_q), np.arange(system.n_u)
+    return Coordinates(q, np.ones(len(q)), u, np.ones(len(u)), np.zeros(system.n_c, dtype=bool))

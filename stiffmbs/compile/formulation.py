@@ -1,0 +1,64 @@
+"""Residuals and matrices written as tables of blocks, as in the textbook.
+
+Each line of a residual is a block of the system (M, J, f, ...) times a vector of unknowns or of their derivatives, each
+line of a matrix a block in its rows and columns.  Nothing else is needed for a solver (`stiffmbs.compile.equations`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Product:
+    """One line of a residual: in `rows`, factor * block @ operand.
+
+    `rows` and `operand` are names of unknowns (``q u mu lam``); an operand with a prime is a derivative; a vector
+    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``Z`` takes u to q', ``Z_q`` is d(Z u)/dq, ``E_mu`` and
+    ``E_lam`` are the relaxations of the rows, ``.T`` transposes, ``:rates`` keeps rows without a position form, ``:turning`` those of quaternions.
+    """
+
+    rows: str
+    factor: float
+    block: str
+    operand: str | None = None
+
+
+@dataclass(frozen=True)
+class Block:
+    """One line of a matrix: in `rows` and `columns`, (constant + cj * cj-part) * block."""
+
+    rows: str
+    columns: str
+    block: str
+    constant: float = 1.0
+    cj: float = 0.0
+
+
+@dataclass(frozen=True)
+class Formulation:
+    """Equations of motion in the form that a solver integrates or solves.
+
+    Attributes
+    ----------
+    unknowns : tuple of str
+        Of ``q u mu lam``.
+    residual_set, matrix_set : str
+        The term sets that residual and matrix are made of.
+    residual : sequence of Product
+    matrix : sequence of Block
+    tested : tuple of str
+        Unknowns whose error the integrator controls.
+    integrated : bool
+        Whether the unknowns mu and lam are integrals of the multipliers, which then are their derivatives.
+    """
+
+    name: str
+    unknowns: tuple[str, ...]
+    residual_set: str
+    matrix_set: str
+    residual: Sequence[Product]
+    matrix: Sequence[Block]
+    tested: tuple[str, ...] = ("q", "u")
+    integrated: bool = False

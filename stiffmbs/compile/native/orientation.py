@@ -1,0 +1,71 @@
+"""Orientations of spatial bodies: what kernels share of them, and their rates, for quaternions p of any length.
+
+A = 2/|p|^2 (p_v p_v^T + p_0 [p_v] + p_0^2) - 1 is the rotation matrix whatever the length of p; p' = p w / 2.
+Shabana, Dynamics of Multibody Systems (2013), sec. 2.3; Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 6.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from .access import compiled, shifted
+
+N_Q, N_U, TURN_STRIDE = 7, 6, 2
+"""Coordinates and velocities of a spatial body, and what is shared for each coordinate (`stiffmbs.compile.bodies.SPACE`)."""
+
+
+@compiled
+def share_orientation(p, turn):
+    """A row by row, e = 2 p/|p|^2 and n = 2/|p|^2, for kernels to read."""
+    n = 2.0 / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3])
+    e0, e1, e2, e3 = n * p[0], n * p[1], n * p[2], n * p[3]
+    turn[0] = e0 * p[0] + e1 * p[1] - 1.0
+    turn[1] = e1 * p[2] - e0 * p[3]
+    turn[2] = e1 * p[3] + e0 * p[2]
+    turn[3] = e1 * p[2] + e0 * p[3]
+    turn[4] = e0 * p[0] + e2 * p[2] - 1.0
+    turn[5] = e2 * p[3] - e0 * p[1]
+    turn[6] = e1 * p[3] - e0 * p[2]
+    turn[7] = e2 * p[3] + e0 * p[1]
+    turn[8] = e0 * p[0] + e3 * p[3] - 1.0
+    turn[9] = e0
+    turn[10] = e1
+    turn[11] = e2
+    turn[12] = e3
+    turn[13] = n
+
+
+@compiled
+def _turning(p, w, rate, factor):
+    """rate += factor p w / 2."""
+    half = 0.5 * factor
+    p0, p1, p2, p3 = p[0], p[1], p[2], p[3]
+    rate[0] += half * (-p1 * w[0] - p2 * w[1] - p3 * w[2])
+    rate[1] += half * (p0 * w[0] + p2 * w[2] - p3 * w[1])
+    rate[2] += half * (p0 * w[1] + p3 * w[0] - p1 * w[2])
+    rate[3] += half * (p0 * w[2] + p1 * w[1] - p2 * w[0])
+
+
+@compiled
+def add_rates(s, u, factor, target):
+    """target += factor Z(q) u: coordinates moved along velocities."""
+    if s.spatial == 0:
+        for k in range(s.n_q):
+            target[k] += factor * u[k]
+        return
+    for body in range(s.n_u // N_U):
+        q, v = N_Q * body, N_U * body
+        for k in range(3):
+            target[q + k] += factor * u[v + k]
+        _turning(shifted(s.q, q + 3), shifted(u, v + 3), shifted(target, q + 3), factor)
+
+
+@compiled
+def take_unit_length(s):
+    """Quaternions scaled to length 1, which changes no orientation."""
+    if s.spatial:
+        for body in range(s.n_u // N_U):
+            p = shifted(s.q, N_Q * body + 3)
+            scale = 1.0 / sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3])
+            for k in range(4):
+                p[k] *= scale

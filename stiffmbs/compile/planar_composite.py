@@ -1,0 +1,42 @@
+"""Placements on each other in the plane, and the body that several make up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from ..describe.body import Body
+from ..describe.marker import Placement
+
+
+def on(frame: Placement, placed: Placement) -> Placement:
+    """A placement given in a frame, in the axes that the frame is given in."""
+    (x, y), (xi, eta), (c, s) = frame.point, placed.point, (math.cos(frame.angle), math.sin(frame.angle))
+    return Placement(point=(x + c * xi - s * eta, y + s * xi + c * eta), angle=frame.angle + placed.angle)
+
+
+def inverse(placed: Placement) -> Placement:
+    """Where the axes that a placement is given in are, seen from it."""
+    (x, y), (c, s) = placed.point, (math.cos(placed.angle), math.sin(placed.angle))
+    return Placement(point=(-c * x - s * y, s * x - c * y), angle=-placed.angle)
+
+
+def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Placement]]:
+    """The body that several make up, and where each of them is on it.
+
+    Mass and first moments add up, and inertias with m d^2 (Huygens, Steiner).
+
+    Parameters
+    ----------
+    members : sequence of (Body, Placement)
+        Each with the place of its centre of mass and axes in those of the first.
+    """
+    first, _ = members[0]
+    mass = sum(body.mass for body, _ in members)
+    xi, eta = (sum(body.mass * placed.point[k] for body, placed in members) / mass for k in (0, 1))
+    inertia = sum(body.inertia + body.mass * math.dist(placed.point, (xi, eta)) ** 2 for body, placed in members)
+    (x, y), (c, s) = first.position, (math.cos(first.angle), math.sin(first.angle))
+    position = (x + c * xi - s * eta, y + s * xi + c * eta)
+    body = Body(mass=mass, inertia=inertia, position=position, angle=first.angle)
+    from_centre = Placement(point=(-xi, -eta))
+    return body, [on(from_centre, placed) for _, placed in members]

@@ -1,0 +1,54 @@
+"""Placements on each other in space, and the body that several make up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..describe.spatial.body import Body
+from ..describe.spatial.marker import Placement
+from ..describe.spatial.orientation import conjugate, matrix, product, rotated
+
+
+def on(frame: Placement, placed: Placement) -> Placement:
+    """A placement given in a frame, in the axes that the frame is given in."""
+    point = np.array(frame.point) + rotated(frame.orientation, placed.point)
+    return Placement(point=_numbers(point), orientation=product(frame.orientation, placed.orientation))
+
+
+def inverse(placed: Placement) -> Placement:
+    """Where the axes that a placement is given in are, seen from it."""
+    back = conjugate(placed.orientation)
+    return Placement(point=_numbers(-rotated(back, placed.point)), orientation=back)
+
+
+def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Placement]]:
+    """The body that several make up, and where each of them is on it, both by centres of mass and principal axes.
+
+    Mass and first moments add up, and inertia tensors, turned to common axes, with m (d^2 - d d^T) (Huygens, Steiner).
+
+    Parameters
+    ----------
+    members : sequence of (Body, Placement)
+        Each with the place of its centre of mass and principal axes in those of the first.
+    """
+    first, _ = members[0]
+    mass = sum(body.mass for body, _ in members)
+    centre = np.sum([body.mass * np.array(placed.point) for body, placed in members], axis=0) / mass
+    inertia = np.zeros((3, 3))
+    for body, placed in members:
+        turn, arm = matrix(placed.orientation), np.array(placed.point) - centre
+        inertia += turn @ np.diag(body.principal_moments()) @ turn.T
+        inertia += body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    x, y, z, *orientation = first.coordinates()
+    rows = tuple(_numbers(row) for row in (inertia + inertia.T) / 2)
+    body = Body(
+        mass=mass, inertia=rows, center_of_mass=_numbers(centre), position=(x, y, z), orientation=tuple(orientation)
+    )
+    return body, [body.carried(placed) for _, placed in members]
+
+
+def _numbers(vector: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(part) for part in vector)
+    return x, y, z

@@ -1,0 +1,60 @@
+"""Tables as numbers that kernels take, and as functions of arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..describe.table import Table
+
+Curve = Callable[[np.ndarray], np.ndarray]
+NATURAL, PERIODIC = 0.0, 1.0
+
+
+def spline_data(table: Table) -> np.ndarray:
+    """What a kernel needs of a table: count, ends, knots, and the coefficients of each piece (highest first).
+
+    Cubic spline interpolation by SciPy; straight lines are pieces without curvature.
+    """
+    x, y = np.array(table.table, dtype=float).T
+    if table.lines:
+        slope = np.diff(y) / np.diff(x)
+        pieces = np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
+    elif table.akima:
+        from scipy.interpolate import Akima1DInterpolator
+
+        pieces = Akima1DInterpolator(x, y).c
+    else:
+        from scipy.interpolate import CubicSpline
+
+        if table.ends == "periodic":
+            y = np.append(y[:-1], y[0])
+        pieces = CubicSpline(x, y, bc_type=table.ends).c
+    ends = PERIODIC if table.ends == "periodic" else NATURAL
+    return np.concatenate([[len(x), ends], x, pieces.T.ravel()])
+
+
+def curve(table: Table) -> Curve:
+    """The values of a table, as kernels compute them: outside its points it goes on straight, or repeats."""
+    count, x, pieces = _parts(table)
+
+    def values(arguments: np.ndarray) -> np.ndarray:
+        at = np.asarray(arguments, dtype=float)
+        if table.ends == "periodic":
+            at = x[0] + np.mod(at - x[0], x[-1] - x[0])
+        inside = np.clip(at, x[0], x[-1])
+        k = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, count - 2)
+        a, b, c, d = pieces[k].T.reshape(4, *at.shape)
+        h = inside - x[k]
+        slope = (3 * a * h + 2 * b) * h + c
+        return ((a * h + b) * h + c) * h + d + slope * (at - inside)
+
+    return values
+
+
+def _parts(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
+    """Number of points, the points, and the coefficients of each piece, highest first."""
+    data = spline_data(table)
+    count = int(data[0])
+    return count, data[2 : 2 + count], data[2 + count :].reshape(-1, 4)

@@ -1,0 +1,180 @@
+"""The instructions of one function, written down in order."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from .values import ITEMS, LLVM_TYPES, Operand, Untranslatable, Value
+
+Lines = list[Any]
+"""Instructions, and lists of instructions that are filled in later."""
+
+
+class Code:
+    """A function's instructions, variables and labels.
+
+    Parameters
+    ----------
+    unit : Unit
+        What the function is part of: gives the functions that are called, and takes declarations.
+
+    Attributes
+    ----------
+    reached : bool
+        Whether what is written next can be reached; where not, nothing is to be written.
+    """
+
+    def __init__(self, unit: Any) -> None:
+        self.unit = unit
+        self.reached = True
+        self._entry: Lines = []
+        self._lines: Lines = []
+        self._count = 0
+        self._targets: set[str] = set()
+
+    def lines(self) -> Iterator[str]:
+        """All instructions."""
+        yield from _flat(self._entry)
+        yield from _flat(self._lines)
+
+    def name(self, stem: str = "v") -> str:
+        """A name that is not used yet."""
+        self._count += 1
+        return f"{stem}{self._count}"
+
+    def put(self, instruction: str) -> None:
+        """Write an instruction without a result."""
+        self._lines.append(instruction)
+
+    def put_value(self, kind: str, instruction: str) -> Value:
+        """Write an instruction and name its result."""
+        value = Value(kind, f"%{self.name()}")
+        self._lines.append(f"{value.text} = {instruction}")
+        return value
+
+    def gap(self) -> Lines:
+        """A place in which instructions can be written later, by `within`."""
+        gap: Lines = []
+        self._lines.append(gap)
+        return gap
+
+    @contextmanager
+    def within(self, gap: Lines) -> Iterator[None]:
+        """Write into a gap."""
+        lines, self._lines = self._lines, gap
+        yield
+        self._lines = lines
+
+    def branch(self, target: str) -> None:
+        """Go to a label; nothing can follow but a label."""
+        self.put(f"br label %{target}")
+        self._targets.add(target)
+        self.reached = False
+
+    def choose(self, condition: Value, then: str, otherwise: str) -> None:
+        """Go to one of two labels."""
+        self.put(f"br {condition.typed}, label %{then}, label %{otherwise}")
+        self._targets |= {then, otherwise}
+        self.reached = False
+
+    def label(self, name: str) -> None:
+        """What follows is reached by branches to this label; if there are none, it is not reached."""
+        if self.reached:
+            self.branch(name)
+        self.reached = name in self._targets
+        if self.reached:
+            self.put(f"{name}:")
+
+    def leave(self, instruction: str) -> None:
+        """Write an instruction that ends the function."""
+        self.put(instruction)
+        self.reached = False
+
+    def variable(self, kind: str) -> Value:
+        """Room for a value; the optimiser turns it into registers."""
+        name = f"%{self.name('at')}"
+        self._entry.append(f"{name} = alloca {LLVM_TYPES[kind]}")
+        return Value(kind, name)
+
+    def load(self, variable: Value) -> Value:
+        """The value of a variable."""
+        return self.put_value(variable.kind, f"load {LLVM_TYPES[variable.kind]}, ptr {variable.text}")
+
+    def store(self, variable: Value, value: Value) -> None:
+        """Set a variable."""
+        self.put(f"store {self.converted(value, variable.kind).typed}, ptr {variable.text}")
+
+    def item(self, pointer: Operand, index: Operand) -> Value:
+        """The place of an item: its kind, and its address."""
+        if not isinstance(pointer, Value) or pointer.kind not in ITEMS:
+            raise Untranslatable("a subscript of what is no pointer")
+        kind = ITEMS[pointer.kind]
+        place = self.integer(index)
+        return Value(
+            kind, self.put_value("int", f"getelementptr {LLVM_TYPES[kind]}, {pointer.typed}, {place.typed}").text
+        )
+
+    def integer(self, value: Operand) -> Value:
+        """An integer; a float is refused, as Python does for an index."""
+        if not isinstance(value, Value) or value.kind not in ("int", "int32", "bool"):
+            raise Untranslatable(f"found {value}, expected an integer")
+        return self.converted(value, "int")
+
+    def converted(self, value: Operand, kind: str) -> Value:
+        """The value in another kind of at least its range; an int to int32 drops what is above."""
+        if not isinstance(value, Value):
+            raise Untranslatable(f"found {value}, expected a {kind}")
+        match value.kind, kind:
+            case given, wanted if given == wanted:
+                return value
+            case "int", "float" if value.text.lstrip("-").isdigit():
+                return constant(float(value.text))
+            case "bool", "float":
+                return self.put_value(kind, f"uitofp {value.typed} to double")
+            case "int" | "int32", "float":
+                return self.put_value(kind, f"sitofp {value.typed} to double")
+            case "bool", "int":
+                return self.put_value(kind, f"zext {value.typed} to i64")
+            case "int32", "int":
+                return self.put_value(kind, f"sext {value.typed} to i64")
+            case "int", "int32":
+                return self.put_value(kind, f"trunc {value.typed} to i32")
+        raise Untranslatable(f"found a value of kind {value.kind}, expected {kind}")
+
+    def truth(self, value: Operand) -> Value:
+        """Whether a number is not zero."""
+        if isinstance(value, Value) and value.kind == "float":
+            return self.put_value("bool", f"fcmp une {value.typed}, 0.0")
+        if isinstance(value, Value) and value.kind == "bool":
+            return value
+        return self.put_value("bool", f"icmp ne {self.integer(value).typed}, 0")
+
+
+def constant(number: bool | int | float) -> Value:
+    """A literal."""
+    if isinstance(number, bool):
+        return Value("bool", "true" if number else "false")
+    if isinstance(number, int):
+        return Value("int", str(number))
+    return Value("float", "0x" + struct.pack(">d", number).hex().upper())
+
+
+def common(values: list[Value]) -> str:
+    """The kind that holds all values."""
+    kinds = {"int" if value.kind == "int32" else value.kind for value in values}
+    if len(kinds) == 1:
+        return kinds.pop()
+    if kinds <= {"bool", "int", "float"}:
+        return "float" if "float" in kinds else "int"
+    raise Untranslatable(f"found values of kinds {', '.join(sorted(kinds))} for one result")
+
+
+def _flat(lines: Lines) -> Iterator[str]:
+    for line in lines:
+        if isinstance(line, list):
+            yield from _flat(line)
+        else:
+            yield line

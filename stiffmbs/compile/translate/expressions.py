@@ -1,0 +1,148 @@
+"""Expressions to instructions."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Mapping
+from typing import Any
+
+from .arithmetic import compared, computed, negated
+from .code import Code, common, constant
+from .functions import FUNCTIONS
+from .values import Builtin, Operand, Record, Untranslatable, Value, refuse
+
+
+class Expressions:
+    """Translates the expressions of one function.
+
+    Parameters
+    ----------
+    code : Code
+        Receives the instructions.
+    outside : mapping
+        The names of the function's module.
+    wider : mapping
+        Kinds of variables that need a wider one than that of their first value.
+
+    Attributes
+    ----------
+    variables : dict
+        The places of the function's variables.
+    records : dict
+        Views under the names that they were given.
+    """
+
+    def __init__(self, code: Code, outside: Mapping[str, Any], wider: Mapping[str, str]) -> None:
+        self.code = code
+        self.variables: dict[str, Value] = {}
+        self.records: dict[str, Record] = {}
+        self._outside, self._wider = outside, wider
+
+    def declare(self, name: str, kind: str) -> Value:
+        """A new variable, for a first value of the given kind."""
+        self.variables[name] = self.code.variable(self._wider.get(name, "int" if kind == "int32" else kind))
+        return self.variables[name]
+
+    def value(self, node: ast.expr) -> Operand:
+        """Write the instructions for an expression; its value."""
+        try:
+            return self._value(node)
+        except Untranslatable as error:
+            raise error if str(error).startswith("line") else refuse(node, str(error)) from None
+
+    def _value(self, node: ast.expr) -> Any:
+        code = self.code
+        match node:
+            case ast.Constant(bool() | int() | float() as literal):
+                return constant(literal)
+            case ast.Name(name):
+                return self._named(name)
+            case ast.Attribute(owner, name):
+                record = self.value(owner)
+                if isinstance(record, Record) and name in record.fields:
+                    return record.fields[name]
+            case ast.Subscript(pointer, index):
+                return code.load(code.item(self.value(pointer), self.value(index)))
+            case ast.BinOp(left, operation, right):
+                return computed(code, operation, self.value(left), self.value(right))
+            case ast.UnaryOp(ast.USub(), operand):
+                return negated(code, self.value(operand))
+            case ast.UnaryOp(ast.Not(), operand):
+                return code.put_value("bool", f"xor {self.truth(operand).typed}, true")
+            case ast.Compare() | ast.BoolOp():
+                return self._joined(node)
+            case ast.IfExp(test, then, otherwise):
+                return self._chosen(test, then, otherwise)
+            case ast.Tuple(parts):
+                return tuple(self.value(part) for part in parts)
+            case ast.Call(ast.Name("float"), [ast.Constant(str() as literal)], []):
+                return constant(float(literal))
+            case ast.Call(ast.Name(name), arguments, []):
+                return self._called(name, [self.value(argument) for argument in arguments])
+        raise Untranslatable("not of the language")
+
+    def truth(self, node: ast.expr) -> Value:
+        """Whether an expression is true."""
+        return self.code.truth(self.value(node))
+
+    def _named(self, name: str) -> Operand:
+        if name in self.variables:
+            return self.code.load(self.variables[name])
+        if name in self.records:
+            return self.records[name]
+        found = self._outside.get(name)
+        if isinstance(found, bool | int | float):
+            return constant(found)
+        raise Untranslatable(f"'{name}' is no variable and no number")
+
+    def _joined(self, node: ast.Compare | ast.BoolOp) -> Value:
+        """``a < b < c``, ``a and b``, ``a or b``: what follows is computed only where it is needed."""
+        code = self.code
+        steps: list[ast.expr] = node.values if isinstance(node, ast.BoolOp) else node.comparators
+        stops_when = isinstance(node, ast.BoolOp) and isinstance(node.op, ast.Or)
+        left = None if isinstance(node, ast.BoolOp) else self.value(node.left)
+        operations = node.ops if isinstance(node, ast.Compare) else [None] * len(steps)
+        if len(steps) == 1 and isinstance(node, ast.Compare):
+            return compared(code, node.ops[0], left, self.value(steps[0]))  # type: ignore[arg-type]
+        result, end = code.variable("bool"), code.name("joined")
+        for operation, step in zip(operations, steps, strict=True):
+            right = self.value(step)
+            holds = code.truth(right) if operation is None else compared(code, operation, left, right)  # type: ignore[arg-type]
+            code.store(result, holds)
+            left, following = right, code.name("next")
+            code.choose(holds, *((end, following) if stops_when else (following, end)))
+            code.label(following)
+        code.label(end)
+        return code.load(result)
+
+    def _chosen(self, test: ast.expr, then: ast.expr, otherwise: ast.expr) -> Value:
+        """``a if test else b``: only one of them is computed."""
+        code = self.code
+        labels = code.name("then"), code.name("else")
+        end = code.name("chosen")
+        code.choose(self.truth(test), *labels)
+        values, gaps = [], []
+        for label, branch in zip(labels, (then, otherwise), strict=True):
+            code.label(label)
+            value = self.value(branch)
+            if not isinstance(value, Value):
+                raise Untranslatable("a choice between what are no values")
+            values.append(value)
+            gaps.append(code.gap())
+            code.branch(end)
+        code.label(end)
+        result = code.variable(common(values))
+        for value, gap in zip(values, gaps, strict=True):
+            with code.within(gap):
+                code.store(result, value)
+        return code.load(result)
+
+    def _called(self, name: str, arguments: list[Operand]) -> Any:
+        called = self._outside.get(name, getattr(builtins, name, None))
+        called = FUNCTIONS.get(called, called) if callable(called) else called
+        if isinstance(called, Builtin):
+            return called.lower(self.code, *arguments)
+        if not hasattr(called, "__code__"):
+            raise Untranslatable(f"'{name}' cannot be called")
+        return self.code.unit.called(self.code, called, arguments)

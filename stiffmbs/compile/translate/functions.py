@@ -1,0 +1,75 @@
+"""The functions of Python and of its module `math` that the language has."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable
+from typing import Any
+
+from .arithmetic import compared, negated, number, selected
+from .code import Code
+from .values import Builtin, Operand, Value, builtin
+
+INTRINSICS = ("sqrt", "sin", "cos", "exp", "log")
+"""What LLVM knows by itself; the others are called in the C library that the process has."""
+OF_THE_LIBRARY = ("acos", "asin", "atan", "cosh", "sinh", "tan", "tanh")
+
+
+def _library(name: str, *symbols: str) -> dict[Any, Builtin]:
+    def lower(code: Code, *arguments: Operand) -> Value:
+        return code.unit.called_library(code, symbols[0], *map(number, arguments))
+
+    return {getattr(math, name): Builtin(lower)}
+
+
+@builtin
+def absolute(code: Code, operand: Operand) -> Value:
+    """abs(x)."""
+    x = number(operand)
+    if x.kind == "float":
+        return code.unit.called_library(code, "llvm.fabs.f64", x)
+    return selected(code, compared(code, ast.Lt(), x, Value("int", "0")), negated(code, x), code.integer(x))
+
+
+def _extreme(comparison: ast.cmpop) -> Builtin:
+    def lower(code: Code, *operands: Operand) -> Value:
+        best = number(operands[0])
+        for operand in map(number, operands[1:]):
+            best = selected(code, compared(code, comparison, operand, best), operand, best)
+        return best
+
+    return Builtin(lower)
+
+
+@builtin
+def to_float(code: Code, operand: Operand) -> Value:
+    """float(x)."""
+    return code.converted(operand, "float")
+
+
+@builtin
+def to_int(code: Code, operand: Operand) -> Value:
+    """int(x): towards zero."""
+    x = number(operand)
+    return code.put_value("int", f"fptosi {x.typed} to i64") if x.kind == "float" else code.integer(x)
+
+
+@builtin
+def is_finite(code: Code, operand: Operand) -> Value:
+    """isfinite(x)."""
+    size = code.unit.called_library(code, "llvm.fabs.f64", number(operand))
+    return compared(code, ast.Lt(), size, Value("float", "0x7FF0000000000000"))
+
+
+FUNCTIONS: dict[Callable[..., Any], Builtin] = {
+    abs: absolute, max: _extreme(ast.Gt()), min: _extreme(ast.Lt()), float: to_float, int: to_int,
+    math.isfinite: is_finite, math.fabs: absolute,
+}  # fmt: skip
+for _name in INTRINSICS:
+    FUNCTIONS |= _library(_name, f"llvm.{_name}.f64")
+for _name in OF_THE_LIBRARY:
+    FUNCTIONS |= _library(_name, _name)
+FUNCTIONS |= (
+    _library("atan2", "atan2") | _library("copysign", "llvm.copysign.f64") | _library("floor", "llvm.floor.f64")
+)

@@ -1,0 +1,136 @@
+"""Parts, point masses and markers.  MSC Adams/Solver, PART, POINT_MASS and MARKER statements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .arguments import Arguments
+from .geometry import Frame, read_frame
+from .text import Statement
+from .units import Units
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A rigid body, or ground; all in SI.
+
+    Attributes
+    ----------
+    ident, line, alias
+        Its number, where it stands, and its name in Adams/View.
+    frame : Frame
+        Of its own axes at the start, in ground axes.
+    ground, point : bool
+        Whether it is the ground part, or a point mass.
+    mass : float
+    center : int or None
+        Its centre-of-mass marker.
+    inertia_marker : int or None
+    moments : tuple of float
+        Ixx, Iyy, Izz and the products Ixy, Ixz, Iyz (positive integrals) in the axes of the inertia marker, about its
+        origin.
+    velocity : tuple of float or None
+        Of the centre of mass, in the axes of `velocity_marker` or ground; None where nothing is given.
+    omega : tuple of float or None
+        In the axes of `omega_marker`, or of the centre-of-mass marker.
+    exact : bool
+        Whether some of its coordinates are not to be moved by assembly.
+    """
+
+    ident: int
+    line: int
+    alias: str
+    frame: Frame
+    ground: bool = False
+    point: bool = False
+    mass: float = 0.0
+    center: int | None = None
+    inertia_marker: int | None = None
+    moments: tuple[float, ...] = (0.0,) * 6
+    velocity: Vector | None = None
+    velocity_marker: int | None = None
+    omega: Vector | None = None
+    omega_marker: int | None = None
+    exact: bool = False
+
+    @property
+    def label(self) -> str:
+        return f"{'POINT_MASS' if self.point else 'PART'}/{self.ident}"
+
+
+@dataclass(frozen=True)
+class Marker:
+    """A point and axes on a part; in SI, in the part's own axes."""
+
+    ident: int
+    line: int
+    alias: str
+    owner: int
+    on_point_mass: bool
+    frame: Frame
+    floating: bool = False
+
+    @property
+    def label(self) -> str:
+        return f"MARKER/{self.ident}"
+
+
+_FRAME = ("QG", "REULER", "XG", "ZG")
+_PART = (
+    "GROUND", "MASS", "CM", "IM", "IP", *_FRAME, "MATERIAL", "VX", "VY", "VZ", "VM", "WX", "WY", "WZ", "WM", "EXACT",
+)  # fmt: skip
+
+
+def read_part(statement: Statement, units: Units) -> Part:
+    """A part; its masses are checked when all markers are known.
+
+    Raises
+    ------
+    DatasetFault
+    """
+    found = Arguments(statement, "PART", _PART)
+    frame = read_frame(found, "QG", "XG", "ZG", units.length)
+    moments = found.numbers("IP", 3, 6) or (0.0,) * 6
+    of_inertia = units.of(mass=1, length=2)
+    return Part(
+        found.ident(), statement.line, statement.alias, frame, ground="GROUND" in found,
+        mass=(found.number("MASS") or 0.0) * units.mass, center=found.reference("CM"),
+        inertia_marker=found.reference("IM"),
+        moments=tuple(moment * of_inertia for moment in (*moments, *(0.0,) * (6 - len(moments)))),
+        velocity=_rates(found, ("VX", "VY", "VZ"), units.of(length=1, time=-1)),
+        velocity_marker=found.reference("VM"),
+        omega=_rates(found, ("WX", "WY", "WZ"), units.of(time=-1)), omega_marker=found.reference("WM"),
+        exact="EXACT" in found,
+    )  # fmt: skip
+
+
+def read_point_mass(statement: Statement, units: Units) -> Part:
+    """A point mass: a part that does not turn."""
+    found = Arguments(statement, "POINT_MASS", ("MASS", "CM", *_FRAME, "VX", "VY", "VZ", "EXACT"))
+    return Part(
+        found.ident(), statement.line, statement.alias, read_frame(found, "QG", "XG", "ZG", units.length), point=True,
+        mass=(found.number("MASS") or 0.0) * units.mass, center=found.reference("CM"),
+        velocity=_rates(found, ("VX", "VY", "VZ"), units.of(length=1, time=-1)), exact="EXACT" in found,
+    )  # fmt: skip
+
+
+def _rates(found: Arguments, names: tuple[str, str, str], unit: float) -> Vector | None:
+    if not any(name in found for name in names):
+        return None
+    x, y, z = ((found.number(name) or 0.0) * unit for name in names)
+    return x, y, z
+
+
+def read_marker(statement: Statement, units: Units) -> Marker:
+    """A marker, fixed or floating, on a part or a point mass."""
+    names = ("PART", "POINT_MASS", "QP", "REULER", "XP", "ZP", "USEXP", "FLOATING")
+    found = Arguments(statement, "MARKER", names)
+    owner = found.one_of("PART", "POINT_MASS")
+    if owner is None:
+        raise found.fault("found neither PART nor POINT_MASS, expected the part that carries the marker")
+    return Marker(
+        found.ident(), statement.line, statement.alias, found.required(owner), owner == "POINT_MASS",
+        read_frame(found, "QP", "XP", "ZP", units.length), "FLOATING" in found,
+    )  # fmt: skip

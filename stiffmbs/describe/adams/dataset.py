@@ -1,0 +1,170 @@
+"""A dataset: everything that its statements say, by number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from ...errors import InputError
+from .bodies import Marker, Part
+from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Numbered
+from .elastic import Beam, Elastic, SpringDamper
+from .fault import DatasetFault
+from .forces import SingleForce, VectorForce, read_gravity
+from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
+from .outputs import Array, Request, Spline, Variable
+from .text import Statement, statements
+from .units import Units, read_units
+
+MOST_LISTED = 8
+Found = TypeVar("Found", bound=Numbered)
+Force = SingleForce | VectorForce | SpringDamper | Elastic | Beam
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """What a dataset holds.
+
+    Attributes
+    ----------
+    title : str
+        Its first line.
+    units : Units
+    gravity : tuple of float
+        m/s^2.
+    statements : mapping of str to (mapping of int to data)
+        The data of all statements by full name and number.
+    notes : tuple of str
+        What was left out, a sentence each.
+    """
+
+    title: str
+    units: Units = field(default_factory=Units)
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    statements: Mapping[str, Mapping[int, Any]] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def _all(self, kind: type[Any]) -> tuple[Any, ...]:
+        return tuple(x for numbered in self.statements.values() for x in numbered.values() if isinstance(x, kind))
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Parts and point masses."""
+        return self._all(Part)
+
+    @property
+    def markers(self) -> Mapping[int, Marker]:
+        return self.statements.get("MARKER", {})
+
+    @property
+    def joints(self) -> Mapping[int, Joint]:
+        """Joints without the primitives, which have numbers of their own."""
+        return self.statements.get("JOINT", {})
+
+    @property
+    def primitives(self) -> Mapping[int, Joint]:
+        return self.statements.get("JPRIM", {})
+
+    @property
+    def general_constraints(self) -> Mapping[int, GeneralConstraint]:
+        return self.statements.get("GCON", {})
+
+    @property
+    def motions(self) -> Mapping[int, Motion]:
+        return self.statements.get("MOTION", {})
+
+    @property
+    def couplers(self) -> Mapping[int, Coupler]:
+        return self.statements.get("COUPLER", {})
+
+    @property
+    def gears(self) -> Mapping[int, Gear]:
+        return self.statements.get("GEAR", {})
+
+    @property
+    def forces(self) -> tuple[Force, ...]:
+        """All forces but gravity, in the order of the statements' kinds."""
+        return self._all(Force)  # type: ignore[arg-type]
+
+    @property
+    def requests(self) -> Mapping[int, Request]:
+        return self.statements.get("REQUEST", {})
+
+    @property
+    def variables(self) -> Mapping[int, Variable]:
+        return self.statements.get("VARIABLE", {})
+
+    @property
+    def splines(self) -> Mapping[int, Spline]:
+        return self.statements.get("SPLINE", {})
+
+    @property
+    def arrays(self) -> Mapping[int, Array]:
+        return self.statements.get("ARRAY", {})
+
+
+def read_dataset(text: str) -> Dataset:
+    """Read the text of a dataset.
+
+    Raises
+    ------
+    InputError
+        When a statement cannot be read, or holds mass, force or constraint of a kind that is not.
+    """
+    title, found, ended = statements(text)
+    named = [(keyword(statement.word), statement) for statement in found]
+    _refuse(named)
+    units = Units()
+    for statement in _once("UNITS", named):
+        units = read_units(statement)
+    gravity = (0.0, 0.0, 0.0)
+    for statement in _once("ACCGRAV", named):
+        gravity = read_gravity(statement, units)
+    data: dict[str, dict[int, Any]] = {}
+    for name, statement in named:
+        if name in READERS:
+            one = READERS[name](statement, units)
+            if one.ident in data.setdefault(name, {}):
+                raise DatasetFault(
+                    statement.line, one.label, f"found it a second time (first in line {data[name][one.ident].line})"
+                )
+            data[name][one.ident] = one
+    return Dataset(title, units, gravity, data, tuple(_notes(named, ended)))
+
+
+def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statement]:
+    found = [statement for name, statement in named if name == wanted]
+    if len(found) > 1:
+        raise DatasetFault(found[1].line, wanted, f"found it a second time (first in line {found[0].line})")
+    return found
+
+
+def _refuse(named: list[tuple[str | None, Statement]]) -> None:
+    """Refuse what would be missing from the mechanism, all of it at once."""
+    unread = [
+        (f"{name or statement.word}/{statement.ident}".rstrip("/"), statement.line)
+        for name, statement in named
+        if name is None or name in REFUSED
+    ]
+    if not unread:
+        return
+    listed = ", ".join(f"{label} (line {line})" for label, line in unread[:MOST_LISTED])
+    more = f" and {len(unread) - MOST_LISTED} more" if len(unread) > MOST_LISTED else ""
+    raise InputError(
+        f"found statements that are not read here: {listed}{more}; expected {', '.join((*SINGLE, *READERS))}, or "
+        "graphics, output and analysis settings, which are left out"
+    )
+
+
+def _notes(named: list[tuple[str | None, Statement]], ended: bool) -> Iterator[str]:
+    kinds: dict[str, list[int]] = {}
+    for name, statement in named:
+        if name in LEFT_OUT:
+            kinds.setdefault(name, []).append(statement.line)
+    for name, lines in kinds.items():
+        listed = ", ".join(map(str, lines[:MOST_LISTED]))
+        more = f" and {len(lines) - MOST_LISTED} more" if len(lines) > MOST_LISTED else ""
+        yield f"{name} (line{'s' if len(lines) > 1 else ''} {listed}{more}) is left out: {LEFT_OUT[name]}"
+    if not ended:
+        yield "the dataset has no END, and may have been cut off"

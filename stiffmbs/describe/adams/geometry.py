@@ -1,0 +1,121 @@
+"""Points and axes of parts and markers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arguments import Arguments
+
+IDENTITY = np.eye(3)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A place and a direction in axes that its owner says.
+
+    Attributes
+    ----------
+    point : ndarray, shape (3,)
+        m.
+    axes : ndarray, shape (3, 3)
+        Its x, y and z axis in the columns.
+    """
+
+    point: np.ndarray
+    axes: np.ndarray
+
+    def within(self, outer: Frame) -> Frame:
+        """This frame, which is given in the axes of `outer`, in the axes that `outer` is given in."""
+        return Frame(outer.point + outer.axes @ self.point, outer.axes @ self.axes)
+
+    def seen_from(self, other: Frame) -> Frame:
+        """This frame in the axes of another one, both being given in the same axes."""
+        return Frame(other.axes.T @ (self.point - other.point), other.axes.T @ self.axes)
+
+
+def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length: float) -> Frame:
+    """The frame that a statement places by a point with Euler angles, or by points on its axes.
+
+    Parameters
+    ----------
+    found : Arguments
+    origin, x_point, z_point : str
+        The names of the three points: QP, XP, ZP of a marker, QG, XG, ZG of a part.
+    length : float
+        The dataset's unit of length, m.
+
+    Raises
+    ------
+    DatasetFault
+        When angles and points contradict each other, or points lie at the origin or on one line with it.
+    """
+    point = np.array(found.numbers(origin, 3) or (0.0, 0.0, 0.0)) * length
+    angles = found.numbers("REULER", 3)
+    given = [name for name in (x_point, z_point) if name in found]
+    if angles is not None and given:
+        raise found.fault(f"found REULER and {given[0]}, expected one or the other", found.line(given[0]))
+    if angles is not None:
+        return Frame(point, euler_313(*angles))
+    ways = {name: np.array(found.numbers(name, 3)) * length - point for name in given}
+    for name, way in ways.items():
+        if not np.linalg.norm(way) > 0:
+            raise found.fault(f"found {name} at {origin}, expected a point apart from it", found.line(name))
+    if not ways:
+        return Frame(point, IDENTITY)
+    x, z = ways.get(x_point), ways.get(z_point)
+    axes = _from_x(x, z) if "USEXP" in found and x is not None else _from_z(z, x)
+    if axes is None:
+        raise found.fault(f"found {' and '.join(given)} on one line with {origin}, expected a point beside that line")
+    return Frame(point, axes)
+
+
+def euler_313(psi: float, theta: float, phi: float) -> np.ndarray:
+    """Axes after turns about z, the new x and the new z."""
+    return _about_z(psi) @ _about_x(theta) @ _about_z(phi)
+
+
+def _about_z(angle: float) -> np.ndarray:
+    c, s = _cos_and_sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _about_x(angle: float) -> np.ndarray:
+    c, s = _cos_and_sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
+def _cos_and_sin(angle: float) -> tuple[float, float]:
+    """Exact for whole right angles, which datasets are full of."""
+    quarters = angle / (math.pi / 2)
+    if abs(quarters - round(quarters)) < 1e-15 * max(1.0, abs(quarters)):
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]
+    return math.cos(angle), math.sin(angle)
+
+
+def _from_z(z: np.ndarray | None, x: np.ndarray | None) -> np.ndarray | None:
+    """Axes with z exact, and x in the half-plane of a second point; what is not given is the owner's axis."""
+    if z is None:
+        z = IDENTITY[2]
+    if x is None:
+        x = IDENTITY[0] if abs(z[0]) < 0.999 * np.linalg.norm(z) else IDENTITY[1]
+    z = z / np.linalg.norm(z)
+    y = np.cross(z, x)
+    if not np.linalg.norm(y) > 1e-9 * np.linalg.norm(x):
+        return None
+    y = y / np.linalg.norm(y)
+    return np.column_stack([np.cross(y, z), y, z])
+
+
+def _from_x(x: np.ndarray, z: np.ndarray | None) -> np.ndarray | None:
+    """Axes with x exact, and z in the half-plane of a second point."""
+    if z is None:
+        z = IDENTITY[2]
+    x = x / np.linalg.norm(x)
+    y = np.cross(z, x)
+    if not np.linalg.norm(y) > 1e-9 * np.linalg.norm(z):
+        return None
+    y = y / np.linalg.norm(y)
+    return np.column_stack([x, y, np.cross(x, y)])

@@ -1,0 +1,81 @@
+"""The statements of Adams/Solver: which are read, which may be left out, and which may not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from . import bodies, constraints, elastic, forces, outputs
+from .text import Statement
+from .units import Units
+
+Reader = Callable[[Statement, Units], Any]
+
+READERS: dict[str, Reader] = {
+    "PART": bodies.read_part,
+    "POINT_MASS": bodies.read_point_mass,
+    "MARKER": bodies.read_marker,
+    "JOINT": constraints.read_joint,
+    "JPRIM": constraints.read_primitive,
+    "GCON": constraints.read_general_constraint,
+    "MOTION": constraints.read_motion,
+    "COUPLER": constraints.read_coupler,
+    "GEAR": constraints.read_gear,
+    "SFORCE": forces.read_single_force,
+    **{name: partial(forces.read_vector_force, keyword=name) for name in ("VFORCE", "VTORQUE", "GFORCE")},
+    "SPRINGDAMPER": elastic.read_spring_damper,
+    "BUSHING": elastic.read_bushing,
+    "BEAM": elastic.read_beam,
+    "FIELD": elastic.read_field,
+    "REQUEST": outputs.read_request,
+    "VARIABLE": outputs.read_variable,
+    "SPLINE": outputs.read_spline,
+    "ARRAY": outputs.read_array,
+}
+"""What makes data of a statement, by its name.  UNITS and ACCGRAV have no number and are read apart."""
+
+SINGLE = ("UNITS", "ACCGRAV")
+LEFT_OUT = {
+    "GRAPHICS": "graphics",
+    "MATERIAL": "materials",
+    "OUTPUT": "output settings",
+    "RESULTS": "output settings",
+    "MREQUEST": "output",
+    "FEMDATA": "output",
+    "LINEAR": "analysis settings",
+    "INTEGRATOR": "analysis settings",
+    "DEBUG": "analysis settings",
+    "EQUILIBRIUM": "analysis settings",
+    "IC": "analysis settings",
+    "KINEMATICS": "analysis settings",
+    "LSOLVER": "analysis settings",
+    "PREFERENCES": "analysis settings",
+    "SENSOR": "analysis settings",
+    "PINPUT": "analysis settings",
+    "POUTPUT": "analysis settings",
+    "PSTATE": "analysis settings",
+    "STRING": "data that nothing here uses",
+    "MATRIX": "data that nothing here uses",
+    "CURVE": "data that nothing here uses",
+    "SURFACE": "data that nothing here uses",
+    "TITLE": "text",
+}
+"""Statements without mass, force or constraint, and what they hold."""
+REFUSED = (
+    "FLEX_BODY", "FE_PART", "FE_NODE", "FE_LOAD", "EXTERNAL_SYSTEM", "CONTACT", "CLEARANCE", "FRICTION", "NFORCE",
+    "MFORCE", "MODAL", "PTCV", "CVCV", "PTSF", "CVSF", "SFSF", "UCON", "DIFF", "GSE", "LSE", "TFSISO", "TIRE", "PFORCE",
+    "DEACTIVATE", "ACTIVATE", "NONLINEAR_BEAM",
+)  # fmt: skip
+"""Statements with mass, force, constraint or states of their own that are not read."""
+
+_ALL = (*SINGLE, *READERS, *LEFT_OUT, *REFUSED)
+
+
+def keyword(word: str) -> str | None:
+    """The full name of a statement that a word or its abbreviation of three letters or more stands for."""
+    if word in _ALL:
+        return word
+    if len(word) < 3:
+        return None
+    return next((name for name in _ALL if name.startswith(word)), None)

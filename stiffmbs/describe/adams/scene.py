@@ -1,0 +1,63 @@
+"""A dataset as the mapping that a scene is read from."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from .dataset import Dataset
+from .mechanism import Mechanism
+from .plain import vector
+from .scene_bodies import bodies, ground_markers
+from .scene_bodies import notes as body_notes
+from .scene_forces import Forces
+from .scene_joints import held, joints
+from .scene_joints import notes as joint_notes
+from .scene_motions import motions
+from .scene_relations import relations
+from .scene_requests import Requests
+from .starts import check_starts
+from .translate import Translation
+
+RUN = {"duration": 5, "output": 0.01}
+"""How a dataset is run, which says nothing about it itself."""
+
+
+def scene(dataset: Dataset) -> dict[str, Any]:
+    """The scene of a dataset, as `stiffmbs.describe.scene.read_scene` takes it.
+
+    Raises
+    ------
+    DatasetFault
+        When statements contradict each other, or hold what a scene cannot.
+    """
+    mechanism = Mechanism(dataset)
+    check_starts(mechanism)
+    translation = Translation(mechanism)
+    requests = Requests(mechanism)
+    driven = motions(mechanism, translation)  # before bodies, which get the markers that formulas need
+    found: dict[str, Any] = {
+        "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
+        "dimensions": 3,
+        "gravity": vector(dataset.gravity),
+        "markers": ground_markers(mechanism),
+        "bodies": bodies(mechanism),
+        "joints": {
+            **joints(mechanism, translation),
+            **held(mechanism),
+            **relations(mechanism),
+            **driven,
+        },
+        "forces": Forces(mechanism, translation).all(),
+        "requests": requests.all(),
+        "run": dict(RUN),
+        "notes": [
+            *dataset.notes,
+            *mechanism.notes(),
+            *body_notes(mechanism),
+            *joint_notes(mechanism),
+            *requests.notes,
+        ],
+    }
+    found["tables"] = mechanism.tables
+    return {key: value for key, value in found.items() if value or key == "bodies"}

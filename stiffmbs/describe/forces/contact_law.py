@@ -1,0 +1,58 @@
+"""The law by which surfaces in contact repel each other, shared by the contacts of the plane and of space."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from ..element import Symbolic
+from ..fields import Measured
+from .friction import Friction
+
+
+class ContactLaw(Friction):
+    """Base of contacts (it has no kind: scenes name its subclasses).
+
+    Where the gap is closed by delta = -gap > 0 the surfaces repel each other with N = k delta^n (1 + chi delta'), never
+    below zero.  Without friction and dissipation this has the potential k delta^(n+1)/(n+1).
+
+    For a coefficient of restitution e at an impact speed v, near e = 1, chi = 3 (1 - e) / (2 v) (Hunt and Crossley,
+    J. Appl. Mech. 42, 1975, 440-445) or 3 (1 - e^2) / (4 v) (Lankarani and Nikravesh, J. Mech. Des. 112, 1990,
+    369-376); for any e, chi = 8 (1 - e) / (5 e v) (Flores and others, Multibody Syst. Dyn. 25, 2011, 357-375).
+    """
+
+    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
+    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
+    dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
+
+    @model_validator(mode="after")
+    def _rubs(self) -> ContactLaw:
+        if self.static_friction is not None and self.friction is None:
+            raise ValueError("found static_friction alone, expected friction too")
+        return self
+
+    @staticmethod
+    def gap(e: Symbolic) -> Any:
+        """Distance of the surfaces, m; below zero where they overlap."""
+        raise NotImplementedError
+
+    @classmethod
+    def pressure(cls, e: Symbolic) -> Any:
+        """The normal force N, zero without contact."""
+        from sympy import And, Piecewise
+
+        gap = e.named(cls.gap(e))
+        damped = e.named(1 - e.dissipation * e.rate(gap))
+        return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
+
+    @classmethod
+    def potential(cls, e: Symbolic) -> Any:
+        from sympy import Piecewise
+
+        gap, power = cls.gap(e), e.exponent + 1
+        return Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
+
+    @classmethod
+    def switches(cls, e: Symbolic) -> Any:
+        return (cls.gap(e),)

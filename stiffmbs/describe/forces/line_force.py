@@ -1,0 +1,56 @@
+"""A force by formula along the line between two points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
+
+from pydantic import Field
+
+from ..element import Force, Symbolic
+from ..formula_field import OfMotion
+from ..marker import Marker, MarkerReference
+
+if TYPE_CHECKING:
+    from ..model_data import ModelData
+
+M = TypeVar("M", bound=MarkerReference)
+
+
+class ForceAlongLine(Force, Generic[M]):
+    """Base of the line forces of the plane and of space (it has no kind: scenes name its subclasses)."""
+
+    type: Literal["line_force"] = "line_force"
+    i: M = Field(description="marker of the first body, on which the force is reported")
+    j: M = Field(description="marker of the second body")
+    force: OfMotion = Field(description="N, pushing the points apart where it is above zero: a number or a formula")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        """Points at one place give the force no direction."""
+        if model.point(self.i) == model.point(self.j):
+            yield "found both of its points at one place, where its force has no direction, expected them apart"
+
+    @staticmethod
+    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        """The force on the distance of the points."""
+        return [(e.force, e.distance(e.i.point, e.j.point))]
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        return -e.force * e.distance(e.i.point, e.j.point) if e.is_constant(e.force) else 0
+
+
+class LineForce(ForceAlongLine[Marker]):
+    """A force between two points along the line through them: constant, or a formula of anything measured.
+
+    Above zero it pushes the points apart, as Adams' translational SFORCE does.  A constant force has a potential,
+    others have none.
+
+    Examples
+    --------
+    A spring-damper of 100 N/m, 2 m and 1 N s/m::
+
+        {type: line_force, i: a, j: b, force: "-100*(dm(a, b) - 2) - vr(a, b)"}
+    """
+
+    kind: ClassVar[str] = "line_force"

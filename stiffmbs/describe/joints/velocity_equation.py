@@ -1,0 +1,46 @@
+"""A constraint of velocities given by the user as a formula."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from ..element import Symbolic
+from ..formula_field import Formula, OfMotion
+from ..formula_names import VELOCITIES
+from .kept_at_zero import ONE_OR_MORE, KeptAtZero
+
+
+class VelocityEquation(KeptAtZero):
+    """Formulas linear in velocities that stay zero, J(q) u - b(q, t) = 0, and need not be the rate of anything.
+
+    A knife edge, ``sled.vy*cos(sled.angle) - sled.vx*sin(sled.angle)``, or a disc that rolls: constraints that are not
+    holonomic.  Positions are free, and start as they are drawn; velocities are made to fulfil the equations at the
+    start.  The equations are named ``zero[0] zero[1] ...`` in reports.
+
+    The reaction, -J^T lam, is reported on the body of marker `i`, about its point; without one on the first body that the
+    formulas name, about its centre of mass.
+
+    Neimark, Fufaev, Dynamics of Nonholonomic Systems (1972), chapter III.
+    """
+
+    kind: ClassVar[str] = "velocity_equation"
+
+    type: Literal["velocity_equation"] = "velocity_equation"
+    zero: Annotated[tuple[OfMotion, ...], ONE_OR_MORE] = Field(
+        min_length=1, description="a formula, or several, linear in velocities, that the joint keeps at zero"
+    )
+
+    @field_validator("zero")
+    @classmethod
+    def _names_a_velocity(cls, zero: tuple[Formula, ...]) -> tuple[Formula, ...]:
+        for formula in zero:
+            used = {*(name for _, name in formula.coordinates()), *(name for name, _ in formula.measures())}
+            if not used & set(VELOCITIES):
+                raise ValueError(f"found '{formula.text}', expected a formula with a velocity such as cart.vx")
+        return zero
+
+    @staticmethod
+    def velocity(e: Symbolic) -> Any:
+        return e.zero

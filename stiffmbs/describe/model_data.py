@@ -1,0 +1,211 @@
+"""What a model of either family, plane or space, holds: bodies, joints and forces by name, checked as a whole."""
+
+from __future__ import annotations
+
+import math
+import re
+from abc import abstractmethod
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, ClassVar
+
+from pydantic import Field, field_validator, model_validator
+
+from .body import check_names
+from .element import Element, Force, Joint, JointName
+from .fields import Described
+from .formula import UNIT
+from .formula_field import TIME, Formula
+from .formula_names import NAMES, FormulaNames
+from .marker import GROUND, MarkerReference
+from .quantity import UNITS
+from .request import Request
+
+RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
+
+
+class ModelData(Described):
+    """What a model holds, as it stands in a scene; checked as a whole.
+
+    Parameters
+    ----------
+    name : str
+        Shown in summaries.
+    dimensions : int
+        2 in the plane, 3 in space.
+    gravity : tuple of float
+        Acceleration along the ground's axes, m/s^2.
+    markers : mapping of str to Placement
+        Named points of ground, ``ground.name``.
+    bodies, joints, forces, requests : mappings by name
+        Names are shared by all, as channels are named after them.
+    """
+
+    origin: ClassVar[Any]
+    """Where a marker sits that is a body itself."""
+
+    name: str = Field("", description="shown in summaries")
+    dimensions: int
+    gravity: tuple[float, ...]
+    markers: dict[str, Any] = Field(default_factory=dict, description="named points of ground")
+    bodies: dict[str, Any] = Field(description="bodies by name")
+    joints: dict[str, Any] = Field(default_factory=dict, description="joints by name")
+    forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")
+    requests: dict[str, Any] = Field(default_factory=dict, description="formulas to report, by channel name")
+
+    @field_validator("markers", mode="before")
+    @classmethod
+    def _named_markers(cls, markers: Any) -> Any:
+        if isinstance(markers, dict):
+            check_names(markers, "marker")
+        return markers
+
+    @field_validator("bodies", "joints", "forces", "requests", mode="before")
+    @classmethod
+    def _names(cls, named: Any, info: Any) -> Any:
+        if isinstance(named, dict):
+            check_names(named, "entry")
+            for name in named:
+                if name in RESERVED:
+                    raise ValueError(f"found the name '{name}', which is reserved, expected another")
+        return named
+
+    @field_validator("requests", mode="before")
+    @classmethod
+    def _no_unit_meant_as_a_request(cls, named: Any) -> Any:
+        if isinstance(named, dict):
+            units = "|".join(re.escape(name) for name in named if name in UNITS)
+            for text in named.values():
+                used = re.search(rf"(?<![\w.])({units})(?![\w.(])", text) if units and isinstance(text, str) else None
+                if used:
+                    name = used.group()
+                    raise ValueError(
+                        f"found '{name}' in '{text}', which is a unit and a request, expected one or the other"
+                    )
+        return named
+
+    @model_validator(mode="after")
+    def _whole(self) -> ModelData:
+        if not self.bodies:
+            raise ValueError("bodies: found no body, expected at least one")
+        seen: dict[str, str] = {}
+        for section in ("bodies", "joints", "forces", "requests"):
+            for name in getattr(self, section):
+                if name in seen:
+                    raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
+                seen[name] = f"{section}.{name}"
+        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions]
+        for section in ("joints", "forces"):
+            for name, element in getattr(self, section).items():
+                check_element(f"{section}.{name}", element, *known)
+                for reason in element.misplaced(self):
+                    raise ValueError(f"{section}.{name}: {reason}")
+        self.check_requests()
+        return self
+
+    def check_requests(self) -> None:
+        """Refuse requests that name what the model does not have."""
+        for name, request in self.requested():
+            check_element(f"requests.{name}", request, self.bodies, self.joints, self.markers, NAMES[self.dimensions])
+
+    def outputs(self) -> Iterator[tuple[str, Any]]:
+        """The requests that are evaluated after the run, by channel."""
+        yield from ()
+
+    def requested_channels(self) -> Iterator[str]:
+        """The channels that requests become."""
+        for reported in (self.requested(), self.outputs()):
+            yield from (channel for channel, _ in reported)
+
+    def requested(self) -> Iterator[tuple[str, Request]]:
+        """The requests that are compiled, by name."""
+        for name, formula in self.requests.items():
+            yield name, Request(formula=formula)
+
+    @abstractmethod
+    def inertial(self, bodies: Mapping[str, Any]) -> Iterable[tuple[str, Force]]:
+        """The forces that bodies have by themselves, such as their weights, with the bodies' names."""
+
+    @abstractmethod
+    def drawn_marker(self, marker: MarkerReference) -> Any:
+        """A marker with numbers, in ground axes, as the bodies are drawn."""
+
+    @abstractmethod
+    def carried(self, marker: MarkerReference) -> tuple[str, Any]:
+        """The body that carries a marker, and where it sits on it, from the centre of mass in the solver's axes."""
+
+    def elements(self) -> Iterator[tuple[str, Element]]:
+        """Every joint, force, request and weight with its name (a weight has its body's)."""
+        yield from self.drawn_elements()
+        yield from self.requested()
+        yield from self.inertial(self.bodies)
+
+    def drawn_elements(self) -> Iterator[tuple[str, Element]]:
+        """Joints and forces with their names; what they leave open is taken from the described poses."""
+        for name, element in (*self.joints.items(), *self.forces.items()):
+            yield name, element.as_drawn(self)
+
+    def size(self) -> float:
+        """Diagonal of the box around all bodies and markers at the start, m; 1 where it is a single point."""
+        points = [body.coordinates()[: self.dimensions] for body in self.bodies.values()]
+        for _, element in (*self.joints.items(), *self.forces.items()):
+            points += [self.point(marker) for _, marker in element.markers()]
+        widths = (max(p[k] for p in points) - min(p[k] for p in points) for k in range(self.dimensions))
+        return math.hypot(*widths) or 1.0
+
+    def point(self, marker: MarkerReference) -> tuple[float, ...]:
+        """Where a marker is in ground axes at the start, m."""
+        return tuple(float(x) for x in self.drawn_marker(marker).point)
+
+    def place(self, marker: Any) -> Any:
+        """Where a marker sits on its body, in the body's own axes."""
+        if marker.marker is None:
+            return marker.placement() or self.origin
+        own = self.markers if marker.body == GROUND else self.bodies[marker.body].markers
+        return own[marker.marker]
+
+
+def check_marker(where: str, marker: MarkerReference, bodies: Mapping[str, Any], on_ground: Mapping[str, Any]) -> None:
+    """Refuse a marker on an unknown body, or of a name that its body does not know."""
+    if marker.body != GROUND and marker.body not in bodies:
+        raise ValueError(f"{where}: found the unknown body '{marker.body}', expected {_listed(bodies)}")
+    own = on_ground if marker.body == GROUND else bodies[marker.body].markers
+    if marker.marker is not None and marker.marker not in own:
+        raise ValueError(f"{where}: found '{marker.label}', expected one of its markers ({', '.join(own) or 'none'})")
+
+
+def check_element(
+    where: str,
+    element: Element,
+    bodies: Mapping[str, Any],
+    joints: Mapping[str, Joint],
+    on_ground: Mapping[str, Any],
+    names: FormulaNames,
+) -> None:
+    """Refuse an element that names an unknown body, marker, joint or coordinate, or that joins a body to itself."""
+    for field, marker in element.markers():
+        check_marker(f"{where}.{field}", marker, bodies, on_ground)
+    for field, joint in element.parts(JointName):
+        if joint.joint not in joints:
+            raise ValueError(
+                f"{where}.{field}: found the unknown joint '{joint.joint}', expected one of {', '.join(joints) or 'none'}"
+            )
+        if next(joints[joint.joint].parts(JointName), None):
+            raise ValueError(
+                f"{where}.{field}: found '{joint}', which refers to a joint itself, expected one between markers"
+            )
+    for field, reason in element.refused(joints):
+        raise ValueError(f"{where}.{field}: {reason}")
+    for field, formula in element.parts(Formula):
+        for body in formula.bodies():
+            if body not in (*bodies, GROUND):
+                raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {_listed(bodies)}")
+        for reason in names.refused(formula):
+            raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
+    placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
+    if len(placed) > 1 and len(set(placed)) == 1:
+        raise ValueError(f"{where}: found '{placed[0]}' on both sides, expected two different bodies")
+
+
+def _listed(bodies: Mapping[str, Any]) -> str:
+    names = list(bodies)
+    return ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), GROUND])

@@ -1,0 +1,162 @@
+"""Rigid bodies in space."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, WithJsonSchema, field_validator
+
+from .. import si
+from ..body import check_names
+from ..fields import Described
+from .marker import ORIGIN, Marker, Placement, Point
+from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated
+
+Row = tuple[si.Inertia, si.Inertia, si.Inertia]
+Inertia = Annotated[tuple[Row, Row, Row], WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})]
+ROUNDING = 1e-9
+"""Part of the largest moment by which written moments may miss symmetry and the triangle inequality."""
+
+
+class Body(Described):
+    """A rigid body in space, with an origin and axes of its own that everything on it is given in.
+
+    Parameters
+    ----------
+    mass : float
+        kg, greater than zero.
+    inertia : 3 floats or 3x3 floats
+        About the centre of mass in the body's own axes, kg m^2: Ixx, Iyy, Izz, or the symmetric tensor by rows (its
+        entries off the diagonal are minus the products of inertia).
+    center_of_mass : tuple of float
+        In the body's own axes from its origin, m.
+    position, orientation
+        Where the body's origin is and how its axes are turned at the start (moved by assembly if joints ask).
+    velocity : tuple of float
+        Of the centre of mass at the start in ground axes, m/s.
+    omega : tuple of float
+        Angular velocity at the start in the body's own axes, rad/s.
+    open : tuple of str
+        Which of ``velocity`` and ``omega`` are not given: joints and drives decide about them before they change any that
+        is given, and what they leave open is as written.
+    markers : mapping of str to Placement
+        Named points and orientations on the body, in its own axes from its origin.
+    """
+
+    mass: si.PositiveMass = Field(description="mass, kg")
+    inertia: Inertia = Field(
+        description="Ixx, Iyy, Izz or the 3x3 tensor about the centre of mass in the body's own axes, kg m^2"
+    )
+    center_of_mass: Point = Field(ORIGIN, description="in the body's own axes from its origin, m")
+    position: Point = Field(ORIGIN, description="of the body's origin at the start, m")
+    orientation: Orientation = Field(IDENTITY, description="of the body's own axes at the start")
+    velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
+        (0.0, 0.0, 0.0), description="velocity of the centre of mass at the start, in ground axes, m/s"
+    )
+    omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+        (0.0, 0.0, 0.0), description="angular velocity at the start, in the body's own axes, rad/s"
+    )
+    open: tuple[Literal["velocity", "omega"], ...] = Field(
+        (), description="which of both at the start are what joints make of the others"
+    )
+    markers: dict[str, Placement] = Field(
+        default_factory=dict, description="named points and orientations on the body, in its own axes"
+    )
+
+    @field_validator("inertia", mode="before")
+    @classmethod
+    def _diagonal(cls, found: Any) -> Any:
+        """Three moments stand for a tensor without products of inertia."""
+        if not isinstance(found, list | tuple) or any(np.ndim(part) for part in found):
+            return found
+        if len(found) != 3:
+            raise ValueError(f"found {len(found)} numbers, expected Ixx, Iyy, Izz or a 3x3 tensor")
+        return tuple(tuple(part if k == row else 0.0 for k in range(3)) for row, part in enumerate(found))
+
+    @field_validator("inertia")
+    @classmethod
+    def _of_a_body(cls, inertia: tuple[Row, Row, Row]) -> tuple[Row, Row, Row]:
+        largest = max(abs(part) for row in inertia for part in row)
+        for row, column in itertools.combinations(range(3), 2):
+            one, other = inertia[row][column], inertia[column][row]
+            if abs(one - other) > ROUNDING * largest:
+                raise ValueError(
+                    f"found {one:g} in row {row + 1}, column {column + 1} and {other:g} across the diagonal, "
+                    "expected a symmetric tensor"
+                )
+        small, middle, large = np.linalg.eigvalsh(np.array(inertia))
+        if small <= 0:
+            raise ValueError(f"found a principal moment of {small:g} kg m^2, expected all three greater than zero")
+        if small + middle < large * (1 - ROUNDING):
+            raise ValueError(
+                f"found the principal moments {small:g}, {middle:g} and {large:g} kg m^2, expected none greater than "
+                "the sum of the other two"
+            )
+        return inertia
+
+    @field_validator("markers")
+    @classmethod
+    def _named(cls, markers: dict[str, Placement]) -> dict[str, Placement]:
+        check_names(markers, "marker")
+        return markers
+
+    def principal_axes(self) -> Quaternion:
+        """Orientation of the principal axes in the body's own axes; the own axes where the tensor is diagonal."""
+        return self._principal()[1]
+
+    def principal_moments(self) -> tuple[float, float, float]:
+        """Moments of inertia about the principal axes, kg m^2."""
+        return self._principal()[0]
+
+    def _principal(self) -> tuple[tuple[float, float, float], Quaternion]:
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.inertia
+        if not any((xy, xz, yx, yz, zx, zy)):
+            return (xx, yy, zz), IDENTITY
+        moments, axes = np.linalg.eigh(self.inertia)
+        axes[:, 2] *= np.sign(np.linalg.det(axes))  # right-handed
+        return (float(moments[0]), float(moments[1]), float(moments[2])), from_matrix(axes)
+
+    def coordinates(self) -> tuple[float, ...]:
+        """Centre of mass (m) and quaternion of the principal axes at the start, in ground axes."""
+        centre = np.array(self.position) + rotated(self.orientation, self.center_of_mass)
+        return (*(float(x) for x in centre), *product(self.orientation, self.principal_axes()))
+
+    def rates(self) -> tuple[float, ...]:
+        """Velocity of the centre of mass in ground axes, m/s, and angular velocity in the principal axes, rad/s."""
+        omega = rotated(conjugate(self.principal_axes()), self.omega)
+        return (*self.velocity, *(float(x) for x in omega))
+
+    def open_rates(self) -> tuple[bool, ...]:
+        """Which of `rates` are not given."""
+        return (*("velocity" in self.open,) * 3, *("omega" in self.open,) * 3)
+
+    def masses(self) -> tuple[float, ...]:
+        """Diagonal of the body's mass matrix in the rates: the mass three times, kg, and the principal moments, kg m^2."""
+        return self.mass, self.mass, self.mass, *self.principal_moments()
+
+    def carried(self, placed: Placement) -> Placement:
+        """A placement on the body, seen from its centre of mass in its principal axes."""
+        turned = conjugate(self.principal_axes())
+        x, y, z = rotated(turned, np.array(placed.point) - np.array(self.center_of_mass))
+        return Placement(point=(float(x), float(y), float(z)), orientation=product(turned, placed.orientation))
+
+
+class BodyHandle:
+    """A body of a model, as `Model.add` returns it: a shorthand for its markers and coordinates."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def at(self, x: float | str, y: float | str, z: float | str, orientation: Any = IDENTITY) -> Marker:
+        """The marker at a point of the body's own axes, m, with an orientation against them."""
+        return Marker(body=self.name, point=(x, y, z), orientation=orientation)
+
+    def __getattr__(self, coordinate: str) -> Any:
+        """The SymPy symbol of a coordinate (``x``, ``q0``), for `ConstraintEquation`."""
+        if coordinate not in ("x", "y", "z", "q0", "q1", "q2", "q3"):
+            raise AttributeError(f"a body in space has the coordinates x, y, z and q0 to q3, not '{coordinate}'")
+        import sympy
+
+        return sympy.Symbol(f"{self.name}.{coordinate}", real=True)

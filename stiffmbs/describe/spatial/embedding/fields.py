@@ -1,0 +1,65 @@
+"""Elements of the plane as scenes in space write them, field by field."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+from ...element import Element, JointName
+from ...formula_field import Formula
+from ...marker import Marker
+from .angles import Angles
+from .formulas import formula
+from .markers import Written, point, turned
+
+
+def same(element: Element, angles: Angles, **others: Any) -> Written:
+    """The namesake in space, whose fields mean the same.
+
+    Parameters
+    ----------
+    element : Element
+        Of the plane.
+    angles : Angles
+        Of its model.
+    **others
+        Fields that are written otherwise; None for those that are not written.
+    """
+    written: Written = {"type": element.kind}
+    for name, field in type(element).model_fields.items():
+        value = getattr(element, name)
+        if name != "type" and name not in others and value != field.default:
+            written[field.alias or name] = plain(value, angles)
+    return written | {name: value for name, value in others.items() if value is not None}
+
+
+def plain(value: Any, angles: Angles) -> Any:
+    """A field's value as it is written."""
+    match value:
+        case Marker():
+            return marker(value)
+        case Formula():
+            return formula(value, angles)
+        case JointName():
+            return str(value)
+        case BaseModel():
+            return plain(value.model_dump(exclude_defaults=True), angles)
+        case dict():
+            return {name: plain(part, angles) for name, part in value.items()}
+        case tuple():
+            return [plain(part, angles) for part in value]
+    return value
+
+
+def marker(found: Marker) -> str | Written:
+    """A marker whose x and y are its planar counterpart's axis and normal."""
+    if found.marker is not None or not (any(found.point) or found.angle):
+        return found.label
+    return {"body": found.body, **point(found.point), **turned(found.angle)}
+
+
+def oriented(found: Marker, angles: Angles, orientation: Any) -> Written:
+    """A marker with the orientation that a function makes of its planar angle."""
+    placed = angles.data.place(found)
+    return {"body": found.body, **point(placed.point), **orientation(placed.angle)}

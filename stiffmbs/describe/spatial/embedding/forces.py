@@ -1,0 +1,92 @@
+"""Forces of the plane in space, kind by kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from ....errors import InputError
+from .angles import QUARTER, Angles
+from .fields import oriented, plain, same
+from .markers import Written, across, turned
+
+PLANE = (0, 1, 5)
+"""Of six components those in the plane: along x, along y, about z."""
+SURFACES = {"circle": "sphere", "hole": "hollow"}
+
+
+def force(element: Any, angles: Angles) -> Written:
+    """Without a component along the normal."""
+    return same(element, angles, force=[*plain(element.force, angles), 0])
+
+
+def torque(element: Any, angles: Angles) -> Written:
+    """About the normal alone."""
+    return same(element, angles, torque=[0, 0, plain(element.torque, angles)])
+
+
+def torsion_spring(element: Any, angles: Angles) -> Written:
+    """Its angle counted from where it is drawn, where that is far from zero."""
+    drawn = angles.drawn(element.i, element.j)
+    if abs(drawn) <= QUARTER:
+        return same(element, angles)
+    i = oriented(element.i, angles, lambda angle: turned(angle - drawn))
+    return same(element, angles, i=i, free_angle=element.free_angle - drawn)
+
+
+def bushing(element: Any, angles: Angles) -> Written:
+    """Six components, of which three have neither stiffness nor damping."""
+    drawn = angles.drawn(element.i, element.j)
+    if (element.stiffness[2][2] or element.law_angle is not None) and abs(drawn) >= math.pi:
+        raise InputError(
+            f"found its markers drawn {math.degrees(drawn):.4g} degrees apart, expected less than half a turn in space"
+        )
+    law = element.law_angle
+    return same(
+        element,
+        angles,
+        stiffness=_six_by_six(element.stiffness),
+        damping=_six_by_six(element.damping),
+        preload=_six(element.preload, 0) if any(element.preload) else None,
+        law_angle=None,
+        law_about_z=None if law is None else plain(law, angles),
+    )
+
+
+def _six(three: Any, nothing: Any) -> list[Any]:
+    """Components in the plane among all six."""
+    values = dict(zip(PLANE, three, strict=True))
+    return [values.get(k, nothing) for k in range(6)]
+
+
+def _six_by_six(three: Any) -> list[Any] | None:
+    """A matrix, by its diagonal if that is all; None for one of zeros alone."""
+    rows = [[part or None for part in row] for row in three]
+    if not any(part for row in rows for part in row):
+        return None
+    diagonal = [row[k] for k, row in enumerate(rows)]
+    if any(part for k, row in enumerate(rows) for part in (*row[:k], *row[k + 1 :])):
+        return _six([_six(row, None) for row in rows], [None] * 6)
+    return _six(diagonal, None)
+
+
+def contact(element: Any, angles: Angles) -> Written:
+    """A circle as a sphere: in the plane they press and slide alike."""
+    if element.surface == "line":
+        plane = oriented(element.j, angles, across)
+        written = same(element, angles, surface=None, surface_radius=None, j=plane)
+    else:
+        written = same(element, angles, surface=SURFACES[element.surface])
+    return written | {"type": "sphere_contact"}
+
+
+FORCES: dict[str, Callable[[Any, Angles], Written]] = {
+    **dict.fromkeys(("spring_damper", "line_force", "joint_friction"), same),
+    "force": force,
+    "torque": torque,
+    "torsion_spring": torsion_spring,
+    "bushing": bushing,
+    "contact": contact,
+}
+"""By the kind in the plane."""

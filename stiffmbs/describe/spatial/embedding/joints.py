@@ -1,0 +1,58 @@
+"""Joints of the plane in space, kind by kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from ....errors import InputError
+from ...drawn import drawn
+from ...element import JointName
+from ...joints.relation import Relation
+from ..branches import FARTHEST
+from .angles import TURN, Angles
+from .fields import oriented, same
+from .markers import Written, along
+
+
+def prismatic(joint: Any, angles: Angles) -> Written:
+    """Along z of markers that are turned; the one in space would keep a half turn that it is drawn with."""
+    apart = math.degrees(abs(math.remainder(angles.drawn(joint.i, joint.j), TURN)))
+    if apart >= FARTHEST:
+        raise InputError(f"found its markers drawn {apart:.4g} degrees apart, expected less than {FARTHEST:g} in space")
+    return point_on_line(joint, angles)
+
+
+def point_on_line(joint: Any, angles: Angles) -> Written:
+    """Along z of markers that are turned."""
+    return same(joint, angles, i=oriented(joint.i, angles, along), j=oriented(joint.j, angles, along))
+
+
+def relation(joint: Relation, angles: Angles) -> Written:
+    """Of coordinates that are known up to whole turns where they are angles."""
+    if joint.offset is None:
+        return same(joint, angles)
+    data = angles.data
+    e = drawn(joint.model_copy(update={"offset": 0.0}), data)
+    for field, name in joint.parts(JointName):
+        coordinate = getattr(e, field)
+        counted = name.coordinate_of(data.joints[name.joint]) == "angle"
+        coordinate.coordinate = TURN * round(coordinate.coordinate / TURN) if counted else 0.0
+    return same(joint, angles, offset=joint.offset - float(joint.relation(e)))
+
+
+JOINTS: dict[str, Callable[[Any, Angles], Written]] = {
+    **dict.fromkeys(
+        (
+            "revolute", "fixed", "distance", "point_on_curve", "drive", "equation", "velocity_equation",
+        ),
+        same,
+    ),
+    **dict.fromkeys(("gear", "rack_and_pinion", "coupler"), relation),
+    "prismatic": prismatic,
+    "point_on_line": point_on_line,
+}  # fmt: skip
+"""By the kind in the plane."""
+HOLDING = ("revolute", "prismatic", "fixed")
+"""Joints that hold a body in the plane of another one."""

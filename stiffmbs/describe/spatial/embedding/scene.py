@@ -1,0 +1,128 @@
+"""A planar model, or scene, as a scene in space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ....errors import InputError
+from ...body import Body
+from ...element import Element
+from ...marker import GROUND, MarkerReference
+from ...model import PlanarData
+from ...model_data import ModelData
+from ...scene import Scene
+from .angles import Angles
+from .fields import plain
+from .forces import FORCES
+from .formulas import formula
+from .joints import JOINTS
+from .markers import Written, placement, turned
+from .plane import loose
+
+ORDER = (
+    "name", "dimensions", "parameters", "gravity", "markers", "bodies", "joints", "forces", "requests", "figure", "run", "notes",
+)  # fmt: skip
+"""Of the sections in the file."""
+CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
+"""What channels of the plane are called in space, where they have other names."""
+
+
+def scene_in_space(data: PlanarData) -> Written:
+    """The scene in space that a planar model is, in the x-y plane of the ground, element by element.
+
+    Raises
+    ------
+    InputError
+        For an element that has no counterpart in space; names it.
+    """
+    angles = Angles(data)
+    joints = _elements("joints", data.joints, JOINTS, angles)
+    joints |= {_free(f"{body}_in_plane", data): {"type": "planar", "i": body, "j": GROUND} for body in loose(data)}
+    requests: Written = {name: formula(found, angles) for name, found in data.requests.items()}
+    parts: Written = {
+        "name": data.name,
+        "dimensions": 3,
+        "gravity": [*data.gravity, 0] if any(data.gravity) else None,
+        "joints": joints,
+        "forces": _elements("forces", data.forces, FORCES, angles),
+        "requests": requests,
+    }
+    if isinstance(data, Scene):
+        parts |= {
+            "parameters": data.parameters,
+            "figure": _figure(data, requests, angles),
+            "run": plain(data.run.model_dump(exclude_unset=True), angles),
+            "notes": list(data.notes),
+        }
+    parts["bodies"] = {name: _body(name, body, angles) for name, body in data.bodies.items()}
+    parts["markers"] = _markers(GROUND, data.markers, angles)
+    return {name: parts[name] for name in ORDER if parts.get(name)}
+
+
+def _body(name: str, body: Body, angles: Angles) -> Written:
+    """With moments of inertia like a ball's: the two others do nothing in the plane."""
+    parts: Written = {
+        "mass": body.mass,
+        "inertia": [body.inertia] * 3,
+        "position": [*body.position, 0] if any(body.position) else None,
+        **turned(body.angle),
+        "velocity": [*body.velocity, 0] if any(body.velocity) else None,
+        "omega": [0, 0, body.omega] if body.omega else None,
+        "markers": _markers(name, body.markers, angles),
+    }
+    return {name: part for name, part in parts.items() if part}
+
+
+def _markers(owner: str, own: Mapping[str, Any], angles: Angles) -> Written:
+    return {name: placement(placed) for name, placed in own.items()} | angles.added.get(owner, {})
+
+
+def _elements(
+    section: str,
+    elements: Mapping[str, Element],
+    kinds: Mapping[str, Callable[[Any, Angles], Written]],
+    angles: Angles,
+) -> Written:
+    found: Written = {}
+    for name, element in elements.items():
+        if element.kind not in kinds:
+            raise InputError(
+                f"{section}.{name}: found the type {element.kind}, which has no counterpart in space, "
+                f"expected one of {', '.join(sorted(kinds))}"
+            )
+        try:
+            found[name] = kinds[element.kind](element, angles)
+        except InputError as error:
+            raise InputError(f"{section}.{name}: {error}") from None
+    return found
+
+
+def _free(name: str, data: ModelData) -> str:
+    """A name that no part of the model has."""
+    while name in {*data.bodies, *data.joints, *data.forces, *data.requests}:
+        name += "_"
+    return name
+
+
+def _figure(data: Scene, requests: Written, angles: Angles) -> Written | None:
+    """The scene's figure; angles of bodies that it shows, which are no channels of space, are put among the requests."""
+    if data.figure is None:
+        return None
+    figure = data.figure
+    names = {name: _channel(name) for name in (figure.x, *figure.y)}
+    for name, request in names.items():
+        body, _, channel = name.rpartition(".")
+        if channel == "angle":
+            names[name] = _free(request, data)
+            requests[names[name]] = angles.measured(MarkerReference(body=body), MarkerReference(body=GROUND))
+    over = {} if figure.x == "time" else {"x": names[figure.x]}
+    return figure.model_dump(exclude_unset=True) | over | {"y": [names[name] for name in figure.y]}
+
+
+def _channel(name: str) -> str:
+    """The channel of space that tells what one of the plane does, or the request."""
+    owner, _, channel = name.rpartition(".")
+    if channel == "angle":
+        return f"{owner}_angle"
+    return f"{owner}.{CHANNELS.get(channel, channel)}" if owner else name

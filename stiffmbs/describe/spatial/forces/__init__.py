@@ -1,0 +1,1 @@
+"""Applied forces in space, one kind per file."""

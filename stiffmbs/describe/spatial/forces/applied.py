@@ -1,0 +1,92 @@
+"""Applied force and torque in space, constant or by formula."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from ...element import Force, Symbolic
+from ...formula_field import OfMotion
+from ..marker import Marker
+from ..wrench import Pairs, along_axes, force_at, torque_on
+
+Components = tuple[OfMotion, OfMotion, OfMotion]
+
+
+class Applied(Force):
+    """Base of applied forces and torques (it has no kind): on marker i's body, and the opposite on marker j's.
+
+    Three components are along the axes of the ground, of marker i (``axes: body``), or of any marker (`frame`), and
+    turn with these.  Bodies that a formula merely measures, or that carry `frame`, take no force.
+    """
+
+    i: Marker = Field(description="marker of the body on which it acts")
+    j: Marker | None = Field(None, description="a second body, which takes the opposite at the same point of space")
+    axes: Literal["ground", "body"] = Field("ground", description="whether x, y and z are the ground's or marker i's")
+    frame: Marker | None = Field(None, description="marker whose axes x, y and z are, in place of `axes`")
+
+    @model_validator(mode="after")
+    def _one_kind_of_axes(self) -> Applied:
+        if self.frame is not None and self.axes == "body":
+            raise ValueError("found both 'frame' and 'axes: body', expected one of them")
+        return self
+
+    @staticmethod
+    def vector(e: Symbolic, components: Any) -> Any:
+        """Components along the element's axes as a vector in ground axes."""
+        from sympy import Matrix
+
+        marker = e.i if e.axes == "body" else e.frame
+        return Matrix(components) if marker is None else along_axes(components, marker)
+
+
+class AppliedForce(Applied):
+    """A force at a point of a body: constant, or a formula of time and of anything measured.
+
+    With `j` a second body takes the opposite force at the same point of space (Adams' JFLOAT marker), so that momentum
+    and angular momentum of both are kept.
+
+    A constant force on one body in ground axes has a potential, others have none.
+
+    This is Adams' VFORCE, together with `AppliedTorque` its GFORCE, and with ``frame: j`` its SFORCE of one body
+    (ACTIONONLY); `LineForce` is its SFORCE between two.
+    """
+
+    kind: ClassVar[str] = "force"
+
+    type: Literal["force"] = "force"
+    force: Components = Field(description="components along x, y and z, N: numbers or formulas")
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """The force on the velocity of i's point, relative to j's body there."""
+        return force_at(e, cls.vector(e, e.force), e.i, e.j)
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        """Minus the force times the way."""
+        in_ground = e.axes == "ground" and e.frame is None
+        if e.j is not None or not in_ground or not all(e.is_constant(component) for component in e.force):
+            return 0
+        return -sum(component * x for component, x in zip(e.force, e.i.point, strict=True))
+
+
+class AppliedTorque(Applied):
+    """A torque on a body: constant, or a formula of time and of anything measured.
+
+    With `j` a second body takes the opposite torque.  A torque in space has no potential, constant or not: the work of
+    two turns depends on their order.
+
+    This is Adams' VTORQUE; with ``frame: j`` and only the last component its rotational SFORCE.
+    """
+
+    kind: ClassVar[str] = "torque"
+
+    type: Literal["torque"] = "torque"
+    torque: Components = Field(description="components along x, y and z, N m: numbers or formulas")
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """The torque on the angular velocity of i's body, relative to j's."""
+        return torque_on(cls.vector(e, e.torque), e.i, e.j)

@@ -1,0 +1,100 @@
+"""Bushing in space: springs and dampers in three directions and three rotations."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from ...element import Symbolic
+from ...forces.matrix import check_symmetric
+from ...formula_field import OfDeflection
+from .elastic import (
+    NONE,
+    NOTHING,
+    Damping,
+    Elastic,
+    Preload,
+    Stiffness,
+    has_moments,
+    pull_back,
+    six_rows,
+    stored,
+    without_zeros,
+)  # fmt: skip
+
+
+class Bushing(Elastic):
+    """Force and torque between two markers that are held together elastically in all six components.
+
+    The deformation s = (x, y, z, and the rotation vector) of marker i against marker j is measured along the axes of j.
+    The elastic force is preload - K s - law(s) as the powers of the six deformations demand, so that energy is kept at
+    any angle; for a rotation about one axis this is the moment about it, up to three quarters of a turn, where the run
+    stops.  Without stiffness about one axis i turns about that over any number of turns, and its tilt against j is
+    resisted.  Damping is -C times the velocity and angular velocity of i against j's body, in j's axes.  It acts on i at
+    its point, and opposite on j at the same point of space, so that momentum and angular momentum are kept.
+
+    With ``axes: ground`` x, y and z are the ground's, and the force acts at each body's own marker; moments and rotations
+    are along j's axes all the same.  As the two points lie apart by the deformation, angular momentum is then kept only
+    where the force is along the line between them.
+
+    Stiffness and damping are six numbers, two symmetric 3x3 matrices (of forces, of moments), or a symmetric 6x6
+    matrix.  A law that is a table or a polynomial in s has a potential; with any other formula the element counts none,
+    and energy.total is not kept.
+
+    MSC Adams/Solver, BUSHING statement, whose small angles a, b, c are the rotation vector's to first order.
+    """
+
+    kind: ClassVar[str] = "bushing"
+
+    type: Literal["bushing"] = "bushing"
+    stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    preload: Preload = Field(NOTHING, description="force and torque on i without deformation, N and N m")
+    law_x: OfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
+    law_y: OfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
+    law_z: OfDeflection | None = Field(None, description="force against the deformation in z added over s (m), N")
+    law_about_x: OfDeflection | None = Field(None, description="moment against the rotation about x over s (rad), N m")
+    law_about_y: OfDeflection | None = Field(None, description="moment against the rotation about y over s (rad), N m")
+    law_about_z: OfDeflection | None = Field(None, description="moment against the rotation about z over s (rad), N m")
+
+    axes: Literal["j", "ground"] = Field(
+        "j", description="whether x, y and z of the force are marker j's or the ground's"
+    )
+
+    _six_rows = field_validator("stiffness", "damping", mode="before")(six_rows)
+    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
+    _sparse = field_validator("stiffness", "damping", "preload")(without_zeros)
+
+    @classmethod
+    def resisted(cls, e: Symbolic) -> list[bool]:
+        laws = (e.law_about_x, e.law_about_y, e.law_about_z)
+        return [has or law is not None for has, law in zip(has_moments(e.stiffness, e.preload), laws, strict=True)]
+
+    @classmethod
+    def frame(cls, e: Symbolic) -> list[Any]:
+        from sympy import eye
+
+        return [eye(3)[:, k] for k in range(3)] if e.axes == "ground" else super().frame(e)
+
+    @classmethod
+    def drift(cls, e: Symbolic) -> Any:
+        return e.rate(e.i.point - e.j.point) if e.axes == "ground" else super().drift(e)
+
+    @classmethod
+    def elastic(cls, e: Symbolic) -> list[Any]:
+        """preload - K s - law(s)."""
+        s = cls.deformation(e)
+        linear = pull_back(e.stiffness, s, e.preload)
+        return [f - (law(x) if law is not None else 0) for f, law, x in zip(linear, _laws(e), s, strict=True)]
+
+    @classmethod
+    def potential(cls, e: Symbolic) -> Any:
+        """1/2 s^T K s - preload . s and the integrals of the laws; zero where one has no simple integral."""
+        s = cls.deformation(e)
+        of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]
+        return 0 if None in of_laws else stored(e.stiffness, s, e.preload) + sum(of_laws)
+
+
+def _laws(e: Symbolic) -> tuple[Any, ...]:
+    return e.law_x, e.law_y, e.law_z, e.law_about_x, e.law_about_y, e.law_about_z

@@ -1,0 +1,67 @@
+"""Field: linear force and torque of six components, each on all six deformations (Adams: FIELD)."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from ... import si
+from ...element import Symbolic
+from ...forces.matrix import check_symmetric
+from .elastic import (
+    NONE,
+    NOTHING,
+    Damping,
+    Elastic,
+    Preload,
+    Stiffness,
+    has_moments,
+    pull_back,
+    six_rows,
+    stored,
+    without_zeros,
+)  # fmt: skip
+
+
+class FieldForce(Elastic):
+    """Linear elastic connection of two markers that are apart: preload - K (s - s0) - C (v, w).
+
+    s is the place of marker i in the axes of j and its rotation vector against these, s0 that without force.  How it
+    acts, and what a full turn means to it, is as for the `bushing`; this one has an offset and no curves.
+
+    MSC Adams/Solver, FIELD statement, whose small angles are the rotation vector's to first order.
+    """
+
+    kind: ClassVar[str] = "field"
+
+    type: Literal["field"] = "field"
+    stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    preload: Preload = Field(NOTHING, description="force and torque on i at s0, N and N m")
+    free: tuple[si.Length, si.Length, si.Length, si.Angle, si.Angle, si.Angle] | None = Field(
+        None, description="s0: place and rotation vector of i against j without force, m and rad"
+    )
+
+    _six_rows = field_validator("stiffness", "damping", mode="before")(six_rows)
+    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
+    _sparse = field_validator("stiffness", "damping", "preload")(without_zeros)
+
+    @classmethod
+    def resisted(cls, e: Symbolic) -> list[bool]:
+        return has_moments(e.stiffness, e.preload)
+
+    @staticmethod
+    def strain(e: Symbolic) -> list[Any]:
+        """s - s0."""
+        free = e.free if e.free is not None else (0,) * 6
+        return [x - x0 for x, x0 in zip(FieldForce.deformation(e), free, strict=True)]
+
+    @classmethod
+    def elastic(cls, e: Symbolic) -> list[Any]:
+        """preload - K (s - s0)."""
+        return pull_back(e.stiffness, cls.strain(e), e.preload)
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        return stored(e.stiffness, FieldForce.strain(e), e.preload)

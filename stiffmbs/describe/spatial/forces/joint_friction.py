@@ -1,0 +1,80 @@
+"""Friction in a joint in space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import ClassVar
+
+from pydantic import Field
+
+from ... import si
+from ...element import Joint, Symbolic
+from ...forces.rubbing_joint import RubbingJoint
+from ..loads import loads
+from ..wrench import Pairs, velocity
+
+
+class JointFriction(RubbingJoint):
+    """Dry friction in a revolute, cylindrical, prismatic or spherical joint, pressed by the joint's own reaction.
+
+    The reaction is a force at i's point, of which F is the part across the axis z and T the thrust along it, and a
+    moment, M across the axis and D about it; both from the multipliers of the same instant, friction included.
+
+    - A pin of radius R (``revolute``) slides at R w, w being the angular velocity about the axis, under N = F + M/(length/2)
+      (the moment being taken at the ends of a bearing of a given length, not counted without one), and the torque
+      -mu N R brakes it.  A collar at `thrust_radius` slides under T; without that the thrust does not rub.
+    - A sleeve (``cylindrical``) does so both around and along: the friction mu N is against the velocity of the surface,
+      (R w, v), at its magnitude; without a radius it is along the axis alone.
+    - A guide (``prismatic``) slides under N = F + M/(length/2) + D/torsion_radius, the last where that is given.
+    - A ball of radius R (``spherical``) is braked by a torque mu F R against its angular velocity.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.5; Adams' FRICTION statement.
+    """
+
+    kind: ClassVar[str] = "joint_friction"
+
+    rubbing: ClassVar[tuple[str, ...]] = ("revolute", "cylindrical", "prismatic", "spherical")
+    round: ClassVar[tuple[str, ...]] = ("revolute", "spherical")
+
+    thrust_radius: si.PositiveLength | None = Field(
+        None, description="of a revolute joint's collar, on which its thrust rubs, m"
+    )
+    torsion_radius: si.PositiveLength | None = Field(
+        None, description="at which a prismatic joint's guide takes the moment about its line, m"
+    )
+
+    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        yield from super().refused(joints)
+        kind = joints[self.joint.joint].kind
+        for field, fits in (
+            ("thrust_radius", ("revolute",)),
+            ("torsion_radius", ("prismatic",)),
+            ("length", ("revolute", "cylindrical", "prismatic")),
+        ):
+            if getattr(self, field) is not None and kind not in fits:
+                yield (
+                    field,
+                    f"found one for the {kind} joint '{self.joint}', expected none (for {', '.join(fits)} only)",
+                )
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """Braking forces and torques on the rates of sliding."""
+        i, j, R, load = e.joint.i, e.joint.j, e.radius, loads(e.joint)
+        w = e.named(i.omega - j.omega)
+        if e.joint.kind == "spherical":
+            drag = e.named(-cls.per_speed(e, *(R * w)) * load.across * R**2)
+            return [(drag * part, part) for part in w]
+        along, about = e.named((e.rate(i.point) - velocity(e, j, i.point)).dot(j.z)), e.named(w.dot(j.z))
+        pressure = load.across + (load.bending / (e.length / 2) if e.length is not None else 0)
+        match e.joint.kind:
+            case "cylindrical":
+                drag = e.named(-cls.per_speed(e, R * about, along) * pressure)
+                return [(drag * along, along), (drag * R**2 * about, about)]
+            case "prismatic":
+                pressure += load.torsion / e.torsion_radius if e.torsion_radius is not None else 0
+                return [(-cls.coefficient(e, along) * pressure, along)]
+        braking = -cls.coefficient(e, R * about) * pressure * R
+        if e.thrust_radius is not None:
+            braking -= cls.coefficient(e, e.thrust_radius * about) * load.thrust * e.thrust_radius
+        return [(braking, about)]

@@ -1,0 +1,77 @@
+"""Contact of a sphere with a plane or a sphere."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from ... import si
+from ...element import Symbolic
+from ...forces.contact_law import ContactLaw
+from ..marker import Marker
+from ..wrench import Pairs, velocity
+
+
+class SphereContact(ContactLaw):
+    """A sphere or point about marker i that presses on a plane, on a sphere, or on a hollow sphere from within.
+
+    Where the gap is closed by delta = -gap > 0 the surfaces repel each other with N = k delta^n (1 + chi delta'), never
+    below zero, and rub with mu(v) N against the direction in which i's surface slides on j's at the point of contact,
+    spin and rolling included.  The force is the same and opposite on both bodies there; nothing resists drilling.
+
+    Surfaces of j: ``plane``, the plane of x and y of j, solid on the side away from z; ``sphere``, solid inside
+    `surface_radius`; ``hollow``, solid outside of it.
+
+    Without friction and dissipation the element keeps energy: it has the potential k delta^(n+1)/(n+1).  The sources of
+    the law, and chi for a coefficient of restitution, are those of the plane's `contact`.
+    """
+
+    kind: ClassVar[str] = "sphere_contact"
+
+    type: Literal["sphere_contact"] = "sphere_contact"
+    i: Marker = Field(description="the point, or the sphere's centre")
+    j: Marker = Field(description="on the plane, its z pointing out of the solid, or the surface's centre")
+    radius: si.LengthOrZero = Field(0.0, description="of the sphere about i, m; 0 for a point")
+    surface: Literal["plane", "sphere", "hollow"] = Field("plane", description="what i meets")
+    surface_radius: si.LengthOrZero = Field(0.0, description="of a sphere or hollow sphere about j, m")
+
+    @model_validator(mode="after")
+    def _fits(self) -> SphereContact:
+        if self.surface == "plane" and self.surface_radius:
+            raise ValueError("found a surface_radius of a plane, expected none")
+        if self.surface == "sphere" and self.radius + self.surface_radius == 0:
+            raise ValueError("found two points, expected a radius or surface_radius above zero")
+        if self.surface == "hollow" and self.surface_radius <= self.radius:
+            raise ValueError(
+                f"found a sphere of radius {self.radius:g} in a hollow of {self.surface_radius:g}, expected a wider one"
+            )
+        return self
+
+    @staticmethod
+    def gap(e: Symbolic) -> Any:
+        if e.surface == "plane":
+            return (e.i.point - e.j.point).dot(e.j.z) - e.radius
+        distance = e.distance(e.i.point, e.j.point)
+        return (distance - e.surface_radius if e.surface == "sphere" else e.surface_radius - distance) - e.radius
+
+    @staticmethod
+    def normal(e: Symbolic) -> Any:
+        """The unit vector out of j's surface at the point of contact."""
+        if e.surface == "plane":
+            return e.j.z
+        outward = 1 if e.surface == "sphere" else -1
+        return outward * (e.i.point - e.j.point) / e.distance(e.i.point, e.j.point)
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """N on the gap's rate, and friction on the sliding velocity."""
+        pressure, rate = e.named(cls.pressure(e)), e.named(e.rate(cls.gap(e)))
+        if e.friction is None:
+            return [(pressure, rate)]
+        n = e.named(cls.normal(e))
+        point = e.named(e.i.point - e.radius * n)
+        v = e.named(velocity(e, e.i, point) - velocity(e, e.j, point))
+        sliding = e.named(v - v.dot(n) * n)
+        drag = e.named(-cls.per_speed(e, *sliding) * pressure)
+        return [(pressure, rate), *((drag * part, along) for part, along in zip(sliding, v, strict=True))]

@@ -1,0 +1,49 @@
+"""Planar models and scenes in space."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...errors import InputError
+from ..model import PlanarData
+from ..model_builder import ModelBuilder
+from ..scene import SpatialScene, load_scene, made_scene
+from ..scene_text import scene_text
+from .embedding.markers import Written
+from .embedding.scene import scene_in_space
+from .model import Model
+
+
+def embedded(planar: PlanarData) -> SpatialScene:
+    """The scene in space of a planar model or scene; see `stiffmbs.spatial.in_space`."""
+    return _checked(scene_in_space(planar), planar.name or "in space")
+
+
+def text_in_space(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> str:
+    """The text of the scene in space of a planar scene's file, some values changed; errors as for `load_scene` too."""
+    planar = load_scene(path, changes)
+    if not isinstance(planar, PlanarData):
+        raise InputError(f"{path}: found a scene in space, expected a planar one")
+    try:
+        found = scene_in_space(planar)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    _checked(copy.deepcopy(found), str(path))
+    return scene_text(found)
+
+
+def _checked(found: Written, source: str) -> SpatialScene:
+    scene = made_scene(found, (), source, lambda path: None)
+    assert isinstance(scene, SpatialScene)
+    return scene
+
+
+def built(planar: ModelBuilder, model: Model) -> Model:
+    """A model in space, at first empty, with all that a planar one built in Python has; errors as for `embedded`."""
+    scene = embedded(planar.data())
+    model.name, model.gravity = scene.name, scene.gravity
+    for section in ("markers", "bodies", "joints", "forces", "requests"):
+        getattr(model, section).update(getattr(scene, section))
+    return model

@@ -1,0 +1,53 @@
+"""Constant velocity joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal, Self
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_twisted
+from ..marker import Marker
+from ..primitives import COINCIDE, coincide
+
+
+class ConstantVelocity(Joint):
+    """Homokinetic joint of two shafts: two points coincide, and both shafts turn about their axes z at one rate.
+
+    One marker is turned into the other about an axis in the plane that bisects their xy planes, with no twist:
+    i.x . j.y = i.y . j.x where the axes z point the same way when the shafts are in line.  Where they are opposite,
+    both away from the joint as in Adams' CONVEL, it is i.x . j.y = -i.y . j.x.  The x axes (or the y axes) of both
+    markers are to be drawn parallel, the shafts in line.  The shafts may bend by less than half a turn.
+
+    The reaction is a force of any direction, and a torque in the bisecting plane.
+
+    Adams/Solver's JOINT statement (CONVEL); Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989),
+    section 9.4.
+    """
+
+    kind: ClassVar[str] = "constant_velocity"
+    equations: ClassVar[tuple[str, ...]] = (*COINCIDE, "twist")
+
+    type: Literal["constant_velocity"] = "constant_velocity"
+    i: Marker = Field(description="marker of the first shaft, z along it; the reaction is reported on it")
+    j: Marker = Field(description="marker of the second shaft, z along it")
+    axes: Literal["same", "opposite"] | None = Field(
+        None, description="sense of the axes z when the shafts are in line; as drawn unless given"
+    )
+
+    def as_drawn(self, model: ModelData) -> Self:
+        if self.axes is not None:
+            return self
+        same = model.drawn_marker(self.i).z @ model.drawn_marker(self.j).z > 0
+        return self.model_copy(update={"axes": "same" if same else "opposite"})
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_twisted(model, self.i, self.j, self.as_drawn(model).axes == "opposite")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        first, second = e.i.x.dot(e.j.y), e.i.y.dot(e.j.x)
+        return [*coincide(e.i, e.j), first - second if e.axes == "same" else first + second]

@@ -1,0 +1,49 @@
+"""Cylindrical joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_apart
+from ..marker import Marker
+from ..primitives import ALIGN, ON_AXIS, align, along, angle_about_z, on_axis
+
+
+class Cylindrical(Joint):
+    """Sleeve on a shaft: marker i stays on the z axis of marker j, parallel to it, and may slide and turn.
+
+    The reaction is a force and a torque across the axis.  It has two coordinates, so that drives and couplers name the
+    one they mean: ``sleeve.displacement``, ``sleeve.angle``.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (cylindrical joint).
+    """
+
+    kind: ClassVar[str] = "cylindrical"
+    equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ALIGN)
+    coordinates: ClassVar[tuple[str, ...]] = ("displacement", "angle")
+
+    type: Literal["cylindrical"] = "cylindrical"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose z axis is the line to slide along and to turn about")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_apart(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*on_axis(e.i, e.j), *align(e.i, e.j)]
+
+    @staticmethod
+    def displacement(e: Symbolic) -> Any:
+        """The displacement of marker i along the z axis of marker j."""
+        return along(e.i, e.j, e.j.z)
+
+    @staticmethod
+    def angle(e: Symbolic) -> Any:
+        """The angle of marker i against marker j about z."""
+        return angle_about_z(e)

@@ -1,0 +1,38 @@
+"""Fixed joint in space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_turned
+from ..marker import Marker
+from ..primitives import COINCIDE, ORIENT, coincide, orient
+
+
+class Fixed(Joint):
+    """Weld: two markers coincide in place and orientation.
+
+    The reaction is a force and a torque of any direction.
+
+    The equations of orientation hold for seven other orientations too (half turns and turns by a third), so that
+    markers drawn 60 degrees apart and more are refused.
+    """
+
+    kind: ClassVar[str] = "fixed"
+    equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ORIENT)
+
+    type: Literal["fixed"] = "fixed"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_turned(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*coincide(e.i, e.j), *orient(e.i, e.j)]

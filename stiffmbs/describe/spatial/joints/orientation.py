@@ -1,0 +1,40 @@
+"""Orientation joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_turned
+from ..marker import Marker
+from ..primitives import ORIENT, orient
+
+
+class Orientation(Joint):
+    """Two markers keep the same axes, wherever their points are.
+
+    The reaction is a torque of any direction.  This is Adams' ORIENTATION.
+
+    The equations hold for seven other orientations too (half turns and turns by a third), so that markers drawn
+    60 degrees apart and more are refused.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (three dot 1 constraints).
+    """
+
+    kind: ClassVar[str] = "orientation"
+    equations: ClassVar[tuple[str, ...]] = ORIENT
+
+    type: Literal["orientation"] = "orientation"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_turned(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return orient(e.i, e.j)

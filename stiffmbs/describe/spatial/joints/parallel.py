@@ -1,0 +1,37 @@
+"""Parallel axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_apart
+from ..marker import Marker
+from ..primitives import ALIGN, align
+
+
+class Parallel(Joint):
+    """The axes z of two markers stay parallel, wherever their points are.
+
+    Opposite axes are parallel too.  The reaction is a torque across the axes.  This is Adams' PARALLEL_AXES.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 constraint).
+    """
+
+    kind: ClassVar[str] = "parallel"
+    equations: ClassVar[tuple[str, ...]] = ALIGN
+
+    type: Literal["parallel"] = "parallel"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_apart(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return align(e.i, e.j)

@@ -1,0 +1,37 @@
+"""Perpendicular axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_aligned
+from ..marker import Marker
+from ..primitives import ACROSS, perpendicular
+
+
+class Perpendicular(Joint):
+    """The axes z of two markers stay at right angles, wherever their points are.
+
+    The reaction is a torque at right angles to both axes.  This is Adams' PERPENDICULAR.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (dot 1 constraint).
+    """
+
+    kind: ClassVar[str] = "perpendicular"
+    equations: ClassVar[tuple[str, ...]] = ACROSS
+
+    type: Literal["perpendicular"] = "perpendicular"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_aligned(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [perpendicular(e.i.z, e.j.z)]

@@ -1,0 +1,37 @@
+"""Planar joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_apart
+from ..marker import Marker
+from ..primitives import ALIGN, IN_PLANE, align, along
+
+
+class Planar(Joint):
+    """A body that slides and turns on a plane: the point of marker i stays in the xy plane of marker j, their z parallel.
+
+    The reaction is a force along z and a torque across it.  This is Adams' PLANAR.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 and dot 2 constraints); Nikravesh (1988), section 7.2.
+    """
+
+    kind: ClassVar[str] = "planar"
+    equations: ClassVar[tuple[str, ...]] = (*IN_PLANE, *ALIGN)
+
+    type: Literal["planar"] = "planar"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose xy plane is the one to slide on")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_apart(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [along(e.i, e.j, e.j.z), *align(e.i, e.j)]

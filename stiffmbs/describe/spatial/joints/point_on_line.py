@@ -1,0 +1,37 @@
+"""Point on a line in space."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ..marker import Marker
+from ..primitives import ON_AXIS, along, on_axis
+
+
+class PointOnLine(Joint):
+    """Bead on a wire: the point of marker i stays on the z axis of marker j, in any orientation.
+
+    The reaction is a force across the line, without friction.  This is Adams' INLINE.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (two dot 2 constraints).
+    """
+
+    kind: ClassVar[str] = "point_on_line"
+    equations: ClassVar[tuple[str, ...]] = ON_AXIS
+    coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+
+    type: Literal["point_on_line"] = "point_on_line"
+    i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
+    j: Marker = Field(description="marker whose z axis is the line")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return on_axis(e.i, e.j)
+
+    @staticmethod
+    def displacement(e: Symbolic) -> Any:
+        """The displacement of the point along the line, from marker j."""
+        return along(e.i, e.j, e.j.z)

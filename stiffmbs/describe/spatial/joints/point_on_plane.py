@@ -1,0 +1,31 @@
+"""Point on a plane."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ..marker import Marker
+from ..primitives import IN_PLANE, along
+
+
+class PointOnPlane(Joint):
+    """A tip on a floor: the point of marker i stays in the xy plane of marker j, in any orientation.
+
+    The reaction is a force along z of marker j, without friction, and may pull.  This is Adams' INPLANE.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (dot 2 constraint).
+    """
+
+    kind: ClassVar[str] = "point_on_plane"
+    equations: ClassVar[tuple[str, ...]] = IN_PLANE
+
+    type: Literal["point_on_plane"] = "point_on_plane"
+    i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
+    j: Marker = Field(description="marker whose xy plane is the plane")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [along(e.i, e.j, e.j.z)]

@@ -1,0 +1,43 @@
+"""Prismatic (translational) joint in space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_askew
+from ..marker import Marker
+from ..primitives import ON_AXIS, ORIENT, along, on_axis, orient
+
+
+class Prismatic(Joint):
+    """Slider: marker i stays on the z axis of marker j and keeps j's orientation.
+
+    The reaction is a force across the axis and a torque of any direction.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (translational joint).
+    """
+
+    kind: ClassVar[str] = "prismatic"
+    equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ORIENT)
+    coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+
+    type: Literal["prismatic"] = "prismatic"
+    i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose z axis is the line to slide along")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_askew(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*on_axis(e.i, e.j), *orient(e.i, e.j)]
+
+    @staticmethod
+    def displacement(e: Symbolic) -> Any:
+        """The displacement of marker i along the z axis of marker j."""
+        return along(e.i, e.j, e.j.z)

@@ -1,0 +1,43 @@
+"""Revolute joint in space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_apart
+from ..marker import Marker
+from ..primitives import ALIGN, COINCIDE, align, angle_about_z, coincide
+
+
+class Revolute(Joint):
+    """Hinge: two points coincide and the axes z of both markers are one.
+
+    The reaction is a force of any direction, and a torque across the axis.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (revolute joint).
+    """
+
+    kind: ClassVar[str] = "revolute"
+    equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ALIGN)
+    coordinates: ClassVar[tuple[str, ...]] = ("angle",)
+
+    type: Literal["revolute"] = "revolute"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_apart(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*coincide(e.i, e.j), *align(e.i, e.j)]
+
+    @staticmethod
+    def angle(e: Symbolic) -> Any:
+        """The angle of marker i against marker j about z."""
+        return angle_about_z(e)

@@ -1,0 +1,31 @@
+"""Spherical joint."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ..marker import Marker
+from ..primitives import COINCIDE, coincide
+
+
+class Spherical(Joint):
+    """Ball joint: a point of body i and a point of body j coincide.
+
+    The reaction is a force of any direction; it has no torque.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (spherical joint).
+    """
+
+    kind: ClassVar[str] = "spherical"
+    equations: ClassVar[tuple[str, ...]] = COINCIDE
+
+    type: Literal["spherical"] = "spherical"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker of the second body")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return coincide(e.i, e.j)

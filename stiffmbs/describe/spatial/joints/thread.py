@@ -1,0 +1,46 @@
+"""Thread: the one equation of a screw."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field, field_validator
+
+from ... import si
+from ...element import Symbolic
+from ...joints.kept_as_drawn import KeptAsDrawn
+from ..marker import Marker
+from ..primitives import along, angle_about_z
+
+
+class Thread(KeptAsDrawn):
+    """Ties how far marker i is along the z axis of marker j to its angle about it: s - pitch theta/(2 pi) - offset = 0.
+
+    Nothing else is held: this is Adams' SCREW, which wants a cylindrical joint beside it.  A pitch above zero is a
+    right-handed thread.
+
+    The reaction is a force along z and a torque about it.
+
+    Shabana, Computational Dynamics (2001), p. 434 (screw joint).
+    """
+
+    kind: ClassVar[str] = "thread"
+    equations: ClassVar[tuple[str, ...]] = ("pitch",)
+
+    type: Literal["thread"] = "thread"
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose z axis is the thread's")
+    pitch: si.Length = Field(description="way along z in a full turn, m; below zero for a left-handed thread")
+    offset: si.Length | None = Field(None, description="s where the angle is zero, m; as drawn unless given")
+
+    @field_validator("pitch")
+    @classmethod
+    def _not_zero(cls, pitch: float) -> float:
+        if pitch == 0:
+            raise ValueError("found 0, expected a pitch other than zero")
+        return pitch
+
+    @staticmethod
+    def relation(e: Symbolic) -> Any:
+        return along(e.i, e.j, e.j.z) - e.pitch / (2 * math.pi) * angle_about_z(e) - e.offset

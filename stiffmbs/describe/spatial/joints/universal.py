@@ -1,0 +1,40 @@
+"""Universal joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar, Literal
+
+from pydantic import Field
+
+from ...element import Joint, Symbolic
+from ...model_data import ModelData
+from ..branches import drawn_aligned
+from ..marker import Marker
+from ..primitives import ACROSS, COINCIDE, coincide, perpendicular
+
+
+class Universal(Joint):
+    """Cardan joint: two points coincide, and the axes z of both markers, the arms of its cross, are at right angles.
+
+    Each body turns about its own arm.  The reaction is a force of any direction, and a torque at right angles to both
+    arms.  This is Adams' UNIVERSAL; its HOOKE, whose markers have z along the shafts, has the arms i.x and j.y.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (universal joint).
+    """
+
+    kind: ClassVar[str] = "universal"
+    equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ACROSS)
+
+    type: Literal["universal"] = "universal"
+    i: Marker = Field(
+        description="marker of the first body, z along its arm of the cross; the reaction is reported on it"
+    )
+    j: Marker = Field(description="marker of the second body, z along its arm")
+
+    def misplaced(self, model: ModelData) -> Iterator[str]:
+        yield from drawn_aligned(model, self.i, self.j)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*coincide(e.i, e.j), perpendicular(e.i.z, e.j.z)]

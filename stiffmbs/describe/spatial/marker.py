@@ -1,0 +1,50 @@
+"""A marker in space: a point and an orientation fixed on a body, or on ground."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from .. import si
+from ..fields import Described
+from ..marker import MarkerReference
+from .orientation import IDENTITY, Orientation, matrix
+
+Point = tuple[si.Length, si.Length, si.Length]
+ORIGIN = (0.0, 0.0, 0.0)
+
+
+class Placement(Described):
+    """Where a named marker sits on its body."""
+
+    point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
+    orientation: Orientation = Field(IDENTITY, description="of the marker's axes against the body's")
+
+    def numbers(self) -> tuple[float, ...]:
+        """What a kernel takes: the point, the rotation matrix row by row, and the quaternion."""
+        return (*self.point, *(float(part) for part in matrix(self.orientation).ravel()), *self.orientation)
+
+
+class Marker(MarkerReference):
+    """A marker used by an element: of a body by name, or given on the spot.
+
+    Written as ``cart`` (the body's origin with its own axes), ``bar.end`` (a marker that the body names), ``ground``, or
+    ``{body: bar, point: [-300 mm, 0, 0], orientation: {z: [1, 0, 0]}}``.
+
+    Parameters
+    ----------
+    body : str
+        The body, or ``"ground"``.
+    marker : str, optional
+        A marker that the body names; excludes `point` and `orientation`.
+    point : tuple of float
+        Position in the body's own axes, from its origin, m.
+    orientation : Orientation
+        Of the marker's axes against the body's.  The axis of a joint is z.
+    """
+
+    point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
+    orientation: Orientation = Field(IDENTITY, description="of the axes against the body's; a joint's axis is z")
+
+    def placement(self) -> Placement:
+        """Where it sits on its body, as given on the spot."""
+        return Placement(point=self.point, orientation=self.orientation)

@@ -1,0 +1,137 @@
+"""The model in space: its kinds of joints and forces, and what it holds by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Literal, overload
+
+import numpy as np
+from pydantic import Field
+
+from .. import si
+from ..element import Force, Joint, any_of, kinds
+from ..fields import Described
+from ..forces.weight import weights
+from ..marker import GROUND, MarkerReference
+from ..model_builder import ModelBuilder
+from ..model_data import ModelData
+from ..request import Request
+from . import forces, joints
+from .body import Body, BodyHandle
+from .drawn import DrawnMarker
+from .forces.turning import turnings
+from .marker import Placement
+from .orientation import matrix, product, rotated
+from .output import Output, Requested, check_output
+
+JOINTS = kinds(joints, Joint)
+FORCES = kinds(forces, Force)
+
+AnyJoint: Any = any_of(JOINTS)
+AnyForce: Any = any_of(FORCES)
+
+
+class SpatialData(ModelData):
+    """What a model in space holds."""
+
+    origin = Placement()
+
+    dimensions: Literal[3] = Field(3, description="of the model: space")
+    gravity: tuple[si.Acceleration, si.Acceleration, si.Acceleration] = Field(
+        (0.0, 0.0, 0.0), description="along the ground's x, y and z, m/s^2"
+    )
+    markers: dict[str, Placement] = Field(default_factory=dict, description="named points and orientations of ground")
+    bodies: dict[str, Body] = Field(description="bodies by name")
+    joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
+    forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
+
+    requests: dict[str, Requested] = Field(
+        default_factory=dict, description="formulas to report, by channel name; or several by name under one"
+    )
+
+    def check_requests(self) -> None:
+        for channel, output in self.outputs():
+            check_output(f"requests.{channel}", output, self)
+
+    def requested(self) -> Iterator[tuple[str, Request]]:
+        """None: what is reported in space is evaluated after the run."""
+        yield from ()
+
+    def outputs(self) -> Iterator[tuple[str, Output]]:
+        """The requests by channel: a name, or ``name.component``."""
+        for name, formula in self.requests.items():
+            if isinstance(formula, Output):
+                yield name, formula
+            else:
+                yield from ((f"{name}.{component}", output) for component, output in formula.items())
+
+    def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
+        """The bodies' weights and the gyroscopic torques of their turning."""
+        yield from weights(bodies, self.gravity)
+        yield from turnings(bodies)
+
+    def drawn_marker(self, marker: MarkerReference) -> DrawnMarker:
+        placed = self.place(marker)
+        if marker.body == GROUND:
+            return DrawnMarker(np.array(placed.point), matrix(placed.orientation))
+        body = self.bodies[marker.body]
+        point = np.array(body.position) + rotated(body.orientation, placed.point)
+        return DrawnMarker(point, matrix(product(body.orientation, placed.orientation)))
+
+    def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
+        """The body that carries a marker, and where it sits on it, from the centre of mass in the principal axes."""
+        placed = self.place(marker)
+        return marker.body, placed if marker.body == GROUND else self.bodies[marker.body].carried(placed)
+
+
+class Requests(Described):
+    """Requests before they stand in a model."""
+
+    requested: dict[str, Requested]
+
+
+class Model(ModelBuilder):
+    """A model in space built in Python, piece by piece.
+
+    Examples
+    --------
+    >>> from stiffmbs.spatial import Body, Marker, Model, Revolute
+    >>> model = Model("pendulum", gravity=(0, 0, -9.81))
+    >>> bar = model.add("bar", Body(mass=1, inertia=(0.001, 0.03, 0.03), position=(0.3, 0, 0)))
+    >>> across = {"z": (0, 1, 0)}
+    >>> model.add("hinge", Revolute(i=bar.at(-0.3, 0, 0, across), j=Marker(body="ground", orientation=across)))
+    """
+
+    data_type = SpatialData
+    body_type = Body
+    handle_type = BodyHandle
+    kinds = JOINTS | FORCES
+
+    def __init__(self, name: str = "", gravity: tuple[float | str, float | str, float | str] = (0.0, 0.0, 0.0)) -> None:
+        super().__init__(name, gravity)
+
+    @overload
+    def add(self, name: str, part: Body) -> BodyHandle: ...
+
+    @overload
+    def add(self, name: str, part: Joint | Force) -> None: ...
+
+    def add(self, name: str, part: Body | Joint | Force) -> BodyHandle | None:
+        """Add a body (its handle is returned), a joint or a force under a name; errors as for `ModelBuilder.add`."""
+        return super().add(name, part)
+
+    def request(self, name: str, formula: str | float | Mapping[str, str | float]) -> None:
+        """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
+
+        Raises
+        ------
+        InputError
+            When the name is taken, reserved or no identifier, or a formula cannot be read.
+        """
+        self._check_name(name)
+        self.requests[name] = Requests(
+            requested={name: dict(formula) if isinstance(formula, Mapping) else formula}
+        ).requested[name]
+
+    def data(self) -> SpatialData:
+        return super().data()

@@ -1,0 +1,34 @@
+"""Which of its two quaternions a marker has, so that two markers are drawn less than half a turn apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ..marker import GROUND
+from .marker import Marker
+from .orientation import Quaternion, product
+
+if TYPE_CHECKING:
+    from ..model_data import ModelData
+
+
+def nearest(model: ModelData, i: Marker, j: Marker) -> Marker:
+    """Marker i, as a point and that of the two quaternions of its orientation which is nearer to that of marker j.
+
+    Bodies in motion keep to the quaternion that they are described with, so that a rotation of one against the other
+    goes on past half a turn.
+    """
+    if _product(_quaternion(model, i), _quaternion(model, j)) >= 0:
+        return i
+    placed = model.place(i)
+    return Marker(body=i.body, point=placed.point, orientation=tuple(-part for part in placed.orientation))
+
+
+def _quaternion(model: ModelData, marker: Marker) -> Quaternion:
+    own: Quaternion = model.place(marker).orientation
+    return own if marker.body == GROUND else product(model.bodies[marker.body].orientation, own)
+
+
+def _product(p: Sequence[float], q: Sequence[float]) -> float:
+    return sum(a * b for a, b in zip(p, q, strict=True))

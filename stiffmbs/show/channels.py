@@ -1,0 +1,33 @@
+"""The channels of a solution: every time history by name."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..analyse.energy import kinetic_energy, potential_energy
+from ..analyse.outputs import outputs
+from ..analyse.reactions import reactions
+from ..analyse.requests import requests
+from ..compile.system import System
+from ..describe.model_data import ModelData
+from ..solve.mechanics import OutputRows
+from .own_axes import in_own_axes
+
+
+def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
+    """All channels by name: bodies, joints and forces, energies, constraint violations."""
+    channels: dict[str, np.ndarray] = {}
+    of_body = system.of_body
+    states = in_own_axes(system, rows.q, rows.u, rows.acceleration)
+    labels = (of_body.positions, of_body.velocities, of_body.accelerations)
+    for k, body in enumerate(system.bodies):
+        for state, names in zip(states, labels, strict=True):
+            for offset, name in enumerate(names):
+                channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
+    channels |= requests(system, rows.values)
+    channels |= reactions(system, rows.values)
+    kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
+    channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
+    channels["energy.total"] = kinetic + potential
+    channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
+    return channels | outputs(model, rows.t, channels)

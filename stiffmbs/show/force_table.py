@@ -1,0 +1,74 @@
+"""The table of a summary: the range of each component of the force and torque of every element."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from ..compile.bodies import PLANE, SPACE
+from .digits import with_bar
+from .error_bars import ErrorBar
+from .solution import Solution, channel_ranges
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+ROUNDING = 1e-12
+"""Part of the largest force below which a force is shown as zero."""
+NOT_UNIQUE = "*"
+"""Stands behind the range of a reaction that has no unique value."""
+Cell = Mapping[str, float]
+
+
+def force_table(solution: Solution) -> Table:
+    """A row for each element; in space one for its force, and one for its torque where it has any."""
+    from rich.table import Table
+
+    ranges = channel_ranges(solution)
+    own = [name for name in ranges if name not in solution.requested]
+    in_space = any(name.endswith(".tz") for name in own)
+    components = SPACE.reactions if in_space else PLANE.reactions
+    elements = dict.fromkeys(name.partition(".")[0] for name in own if name.endswith(f".{components[-1]}"))
+    noise = ROUNDING * max(
+        (_largest(ranges[f"{element}.{component}"]) for element in elements for component in components), default=0.0
+    )
+
+    def cells(element: str, components: Sequence[str]) -> list[str]:
+        return [_shown(solution, f"{element}.{part}", ranges[f"{element}.{part}"], noise) for part in components]
+
+    def acts(element: str, components: Sequence[str]) -> bool:
+        names = [f"{element}.{component}" for component in components]
+        return any(_largest(ranges[name]) > noise or name in solution.not_unique for name in names)
+
+    table = Table()
+    table.add_column("element", no_wrap=True, overflow="fold")
+    for head in ("x", "y", "z") if in_space else components:
+        table.add_column(head, justify="right", overflow="fold")
+    for element in elements:
+        if not in_space:
+            table.add_row(element, *cells(element, components))
+            continue
+        table.add_row(element, *cells(element, components[:3]))
+        if acts(element, components[3:]):
+            table.add_row("  torque", *cells(element, components[3:]))
+    return table
+
+
+def _largest(cell: Cell) -> float:
+    return max(abs(cell["min"]), abs(cell["max"]))
+
+
+def _shown(solution: Solution, name: str, cell: Cell, noise: float) -> str:
+    return _range(cell, solution.errors.get(name), noise) + NOT_UNIQUE * (name in solution.not_unique)
+
+
+def _range(cell: Cell, bar: ErrorBar | None, noise: float) -> str:
+    """Least and greatest value; of a verified run each on a line with what is known of it."""
+    ends = (cell["min"], cell["max"])
+    if bar is None:
+        return " .. ".join(_digits(end, noise) for end in ends)
+    return "\n".join(with_bar(end, half, noise) for end, half in zip(ends, (bar.least, bar.greatest), strict=True))
+
+
+def _digits(value: float, noise: float) -> str:
+    return "0" if abs(value) <= noise else f"{value:.5g}"

@@ -1,0 +1,123 @@
+"""One page on a scene and its run, with everything in it (needs jinja2 and matplotlib, the extra ``report``)."""
+
+from __future__ import annotations
+
+import base64
+import io
+import math
+from importlib.metadata import version
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..describe.figure import Figure
+from ..describe.scene import Scene
+from ..errors import InputError
+from .check import check
+from .digits import with_bar
+from .error_bars import UNKNOWN
+from .figure import drawn
+from .files import refuse_path, written_whole
+from .force_table import ROUNDING
+from .scales import UNITS, kind_of, scales
+from .solution import Solution, channel_ranges
+from .step_history import step_history
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
+
+NEEDED = ("jinja2", "matplotlib")
+MOST_LINES = 5_000
+"""Points of a line drawing; with more it is a picture of pixels."""
+ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
+
+
+def check_report(path: Path) -> None:
+    """Refuse, before anything is solved, a page that could not be written.
+
+    Raises
+    ------
+    InputError
+        For an ending other than .html, a missing folder, or a missing package.
+    """
+    refuse_path("-o", path, (".html",))
+    for package in NEEDED:
+        if find_spec(package) is None:
+            raise InputError(f"-o {path}: found no {package}, expected it installed: pip install 'stiffmbs[report]'")
+
+
+def write_report(path: Path, scene: Scene, solution: Solution) -> None:
+    """Write the page; it appears whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+    scene : Scene
+        As it was solved.
+    solution : Solution
+        With error bars where it was verified.
+    """
+    page = report_page(scene, solution)
+    written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
+
+
+def report_page(scene: Scene, solution: Solution) -> str:
+    """The page as HTML, figures and all."""
+    from jinja2 import Environment
+
+    template = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(
+        files(__package__).joinpath("report.html").read_text(encoding="utf-8")
+    )
+    figures = [drawn(solution, scene.figure)] if scene.figure else []
+    figures.append(drawn(solution, ENERGIES))
+    if len(solution.step_times) > 1:
+        figures.append(step_history(solution.history))
+    points = len(solution.time) + len(solution.step_times)
+    return template.render(
+        solution=solution, check=check(scene), settings=_settings(scene), peaks=_peaks(solution),
+        start=float(solution.time[0]), end=float(solution.time[-1]), drift=solution.energy_drift(),
+        figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
+        violation=float(np.nanmax(solution.channels["constraint.position"])),
+    )  # fmt: skip
+
+
+def _settings(scene: Scene) -> dict[str, Any]:
+    """Every setting, those that the scene sets first."""
+    chosen = {
+        name: getattr(scene.run, name) for name in type(scene.run).model_fields if name in scene.run.model_fields_set
+    }
+    return {**chosen, **{name: value for name, value in scene.run if name not in chosen}}
+
+
+def _peaks(solution: Solution) -> list[dict[str, str]]:
+    """A row for each channel: its least and greatest value with bars and times, its error over time."""
+    rows = []
+    sizes = scales(solution.channels, 1.0)
+    for name, cell in channel_ranges(solution).items():
+        bar, noise = solution.errors.get(name, UNKNOWN), ROUNDING * sizes[name]
+        verified = name in solution.errors
+        rows.append(
+            {
+                "name": name,
+                "unit": UNITS.get(kind_of(name), ""),
+                "min": with_bar(cell["min"], bar.least, noise) if verified else f"{cell['min']:.6g}",
+                "max": with_bar(cell["max"], bar.greatest, noise) if verified else f"{cell['max']:.6g}",
+                "t_min": f"{cell['t_min']:.6g}",
+                "t_max": f"{cell['t_max']:.6g}",
+                "error": "" if math.isnan(bar.over_time) else f"{bar.over_time:.1g}",
+                "mark": "*" if name in solution.not_unique else "",
+            }
+        )
+    return rows
+
+
+def _embedded(sheet: Sheet, points: int) -> str:
+    """A figure as the address of an image that holds it."""
+    form = "svg" if points < MOST_LINES else "png"
+    content = io.BytesIO()
+    sheet.savefig(content, format=form, dpi=110, metadata={"Date": None} if form == "svg" else None)
+    kind = {"svg": "image/svg+xml", "png": "image/png"}[form]
+    return f"data:{kind};base64,{base64.b64encode(content.getvalue()).decode('ascii')}"

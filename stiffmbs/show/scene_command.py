@@ -1,0 +1,84 @@
+"""What commands on a scene share: options that change it, solving it, refusing it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+import click
+
+from ..describe.scene import Scene
+from ..errors import AssemblyError, StiffmbsError
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+WRONG_INPUT, STOPPED_EARLY = 2, 1
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def _pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, str]]:
+    pairs = []
+    for value in values:
+        path, equals, text = value.partition("=")
+        if not equals or not path:
+            raise click.BadParameter(f"found '{value}', expected PATH=VALUE such as bodies.cart.mass=12")
+        pairs.append((path.strip(), text))
+    return pairs
+
+
+CHANGES = click.option(
+    "--set", "changes", multiple=True, callback=_pairs, metavar="PATH=VALUE", help="Change a value of the scene."
+)
+
+
+def solving_options(command: Command) -> Command:
+    """The options ``--rtol``, ``--duration``, ``--solver`` and ``--set`` of a command; see `changes_of`."""
+    options = (
+        click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
+        click.option("--duration", help="Time to solve, s."),
+        click.option("--solver", help="bdf, projected, kinematic or auto."),
+        CHANGES,
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def changes_of(options: dict[str, Any]) -> list[tuple[str, str]]:
+    """All changes that the options of `solving_options` ask for, as paths and values."""
+    chosen = [(f"run.{name}", options[name]) for name in ("rtol", "duration", "solver")]
+    return options["changes"] + [(path, value) for path, value in chosen if value is not None]
+
+
+def solve_scene(path: str, scene: Scene, verified: bool) -> Solution:
+    """Solve a scene with a progress bar.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        The latter names the file.
+    """
+    from .progress import ProgressBar
+
+    if verified:
+        from .verify import verify as solve
+    else:
+        from .run import run as solve
+    start = scene.run.start
+    try:
+        with ProgressBar(start, start + scene.run.duration) as progress:
+            return solve(scene, watch=progress)
+    except AssemblyError as error:
+        raise AssemblyError(f"{path}: {error}") from None
+
+
+def refuse(scene: str, error: StiffmbsError, as_json: bool = False) -> NoReturn:
+    """End the command with one sentence on what is wrong with the input."""
+    from .summary import error_as_json
+
+    if as_json:
+        click.echo(error_as_json(scene, str(error)))
+    click.echo(f"stiffmbs: {error}", err=True)
+    sys.exit(WRONG_INPUT)

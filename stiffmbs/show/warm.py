@@ -1,0 +1,44 @@
+"""Deriving and compiling ahead what first runs would wait for."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Iterator
+from pathlib import Path
+
+from .. import compile as compile_room
+from .. import solve as solve_room
+from ..compile.compile_model import compile_model
+from ..compile.routines import Routine
+from ..compile.terms import TERM_SETS
+from ..describe.scene import load_scene
+
+USUAL = {
+    dimensions: Path(__file__).with_name(name)
+    for dimensions, name in ((2, "usual_elements.yaml"), (3, "usual_spatial_elements.yaml"))
+}
+"""Scenes of all kinds of elements in the forms in which they are mostly used, by their dimensions."""
+
+
+def warm() -> None:
+    """Compile every kind of element in its usual forms, and the routines of all solvers.
+
+    Formulas that stand in a scene make kinds of their own, which are compiled when they are first met.
+    """
+    for path in USUAL.values():
+        system = compile_model(load_scene(path))
+        for group in system.groups:
+            for term_set in TERM_SETS:
+                system.kernel(term_set, group)
+    for routine in routines():
+        routine.load()
+
+
+def routines() -> Iterator[Routine]:
+    """Every compiled routine that a module of the package declares."""
+    for room in (compile_room, solve_room):
+        for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+            if ".native" not in module.name:
+                found = vars(importlib.import_module(module.name)).values()
+                yield from (value for value in found if isinstance(value, Routine))

@@ -1,0 +1,28 @@
+"""The fastest rate of a motion: what an explicit integrator's stability has to reckon with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.routines import Routine
+from .mechanics import Mechanics
+
+FASTEST_RATE = Routine(
+    "stiffmbs.solve.native.fastest_rate",
+    "fastest_rate",
+    "float64(float64, int64, float64*, float64*, int64*, int64*)",
+)
+
+
+def fastest_rate(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> float:
+    """The largest |lambda|, 1/s, of the motion about a state on the constraints, from below.
+
+    Its cost is that of a step of order 8.
+    """
+    state, eliminated = mechanics.state, mechanics.eliminated
+    state.q[:], state.u[:] = q, u
+    work = np.empty(3 * mechanics.system.n_u + mechanics.system.n_q)
+    addresses = (mechanics.system.mass, work, eliminated.table, mechanics.table)
+    rate = FASTEST_RATE.load()(t, eliminated.serves, *(array.ctypes.data for array in addresses))
+    mechanics.forget_pivots()
+    return float(rate)

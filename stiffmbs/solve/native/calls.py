@@ -1,0 +1,35 @@
+"""Calls of C functions by their addresses, and copies of memory, in compiled routines."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.translate.code import Code
+from stiffmbs.compile.translate.values import Operand, Value, builtin
+
+
+@builtin
+def int32(code: Code, number: Operand) -> Value:
+    """A number as C's int."""
+    return code.converted(number, "int32")
+
+
+@builtin
+def call_int(code: Code, function: Operand, arguments: tuple[Value, ...]) -> Value:
+    """Call a C function of the given address that returns an int; `arguments` is a tuple."""
+    address = code.put_value("ints", f"inttoptr {code.integer(function).typed} to ptr")
+    given = ", ".join(argument.typed for argument in arguments)
+    return code.put_value("int32", f"call i32 {address.text}({given})")
+
+
+@builtin
+def call_address(code: Code, function: Operand, argument: Value) -> Value:
+    """Call a C function of one pointer that returns a pointer; both as addresses."""
+    address = code.put_value("ints", f"inttoptr {code.integer(function).typed} to ptr")
+    return code.put_value("int", f"call i64 {address.text}({argument.typed})")
+
+
+@builtin
+def copy_bytes(code: Code, target: Operand, source: Operand, count: Operand) -> None:
+    """Copy a number of bytes from one address to another."""
+    code.unit.declare("declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)")
+    to, of = (code.put_value("ints", f"inttoptr {code.integer(a).typed} to ptr") for a in (target, source))
+    code.put(f"call void @llvm.memcpy.p0.p0.i64({to.typed}, {of.typed}, {code.integer(count).typed}, i1 false)")

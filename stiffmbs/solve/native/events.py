@@ -1,0 +1,95 @@
+"""Switches of forces (a contact closes, friction turns round): the step ends where one changes its sign."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.native.access import compiled
+from stiffmbs.compile.native.evaluate import SWITCH, evaluate
+from stiffmbs.solve.native.attempt import arrive, attempt
+from stiffmbs.solve.native.interpolant import interpolated, prepare
+from stiffmbs.solve.native.stages import copied, load_state
+
+BEHIND, ROUNDINGS = 1e-10, 2e-15
+"""How far behind the change the step ends, so that the new law holds there: in parts of the step, and of the time."""
+MOST_RETAKEN, BISECTIONS = 8, 40
+
+
+@compiled
+def _values(x, s, y, t):
+    load_state(s, y)
+    return evaluate(s, SWITCH, t)
+
+
+@compiled
+def _changed(x, values):
+    """Whether a switch has left the side on which it was at the step's start; from zero it may go either way."""
+    changed = False
+    for k in range(x.n_switches):
+        if x.sides[k] * values[k] < 0.0 or (values[k] == 0.0 and x.sides[k] != 0.0):
+            changed = True
+    return changed
+
+
+@compiled
+def note_sides(x, s, y, t):
+    """Remember the values of all switches at the start of a step."""
+    copied(x.sides, _values(x, s, y, t), x.n_switches)
+
+
+@compiled
+def _first_change(x, c, s, high):
+    """The time from the step's start, up to `high`, at which the interpolant first shows a change."""
+    low = 0.0
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        interpolated(x, c, middle / x.span[0], x.y_stage)
+        if _changed(x, _values(x, s, x.y_stage, x.t_before[0] + middle)):
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@compiled
+def _retaken(x, c, s, m, h):
+    """The step again with another length; 0 or a negative status."""
+    status = attempt(x, c, s, m, h)
+    if status < 0:
+        return status
+    x.span[0] = h
+    x.t[0] = x.t_before[0] + h
+    x.dense_ready[0] = 0
+    return arrive(x, c, s, m, x.t[0])
+
+
+@compiled
+def end_at_event(x, c, s, m):
+    """Where a switch has changed within the last step, take the step again so that it ends just behind the change.
+
+    The first guess comes from the interpolant of a step whose stages have seen both laws, the next ones from those of
+    steps that end where the guess says.  0 or a negative status.
+    """
+    if not _changed(x, _values(x, s, x.y, x.t[0])):
+        note_sides(x, s, x.y, x.t[0])
+        return 0
+    high = x.span[0]
+    behind = max(BEHIND * high, ROUNDINGS * abs(x.t[0]))
+    changed = True
+    for _ in range(MOST_RETAKEN):
+        status = prepare(x, c, s, m)
+        if status < 0:
+            return status
+        first = _first_change(x, c, s, high)
+        if changed and x.span[0] <= first + 2.0 * behind:
+            break
+        status = _retaken(x, c, s, m, min(first + behind, high))
+        if status < 0:
+            return status
+        changed = _changed(x, _values(x, s, x.y, x.t[0]))
+        if changed:
+            high = x.span[0]
+    if not changed:
+        status = _retaken(x, c, s, m, high)
+        if status < 0:
+            return status
+    x.at_event[0] = 1
+    return 0

@@ -1,0 +1,70 @@
+"""The fastest rate of a motion, by power iteration on differences of accelerations (von Mises and Pollaczek-Geiringer, 1929)."""
+
+from __future__ import annotations
+
+from math import sin, sqrt
+
+from stiffmbs.compile.native.access import compiled, mechanics_view, shifted, state_view
+from stiffmbs.compile.native.orientation import add_rates
+from stiffmbs.solve.native.mechanics import largest_of
+from stiffmbs.solve.native.stages import accelerated, copied
+
+ITERATIONS = 5
+"""Of a symmetric operator these find most of its largest eigenvalue; it is a bound from below."""
+MOVE = 1e-7
+"""Largest change of a coordinate or velocity, m, rad, m/s, rad/s: small beside what changes a force's law."""
+
+
+@compiled
+def _size(mass, v, n):
+    """The norm of a motion in the mass matrix, in which stiffness and damping are symmetric."""
+    total = 0.0
+    for k in range(n):
+        total += mass[k] * v[k] * v[k]
+    return sqrt(total)
+
+
+@compiled
+def _growth(t, of_pose, mass, eliminates, work, eliminated, s, m):
+    """How much larger the accelerations are that a move of the pose, or a change of velocities, makes."""
+    n = s.n_u
+    at_start, v, w, start = work, shifted(work, n), shifted(work, 2 * n), shifted(work, 3 * n)
+    if of_pose:
+        copied(start, s.q, s.n_q)
+    else:
+        copied(start, s.u, n)
+    for k in range(n):
+        v[k] = sin(1.0 + 3.7 * k) / mass[k]
+    growth = 0.0
+    for _ in range(ITERATIONS):
+        scale = MOVE / largest_of(v, n)
+        if of_pose:
+            add_rates(s, v, scale, s.q)
+        else:
+            for k in range(n):
+                s.u[k] += scale * v[k]
+        status = accelerated(eliminates, eliminated, s, m, t, w)
+        if of_pose:
+            copied(s.q, start, s.n_q)
+        else:
+            copied(s.u, start, n)
+        if status < 0:
+            return 0.0
+        for k in range(n):
+            w[k] = (w[k] - at_start[k]) / scale
+        growth = _size(mass, w, n) / _size(mass, v, n)
+        if not 0.0 < growth < float("inf"):
+            return 0.0
+        copied(v, w, n)
+    return growth
+
+
+def fastest_rate(t, eliminates, mass, work, eliminated, mechanics):
+    """The largest |lambda|, 1/s, of the motion about the state at hand; 0 where it has no accelerations."""
+    m = mechanics_view(mechanics)
+    s = state_view(m.state)
+    if accelerated(eliminates, eliminated, s, m, t, work) < 0:
+        return 0.0
+    stiffness = _growth(t, 1, mass, eliminates, work, eliminated, s, m)
+    damping = _growth(t, 0, mass, eliminates, work, eliminated, s, m)
+    return max(sqrt(stiffness), damping)

@@ -1,0 +1,144 @@
+"""Sparse LU along a fixed order of pivots, as flat lists without inner loops: a linear solver for IDA.
+
+The order is found by `stiffmbs.compile.native.factors.factor` with threshold pivoting.  What the elimination then does
+is written down once as a list of updates, `lu[target] -= lu[left] * lu[right]`, that later factorisations repeat: they
+search nothing, and short inner loops, whose ends a processor cannot foresee, are gone.  Where a pivot
+has become too small against its column, the order is found anew.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.layout import FIXED_ORDER
+from stiffmbs.compile.native.access import compiled, factors_view, floats, ints, shifted, view_of
+from stiffmbs.compile.native.factors import DONE, equilibrate, factor, scale
+from stiffmbs.solve.native.calls import call_address, int32
+
+OK, RECOVERABLE, FAILED = 0, 1, -1
+"""What IDA is told: after a recoverable failure it tries a smaller step."""
+CONTENT = 0
+"""Where a SUNLinearSolver holds the address of its content."""
+READY, N_LOWER, N_UPPER = range(3)
+LARGEST = 1e3
+"""A pivot is refused when an entry of its column is so many times larger."""
+
+fixed_order_view = view_of("FixedOrder", FIXED_ORDER)
+
+
+@compiled
+def _listed(s, f):
+    """Write down what the elimination along the pivots in `f` does; False where the room for it is too small."""
+    n = f.n
+    n_lower = f.l_start[n] - n
+    n_upper = f.u_start[n] - n
+    diagonal = n_lower + n_upper
+    upper = n_lower + n_upper  # the columns' upper entries lie from the last column to the first
+    count = 0
+    for k in range(n):
+        s.mark[k] = -1
+    for j in range(n):
+        lower = f.l_start[j] - j
+        for p in range(f.l_start[j] + 1, f.l_start[j + 1]):
+            s.row[lower], s.column[lower] = f.l_row[p], j
+            s.mark[f.l_row[p]] = lower
+            lower += 1
+        last = f.u_start[j + 1] - 1
+        upper -= last - f.u_start[j]
+        for p in range(f.u_start[j], last):
+            at = upper + p - f.u_start[j]
+            s.row[at], s.column[at] = f.u_row[p], j
+            s.mark[f.u_row[p]] = at
+        s.mark[j] = diagonal + j
+        s.update_start[j] = count
+        for p in range(f.u_start[j], last):
+            k = f.u_row[p]
+            left = f.l_start[k] - k
+            if 3 * (count + f.l_start[k + 1] - f.l_start[k]) > s.room:
+                return False
+            for below in range(f.l_start[k] + 1, f.l_start[k + 1]):
+                s.update[3 * count] = s.mark[f.l_row[below]]
+                s.update[3 * count + 1] = left
+                s.update[3 * count + 2] = s.mark[k]
+                left += 1
+                count += 1
+        column = f.order[j]
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            s.slot[p] = s.mark[f.pivot[f.a_row[p]]]
+            s.weight[p] = f.scale[f.a_row[p]] * f.scale[column]
+    s.update_start[n] = count
+    s.found[N_LOWER] = n_lower
+    s.found[N_UPPER] = n_upper
+    return True
+
+
+@compiled
+def _eliminated(s, f):
+    """Factors of the matrix in `f` by the list; False where a pivot is too small."""
+    n = f.n
+    lu = s.lu
+    update = s.update
+    n_lower = s.found[N_LOWER]
+    diagonal = n_lower + s.found[N_UPPER]
+    for p in range(diagonal + n):
+        lu[p] = 0.0
+    for p in range(f.a_start[n]):
+        lu[s.slot[p]] += s.weight[p] * f.a[p]
+    largest = 0.0
+    for j in range(n):
+        for m in range(3 * s.update_start[j], 3 * s.update_start[j + 1], 3):
+            lu[update[m]] -= lu[update[m + 1]] * lu[update[m + 2]]
+        inverse = 1.0 / lu[diagonal + j]
+        lu[diagonal + j] = inverse
+        for p in range(f.l_start[j] - j, f.l_start[j + 1] - j - 1):
+            lu[p] *= inverse
+            largest = max(largest, abs(lu[p]))
+        if not (largest < LARGEST and abs(inverse) < float("inf")):
+            return False
+    for p in range(n_lower, diagonal):
+        lu[p] *= lu[diagonal + s.row[p]]
+    return True
+
+
+def setup(solver, matrix):
+    """SUNLinSolSetup: factors along the known order, else along a new one."""
+    s = fixed_order_view(ints(solver[CONTENT]))
+    f = factors_view(s.factors)
+    if s.found[READY] and _eliminated(s, f):
+        return int32(OK)
+    s.found[READY] = 0
+    for p in range(f.a_start[f.n]):
+        s.weight[p] = f.a[p]
+    equilibrate(f)
+    scale(f)
+    outcome = factor(f)
+    for p in range(f.a_start[f.n]):
+        f.a[p] = s.weight[p]
+    if outcome != DONE:
+        return int32(RECOVERABLE)
+    if not _listed(s, f):
+        return int32(FAILED)
+    s.found[READY] = 1
+    return int32(OK if _eliminated(s, f) else RECOVERABLE)
+
+
+def solve(solver, matrix, x, b, tolerance):
+    """SUNLinSolSolve: x = A^-1 b."""
+    s = fixed_order_view(ints(solver[CONTENT]))
+    f = factors_view(s.factors)
+    into, of = floats(call_address(s.array_of, x)), floats(call_address(s.array_of, b))
+    n = f.n
+    lu = s.lu
+    y = s.x
+    n_lower = s.found[N_LOWER]
+    diagonal = n_lower + s.found[N_UPPER]
+    for k in range(n):
+        y[f.pivot[k]] = f.scale[k] * of[k]
+    for p in range(n_lower):
+        y[s.row[p]] -= lu[p] * y[s.column[p]]
+    inverse = shifted(lu, diagonal)
+    for k in range(n):
+        y[k] *= inverse[k]
+    for p in range(n_lower, diagonal):
+        y[s.row[p]] -= lu[p] * y[s.column[p]]
+    for k in range(n):
+        into[f.order[k]] = f.scale[f.order[k]] * y[k]
+    return int32(OK)

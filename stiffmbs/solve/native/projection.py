@@ -1,0 +1,52 @@
+"""Steps of an integrator brought back to the constraints: by frozen factors where they serve, else by Newton's moves."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.native.access import compiled, eliminated_view, shifted
+from stiffmbs.compile.native.evaluate import MOTION, POSITION, evaluate
+from stiffmbs.compile.native.orientation import add_rates, take_unit_length
+from stiffmbs.solve.native.eliminated import smallest_move
+from stiffmbs.solve.native.mechanics import (
+    MOST_MOVES,
+    ROUNDING,
+    largest_of,
+    largest_open,
+    to_position_constraints,
+    to_velocity_constraints,
+)
+
+MOST_FROZEN_MOVES = 3
+"""One is the rule: the factors are those of a state as near as the step's error."""
+
+
+@compiled
+def _by_frozen_factors(r, s, t, tolerance):
+    """Move q and u by the factors of the last accelerations; whether q came to the constraints.
+
+    Velocities take one move: what it leaves of their violation is as small as the change of J since.
+    """
+    gaps = evaluate(s, POSITION, t)
+    close = max(tolerance, ROUNDING * largest_of(s.q, s.n_q))
+    for _ in range(MOST_FROZEN_MOVES):
+        if largest_open(s, gaps) > close:
+            smallest_move(r, s, gaps)
+            add_rates(s, r.a, 1.0, s.q)
+        gaps = evaluate(s, MOTION, t)
+        if largest_open(s, gaps) <= close:
+            smallest_move(r, s, shifted(gaps, s.n_c))
+            for k in range(s.n_u):
+                s.u[k] += r.a[k]
+            take_unit_length(s)
+            return True
+    return False
+
+
+@compiled
+def back_to_constraints(x, s, m, t):
+    """Bring q and u of the state at hand, the end of a step, to both constraints; 0 or a negative status."""
+    if x.eliminates:
+        r = eliminated_view(x.eliminated)
+        if r.ready[0] and _by_frozen_factors(r, s, t, x.tolerance[0]):
+            return 0
+    status = to_position_constraints(s, m, t, x.tolerance[0], MOST_MOVES)
+    return status if status < 0 else to_velocity_constraints(s, m, t)

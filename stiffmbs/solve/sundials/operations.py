@@ -1,0 +1,78 @@
+"""Own functions in place of those of a linear solver of SUNDIALS."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Iterator, Mapping
+from functools import cache
+from itertools import takewhile
+
+import numpy as np
+
+from .libraries import Libraries, Unavailable
+from .session import Session
+
+LONGEST = 16
+"""Words of a solver, or of its table of operations, that are looked through."""
+CONTENT = 0
+"""The word of a solver that holds the address of its content (`stiffmbs.solve.native.fixed_order.CONTENT`)."""
+
+
+def take_place(session: Session, solver: int, size: int, functions: Mapping[str, int], content: np.ndarray) -> None:
+    """Put functions, and the content that they work on, in place of a solver's own; undone before it is freed.
+
+    A solver holds its content, its operations and, last, its context.  The table of operations is found by the addresses that it holds, as the layout of SUNDIALS' structures moves between versions.
+
+    Parameters
+    ----------
+    session : Session
+    solver : int
+        The SUNLinearSolver.
+    size : int
+        Its number of unknowns, by which its content is known.
+    functions : dict of str to int
+        The name of a function to replace, and the address of the one that takes its place.
+    content : ndarray of int
+        What takes the place of the content; the first three words are as in that.
+
+    Raises
+    ------
+    Unavailable
+        When the solver does not look as expected.
+    """
+    replaced = {session.libraries.address(name): address for name, address in functions.items()}
+    own = list(takewhile(lambda word: word != session.context.value, _words(solver, LONGEST)))
+    table = next((t for t in own[1:] if t and set(replaced) <= set(_words(t, LONGEST))), None)
+    if table is None or session.libraries.index.from_address(own[CONTENT]).value != size:
+        raise Unavailable("the SUNDIALS libraries lay out linear solvers in another way")
+    for k, address in enumerate(_words(table, LONGEST)):
+        if address in replaced:
+            _write(table, k, replaced[address])
+    _write(solver, CONTENT, content.ctypes.data)
+    session.before_freed(lambda: _write(solver, CONTENT, own[CONTENT]))
+
+
+@cache
+def replaceable(libraries: Libraries) -> bool:
+    """Whether `take_place` works with these libraries: tried on a solver of two unknowns."""
+    session = Session(libraries)
+    values = np.zeros(2)
+    try:
+        matrix = session.keep(libraries.SUNBandMatrix(2, 0, 0, session.context), libraries.SUNMatDestroy, "a matrix")
+        made = libraries.SUNLinSol_Band(session.vector(values), matrix, session.context)
+        solver = session.keep(made, libraries.SUNLinSolFree, "a linear solver")
+        unchanged = {name: libraries.address(name) for name in ("SUNLinSolSetup_Band", "SUNLinSolSolve_Band")}
+        take_place(session, solver, 2, unchanged, np.zeros(3, dtype=np.int64))
+    except Unavailable:
+        return False
+    finally:
+        session.close()
+    return True
+
+
+def _words(address: int, count: int) -> Iterator[int]:
+    return (ctypes.c_int64.from_address(address + 8 * k).value for k in range(count))
+
+
+def _write(address: int, word: int, value: int) -> None:
+    ctypes.c_int64.from_address(address + 8 * word).value = value

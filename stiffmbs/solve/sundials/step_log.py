@@ -1,0 +1,68 @@
+"""Time, order and size of each step of an integrator."""
+
+from __future__ import annotations
+
+import numpy as np
+
+WIDTH = 3
+MOST_KEPT = 1_000_000
+"""Steps kept; later ones are only counted."""
+
+
+class StepLog:
+    """Filled by compiled code call by call, read as arrays.
+
+    Attributes
+    ----------
+    count : int
+        Steps taken.
+    """
+
+    def __init__(self) -> None:
+        self._room = np.empty((0, WIDTH))
+        self._chunks: list[np.ndarray] = []
+        self.count = self._kept = 0
+
+    def room(self, steps: int) -> np.ndarray:
+        """Memory for the steps of one call, one row each: time of the end, order, size."""
+        self._room = np.empty((steps, WIDTH))
+        return self._room
+
+    def forget(self) -> None:
+        """Drop all steps."""
+        self._chunks.clear()
+        self.count = self._kept = 0
+
+    def begin(self, t: float) -> None:
+        """The integrator starts at `t`: a step that went beyond it, to where a switch was met, ends there."""
+        if self._chunks and len(self._chunks[-1]):
+            last = self._chunks[-1][-1]
+            if last[0] > t:
+                last[2] -= last[0] - t
+                last[0] = t
+
+    def add(self, steps: int) -> None:
+        """Keep the first rows of the room."""
+        self.count += steps
+        kept = min(steps, MOST_KEPT - self._kept)
+        if kept > 0:
+            self._chunks.append(self._room[:kept].copy())
+            self._kept += kept
+
+    def _all(self) -> np.ndarray:
+        return np.concatenate([np.empty((0, WIDTH)), *self._chunks])
+
+    @property
+    def t(self) -> np.ndarray:
+        """Ends of the steps, s."""
+        return self._all()[:, 0].copy()
+
+    @property
+    def order(self) -> np.ndarray:
+        """Order of each step's formula."""
+        return self._all()[:, 1].astype(int)
+
+    @property
+    def step(self) -> np.ndarray:
+        """Size of each step, s."""
+        return self._all()[:, 2].copy()

@@ -1,0 +1,99 @@
+"""The element that a run most likely stopped for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..compile.system import System
+from .mechanics import Mechanics
+
+AHEAD = (0.0, 1e-12, 1e-9, 1e-6)
+"""How far beyond the last state a value is looked for that does not exist, in parts of the time, s."""
+OPEN = 1e-5
+"""Violation of a constraint, m or rad, that tells a mechanism that locks."""
+TERM_SETS = ("motion", "acceleration")
+
+
+def suspect(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> str:
+    """A clause on the element that has no finite value at, or just beyond, a state; else on a joint that is open; else on
+    the element that pulls hardest.
+
+    Parameters
+    ----------
+    t : float
+        s.
+    q, u : ndarrays, shapes (n_q,), (n_u,)
+        The last state that was reached.
+
+    Returns
+    -------
+    str
+        Empty where nothing acts.
+    """
+    for ahead in AHEAD:
+        later = ahead * max(1.0, abs(t))
+        _move(mechanics, mechanics.system.of_body.moved(q, later * u), u)
+        for term_set in TERM_SETS:
+            mechanics.state.evaluate(term_set, t + later)
+            name = _undefined(mechanics.system, mechanics.state.values[term_set], term_set)
+            if name:
+                return f"; '{name}' has no finite value {'beyond' if ahead else 'at'} that instant"
+    _move(mechanics, q, u)
+    return _open(mechanics, t) or _hardest(mechanics, t)
+
+
+def _move(mechanics: Mechanics, q: np.ndarray, u: np.ndarray) -> None:
+    mechanics.state.q[:], mechanics.state.u[:] = q, u
+
+
+def _undefined(system: System, values: np.ndarray, term_set: str) -> str:
+    """The first element that wrote a value that is not finite."""
+    wrong = np.flatnonzero(~np.isfinite(values[: system.n_values(term_set)]))
+    return system.writer(term_set, int(wrong[0])) if len(wrong) else ""
+
+
+def _open(mechanics: Mechanics, t: float) -> str:
+    """The joint whose equations are furthest from satisfied, where that is more than an error of integration."""
+    system, state = mechanics.system, mechanics.state
+    state.evaluate("motion", t)
+    gaps = np.abs(state.vector("motion", "C")) * system.active
+    if not len(gaps) or gaps.max() < OPEN:
+        return ""
+    joint, equation = system.equations[int(np.argmax(gaps))]
+    return f"; joint '{joint}' (equation {equation}) is open by {gaps.max():.3g}"
+
+
+def _hardest(mechanics: Mechanics, t: float) -> str:
+    """The element that accelerates a body most."""
+    if mechanics.accelerate(t)[0] < 0:
+        return ""
+    largest, name, k = max(_pulls(mechanics, t), default=(0.0, "", 0))
+    if not largest > 0.0:
+        return ""
+    return f"; '{name}' pulls hardest there ({_acceleration(mechanics.system, k)} by {largest:.3g})"
+
+
+def _acceleration(system: System, k: int) -> str:
+    """The name of a velocity's rate; angular ones in space are about principal axes, which results do not know."""
+    of_body = system.of_body
+    if of_body.dimensions == 3 and k % of_body.n_u >= of_body.linear:
+        return f"the turning of {system.bodies[k // of_body.n_u]}"
+    return system.name_of(k, of_body.accelerations)
+
+
+def _pulls(mechanics: Mechanics, t: float) -> Iterator[tuple[float, str, int]]:
+    """The hardest pull of a force, and that of a joint: its size, the element, and the velocity that it changes."""
+    system, state = mechanics.system, mechanics.state
+    state.evaluate("motion", t)
+    values, lam = state.values["motion"], state.lam
+    force, jacobian = system.term("motion", "f"), system.term("motion", "J")
+    of_forces = np.abs(values[force.source] / system.mass[force.row])
+    of_joints = np.abs(values[jacobian.source] * lam[jacobian.row] / system.mass[jacobian.column])
+    if len(of_forces):
+        k = int(np.argmax(of_forces))
+        yield float(of_forces[k]), system.writer("motion", int(force.source[k])), int(force.row[k])
+    if len(of_joints):
+        k = int(np.argmax(of_joints))
+        yield float(of_joints[k]), system.equations[jacobian.row[k]][0], int(jacobian.column[k])

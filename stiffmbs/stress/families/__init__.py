@@ -1,0 +1,1 @@
+"""Cases of stress, one family per file; `CASES` holds them."""

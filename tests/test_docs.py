@@ -1,0 +1,146 @@
+"""What the documentation shows is true: its scenes are read, its code runs, and its output comes out."""
+
+import contextlib
+import doctest
+import io
+import re
+import shlex
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from click.testing import CliRunner
+from markdown_it import MarkdownIt
+from pydantic import TypeAdapter
+from ruamel.yaml import YAML
+
+import stiffmbs
+import stiffmbs.spatial
+from stiffmbs.command_line import main
+from stiffmbs.describe import model
+from stiffmbs.describe.expand import repeat_entries
+from stiffmbs.describe.scene import SECTIONS, PlanarScene
+from stiffmbs.describe.spatial import model as spatial_model
+
+HERE = Path(__file__).parent.parent
+PAGES = [HERE / "README.md", *sorted((HERE / "docs").rglob("*.md"))]
+TESTED = {"yaml", "python", "console"}
+QUICK = r"\$ stiffmbs (run|check) "
+"""Commands that are run; those that measure take long, and never print the same twice."""
+PLOT = ".. plot::\n"
+NUMBER = r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?"
+FRAME = "[\u2500-\u257f]+"
+"""Lines of tables, as long as their numbers."""
+SHOWN = 2e-3
+"""Relative difference to which a number on a page has to come out."""
+
+
+def blocks(page):
+    """The fenced blocks of a page: kind, text, line."""
+    found = []
+    for token in MarkdownIt().parse(page.read_text(encoding="utf-8")):
+        if token.type == "fence":
+            found.append((token.info, token.content, token.map[0] + 1))
+    return found
+
+
+def as_expected(shown, printed):
+    """Whether output is what a page shows: words alike, numbers to their tolerance, ``...`` for anything."""
+    shown, printed = (re.sub(FRAME, " ", text).strip() for text in (shown, printed))
+    parts = re.split(rf"({NUMBER}|\.\.\.(?!\.)|\s+)", shown)
+    patterns = [
+        rf"({NUMBER})" if re.fullmatch(NUMBER, part)
+        else r"[\s\S]*?" if part == "..."
+        else r"\s+" if part.isspace()
+        else re.escape(part)
+        for part in parts if part
+    ]  # fmt: skip
+    match = re.fullmatch("".join(patterns), printed)
+    if match is None:
+        return False
+    expected = [float(part) for part in parts if re.fullmatch(NUMBER, part)]
+    return [float(number) for number in match.groups()] == pytest.approx(expected, rel=SHOWN, abs=1e-12)
+
+
+def run_python(text, line, page, names):
+    printed = io.StringIO()
+    code = compile("\n" * line + text, str(page), "exec")
+    with contextlib.redirect_stdout(printed):
+        exec(code, names)
+    return printed.getvalue()
+
+
+def run_command(text):
+    """Run the commands of a block; what they print, with the commands themselves."""
+    printed = []
+    for line in text.splitlines():
+        if line.startswith("$ stiffmbs "):
+            printed += [line, CliRunner().invoke(main, shlex.split(line)[2:]).output]
+        elif line.startswith("$ "):
+            printed.append(line)
+    return "\n".join(printed)
+
+
+def read_yaml(text):
+    """A whole scene is read, and kept where its first line names a file; parts of one are checked section by section."""
+    found = YAML(typ="safe", pure=True).load(text)
+    if "bodies" in found:
+        stiffmbs.read_scene(text)
+        found = {}
+    for key, value in found.items():
+        parts = repeat_entries(key, value, {}) if key in SECTIONS else value
+        TypeAdapter(PlanarScene.model_fields[key].annotation).validate_python(parts)
+    if name := re.match(r"# (\w+\.yaml)\n", text):
+        Path(name[1]).write_text(text, encoding="utf-8")
+
+
+@pytest.fixture
+def workplace(tmp_path, monkeypatch):
+    """A folder with the examples in it, as the pages take it to be."""
+    (tmp_path / "examples").symlink_to(HERE / "examples")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    monkeypatch.setenv("COLUMNS", "100")
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if TESTED & {kind for kind, *_ in blocks(page)}], ids=lambda page: page.stem
+)
+def test_what_a_page_shows_is_true(page, workplace):
+    """A block of text right behind one of code is its output."""
+    names, printed = {}, None
+    for kind, text, line in blocks(page):
+        shown, printed = printed, None
+        match kind:
+            case "yaml":
+                read_yaml(text)
+            case "python":
+                printed = run_python(text, line, page, names)
+            case "{eval-rst}" if text.startswith(PLOT):
+                run_python(dedent(text.removeprefix(PLOT)), line + 2, page, {})
+            case "console" if re.match(QUICK, text):
+                found = run_command(text)
+                assert as_expected(text, found), f"{page.name}:{line}: found {found}"
+            case "text" if shown is not None:
+                assert as_expected(text, shown), f"{page.name}:{line}: found {shown}"
+
+
+@pytest.mark.parametrize(
+    "module", [stiffmbs, model, stiffmbs.spatial, spatial_model], ids=lambda module: module.__name__
+)
+def test_examples_in_docstrings_run(module, workplace):
+    results = doctest.testmod(module)
+    assert results.attempted and not results.failed
+
+
+@pytest.mark.parametrize(("page", "described"), [("scenes", model), ("scenes_in_space", spatial_model)])
+def test_every_kind_stands_in_the_overview_of_scenes(page, described):
+    text = (HERE / "docs" / "reference" / f"{page}.md").read_text(encoding="utf-8")
+    rows = {kind for row in re.findall(r"^\|([^|]*)\|", text, re.MULTILINE) for kind in re.findall(r"`(\w+)`", row)}
+    assert not {*described.JOINTS, *described.FORCES} - rows
+
+
+def test_expected_output_is_compared():
+    assert as_expected("force: 3.142 N ... done", "force:  3.1416 N in 2 steps\ndone\n")
+    assert not as_expected("force: 3.142 N", "force: 3.2 N")
+    assert not as_expected("force: 3.142 N", "torque: 3.142 N")
