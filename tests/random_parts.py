@@ -38,7 +38,8 @@ LEFT_OUT = {
     "point_on_curve": [("radius",), ("y",)],
     "sphere_contact": [("surface_radius",)],
     "drive": [
-        ("coordinate", "velocity"), ("coordinate", "position"), ("joint", "velocity"), ("joint", "position"),
+        (*one_way, level)
+        for one_way in (("coordinate", "i", "j"), ("joint",)) for level in ("velocity", "position")
     ],
 }  # fmt: skip
 """Fields to leave out, case by case, of kinds that want one of several."""
