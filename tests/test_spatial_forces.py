@@ -415,7 +415,7 @@ def test_what_is_wrong_with_a_bushing_is_said(fields, message):
 def test_what_is_wrong_with_a_beam_is_said():
     with pytest.raises(stiffmbs.InputError, match="found both 'damping' and 'damping_ratio', expected one of them"):
         spatial.Beam(i="a", j="b", **SECTION, damping_ratio=0.1, damping=SIX)
-    with pytest.raises(stiffmbs.InputError, match=r"area: found 0, expected a area greater than 0 m\^2"):
+    with pytest.raises(stiffmbs.InputError, match=r"area: found 0, expected an area greater than 0 m\^2"):
         spatial.Beam(i="a", j="b", **SECTION | {"area": 0})
 
 

@@ -23,7 +23,7 @@ from pydantic_core import core_schema
 
 from ..errors import InputError
 from .formula import FormulaError
-from .quantity import DIMENSIONS, in_si
+from .quantity import DIMENSIONS, in_si, one
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
@@ -110,7 +110,7 @@ class Measured:
         ):
             if bound is not None and not holds(value, bound):
                 limit = f"{bound:g} {unit}".strip()
-                raise FormulaError(f"found {found}, expected a {self.dimension} {words.format(limit)}")
+                raise FormulaError(f"found {found}, expected {one(self.dimension)} {words.format(limit)}")
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:

@@ -217,22 +217,27 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
         result = quantity(found, parameters)
         if dimension != ANY and result.dimension is not None and result.dimension != expected:
             raise FormulaError(
-                f"found '{found}', which is in {_unit(result.dimension)}, expected a {dimension} in {unit}"
+                f"found '{found}', which is in {_unit(result.dimension)}, expected {one(dimension)} in {unit}"
             )
         return _of_ordinary_size(result.value, dimension)
     if isinstance(found, bool) or not hasattr(found, "__float__") or getattr(found, "ndim", False):
-        raise FormulaError(f"found {_shown(found)}, expected a {dimension} in {unit}")
+        raise FormulaError(f"found {_shown(found)}, expected {one(dimension)} in {unit}")
     value = float(found)
     if not math.isfinite(value):
         raise FormulaError(f"found {value}, expected a finite {dimension} in {unit}")
     return _of_ordinary_size(value, dimension)
 
 
+def one(dimension: str) -> str:
+    """A value of a dimension in a sentence: ``a length``, ``an angle``."""
+    return f"{'an' if dimension[0] in 'aeio' else 'a'} {dimension}"
+
+
 def _of_ordinary_size(value: float, dimension: str) -> float:
     """The value, if its square and its products with others are still numbers."""
     if abs(value) > LARGEST:
         raise FormulaError(
-            f"found {value:g}, expected a {dimension} below {LARGEST:g} {DIMENSIONS[dimension][1]}".rstrip()
+            f"found {value:g}, expected {one(dimension)} below {LARGEST:g} {DIMENSIONS[dimension][1]}".rstrip()
         )
     return value
 
