@@ -1,9 +1,12 @@
 """Forces of Adams datasets, by functions and by constants, against equations of motion that share no code."""
 
 import numpy as np
+import pytest
 
 from .adams_oracle import Marker, Mechanism, Part, euler, tensor
 from .adams_trials import moves_alike, near, played, table
+
+pytestmark = pytest.mark.long
 
 WEIGHT = "ACCGRAV/KGRAV=-9.80665\n"
 TIMES = np.linspace(0, 1, 51)

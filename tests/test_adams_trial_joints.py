@@ -1,10 +1,13 @@
 """Every kind of joint of an Adams dataset, with crooked markers, against index-1 equations that share no code."""
 
 import numpy as np
+import pytest
 
 from . import adams_joints as joints
 from .adams_oracle import Marker, Mechanism, Part, euler, tensor
 from .adams_trials import moves_alike, near, played, table
+
+pytestmark = pytest.mark.long
 
 WEIGHT = "ACCGRAV/KGRAV=-9.80665\n"
 TIMES = np.linspace(0, 1, 51)

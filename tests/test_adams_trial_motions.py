@@ -7,6 +7,8 @@ from . import adams_joints as joints
 from .adams_oracle import Marker, Mechanism, Part, euler, tensor
 from .adams_trials import moves_alike, near, played, table
 
+pytestmark = pytest.mark.long
+
 WEIGHT = "ACCGRAV/KGRAV=-9.80665\n"
 TIMES = np.linspace(0, 1, 51)
 TILTED = euler(0, 50, 20)

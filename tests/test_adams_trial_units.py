@@ -5,6 +5,8 @@ import pytest
 
 import stiffmbs
 
+pytestmark = pytest.mark.long
+
 INCH, POUND, POUND_FORCE = 0.0254, 0.45359237, 0.45359237 * 9.80665
 
 SYSTEMS = {  # units in SI: force, mass, length, time

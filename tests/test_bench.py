@@ -106,7 +106,9 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
 WITHOUT_YARDSTICK = ("chain_in_space", "elements_in_space")
 
 
-@pytest.mark.parametrize("name", FAMILIES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long if name == "elements_in_space" else ()) for name in FAMILIES]
+)
 def test_quick_look_in_json(name):
     result = CliRunner().invoke(main, ["bench", "--quick", "--json", name])
     assert result.exit_code == 0, result.output

@@ -229,12 +229,12 @@ def test_schema_accepts_the_examples_and_refuses_a_misspelt_key(examples):
 
     schema = json.loads(stiffmbs("schema").output)
     jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
     for path in sorted(examples.glob("*.yaml")):
         scene = YAML(typ="safe").load(path)
-        jsonschema.validate(scene, schema)
+        validator.validate(scene)
         scene["gravty"] = [0, 0]
-        with pytest.raises(jsonschema.ValidationError):
-            jsonschema.validate(scene, schema)
+        assert not validator.is_valid(scene)
 
 
 def test_importing_the_package_needs_none_of_its_heavy_parts():

@@ -56,7 +56,9 @@ def case_name(case):
     return "-".join([*(["space"] if dimensions == 3 else []), kind.kind, *(f"no_{name}" for name in left_out)])
 
 
-@pytest.fixture(params=CASES, ids=case_name)
+@pytest.fixture(
+    params=[pytest.param(case, marks=pytest.mark.long if case[0] == 3 else (), id=case_name(case)) for case in CASES]
+)
 def state(request):
     rng = np.random.default_rng(7)
     dimensions, kind, left_out = request.param

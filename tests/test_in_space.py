@@ -208,6 +208,7 @@ def assembled(scene):
     return scene.model_copy(update={"bodies": drawn})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("settings", [BDF, DOP853], ids=["bdf", "dop853"])
 @pytest.mark.parametrize("kind", CASES)
 def test_each_kind_is_the_same_in_space(kind, settings):
