@@ -175,7 +175,7 @@ SPLINE = {"table": [[0, 1], [1, 1], [2 * np.pi, 1]]}
         (lambda: Distance(i="a", j="b"), r"length: found nothing, expected a value"),
         (lambda: PointOnLine(i="a", j="a"), r"x: found 'a' on both sides, expected two different bodies"),
         (lambda: PointOnLine(i="a"), r"j: found nothing"),
-        (lambda: Gear(joint_1="pin_a", joint_2="pin_b", ratio=0), r"ratio: found 0, expected a ratio .* other than zero"),
+        (lambda: Gear(joint_1="pin_a", joint_2="pin_b", ratio=0), r"ratio: found 0, expected a number other than 0"),
         (lambda: Gear(joint_1="pin_a", joint_2="slide", ratio=1), r"x.joint_2: found 'slide' of the type prismatic, expected a revolute"),
         (lambda: Gear(joint_1="pin_a", joint_2="on_b", ratio=1), r"x.joint_2: found marker j of 'on_b' on 'b' and that of 'pin_a' on 'ground', expected both on the carrier"),
         (lambda: Gear(joint_1="pin_a", joint_2="pin_a", ratio=1), r"x.joint_2: found 'pin_a' a second time"),

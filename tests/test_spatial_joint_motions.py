@@ -256,7 +256,7 @@ def test_a_knife_edge_on_a_slope_draws_a_cycloid(solver):
         (lambda m: m.Gear(joint_1="sleeve.displacement", joint_2="pin", ratio=2), "x.joint_1: found 'sleeve.displacement' .* expected a revolute"),
         (lambda m: m.Coupler(joint_1="pin", joint_2="pin.angle", scale=2), "found 'pin.angle' a second time"),
         (lambda m: m.Coupler(joint_1="pin", joint_2="ball", scale=2), "found 'ball' of the type spherical, expected a joint with a coordinate"),
-        (lambda m: m.Screw(i="a", j="b", pitch=0), "pitch: found 0, expected a pitch other than zero"),
+        (lambda m: m.Screw(i="a", j="b", pitch=0), "pitch: found 0, expected a length other than 0 m"),
         (lambda m: m.VelocityEquation(zero="a.x - 1"), "zero: found 'a.x - 1', expected a formula with a velocity such as cart.vx"),
         (lambda m: m.VelocityEquation(zero="3*t"), "zero: found '3\\*t', expected a formula with a body's coordinate"),
         (lambda m: m.RevoluteSpherical(i="a", j="b", length=0), "length: found 0"),

@@ -90,23 +90,25 @@ class Measured:
     ----------
     dimension : str
         One of `stiffmbs.describe.quantity.DIMENSIONS`.
-    above, at_least, at_most : float, optional
-        Bounds in SI units.
+    above, at_least, at_most, other_than : float, optional
+        Bounds, and a number that is none of them, in SI units.
     """
 
     dimension: str
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
+    other_than: float | None = None
 
     def read(self, found: object, info: ValidationInfo) -> float:
         """The SI value of what stands in the scene."""
         value = in_si(found, self.dimension, (info.context or {}).get("parameters"))
-        unit = DIMENSIONS[self.dimension][1].removeprefix("1")
+        unit = DIMENSIONS[self.dimension][1].removeprefix("1").removeprefix("SI units")
         for bound, holds, words in (
             (self.above, operator.gt, "greater than {}"),
             (self.at_least, operator.ge, "of {} or more"),
             (self.at_most, operator.le, "of {} or less"),
+            (self.other_than, operator.ne, "other than {}"),
         ):
             if bound is not None and not holds(value, bound):
                 limit = f"{bound:g} {unit}".strip()
@@ -120,10 +122,11 @@ class Measured:
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         bounds = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
-        number = {"type": "number", **{name: bound for name, bound in bounds.items() if bound is not None}}
+        number: dict[str, Any] = {name: bound for name, bound in bounds.items() if bound is not None}
+        excluded = {} if self.other_than is None else {"not": {"const": self.other_than}}
         unit = DIMENSIONS[self.dimension][1]
         text = {"type": "string", "description": f"a formula with units that converts to {unit}"}
-        return {"anyOf": [number, text], "description": f"{self.dimension}, {unit}"}
+        return {"anyOf": [{"type": "number", **number, **excluded}, text], "description": f"{self.dimension}, {unit}"}
 
 
 def sentence(error: PydanticError) -> str:

@@ -50,11 +50,9 @@ class Contact(ContactLaw):
 
     @staticmethod
     def gap(e: Symbolic) -> Any:
-        """Distance of the surfaces, m; below zero where they overlap."""
         if e.surface == "line":
             return (e.i.point - e.j.point).dot(e.j.normal) - e.radius
-        distance = e.distance(e.i.point, e.j.point)
-        return (distance - e.surface_radius if e.surface == "circle" else e.surface_radius - distance) - e.radius
+        return Contact.gap_round(e, 1 if e.surface == "circle" else -1)
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:

@@ -37,6 +37,11 @@ class ContactLaw(Friction):
         """Distance of the surfaces, m; below zero where they overlap."""
         raise NotImplementedError
 
+    @staticmethod
+    def gap_round(e: Symbolic, outward: int) -> Any:
+        """Distance of what is about i from a round surface about j, which is solid inside (`outward` 1) or outside (-1)."""
+        return outward * (e.distance(e.i.point, e.j.point) - e.surface_radius) - e.radius
+
     @classmethod
     def pressure(cls, e: Symbolic) -> Any:
         """The normal force N, zero without contact."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from .. import si
 from ..element import JointReference, Symbolic
@@ -28,15 +28,8 @@ class Coupler(Relation):
     type: Literal["coupler"] = "coupler"
     joint_1: JointReference = Field(description="joint with the coordinate s_1")
     joint_2: JointReference = Field(description="joint with the coordinate s_2")
-    scale: si.Anything = Field(description="ds_1/ds_2, in units of s_1 over units of s_2 (m, rad)")
+    scale: si.ValueNotZero = Field(description="ds_1/ds_2, in units of s_1 over units of s_2 (m, rad)")
     offset: si.Anything | None = Field(None, description="s_1 - scale s_2, m or rad; as drawn unless given")
-
-    @field_validator("scale")
-    @classmethod
-    def _not_zero(cls, scale: float) -> float:
-        if scale == 0:
-            raise ValueError("found 0, expected a scale other than zero (a drive can hold one joint alone)")
-        return scale
 
     @staticmethod
     def relation(e: Symbolic) -> Any:

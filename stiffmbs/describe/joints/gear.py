@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from .. import si
 from ..element import JointReference, Symbolic
@@ -31,15 +31,8 @@ class Gear(Relation):
     type: Literal["gear"] = "gear"
     joint_1: JointReference = Field(description="revolute joint of wheel 1 (marker i), on which the torque is reported")
     joint_2: JointReference = Field(description="revolute joint of wheel 2 (marker i), in the same carrier (marker j)")
-    ratio: si.Number = Field(description="teeth of wheel 2 over teeth of wheel 1, below zero for internal teeth")
+    ratio: si.NumberNotZero = Field(description="teeth of wheel 2 over teeth of wheel 1, below zero for internal teeth")
     offset: si.Angle | None = Field(None, description="theta_1 + ratio theta_2, rad; as drawn unless given")
-
-    @field_validator("ratio")
-    @classmethod
-    def _not_zero(cls, ratio: float) -> float:
-        if ratio == 0:
-            raise ValueError("found 0, expected a ratio of teeth other than zero")
-        return ratio
 
     @staticmethod
     def relation(e: Symbolic) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from .. import si
 from ..element import JointReference, Symbolic
@@ -33,15 +33,8 @@ class RackAndPinion(Relation):
     pinion: JointReference = Field(
         description="revolute joint of the pinion (marker i), in the same housing (marker j)"
     )
-    pitch_radius: si.Length = Field(description="R, m; below zero for a pinion on the right of the rack's axis")
+    pitch_radius: si.LengthNotZero = Field(description="R, m; below zero for a pinion on the right of the rack's axis")
     offset: si.Length | None = Field(None, description="s - R theta, m; as drawn unless given")
-
-    @field_validator("pitch_radius")
-    @classmethod
-    def _not_zero(cls, radius: float) -> float:
-        if radius == 0:
-            raise ValueError("found 0, expected a pitch radius other than zero")
-        return radius
 
     @staticmethod
     def relation(e: Symbolic) -> Any:

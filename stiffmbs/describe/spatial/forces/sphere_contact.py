@@ -52,8 +52,7 @@ class SphereContact(ContactLaw):
     def gap(e: Symbolic) -> Any:
         if e.surface == "plane":
             return (e.i.point - e.j.point).dot(e.j.z) - e.radius
-        distance = e.distance(e.i.point, e.j.point)
-        return (distance - e.surface_radius if e.surface == "sphere" else e.surface_radius - distance) - e.radius
+        return SphereContact.gap_round(e, 1 if e.surface == "sphere" else -1)
 
     @staticmethod
     def normal(e: Symbolic) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from ... import si
 from ...element import Symbolic
@@ -31,15 +31,8 @@ class Thread(KeptAsDrawn):
     type: Literal["thread"] = "thread"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the thread's")
-    pitch: si.Length = Field(description="way along z in a full turn, m; below zero for a left-handed thread")
+    pitch: si.LengthNotZero = Field(description="way along z in a full turn, m; below zero for a left-handed thread")
     offset: si.Length | None = Field(None, description="s where the angle is zero, m; as drawn unless given")
-
-    @field_validator("pitch")
-    @classmethod
-    def _not_zero(cls, pitch: float) -> float:
-        if pitch == 0:
-            raise ValueError("found 0, expected a pitch other than zero")
-        return pitch
 
     @staticmethod
     def relation(e: Symbolic) -> Any:
