@@ -1,5 +1,6 @@
 """What many tests share: the example scenes and the converged cart-pendulum."""
 
+import gc
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,12 @@ from scipy.integrate import solve_ivp
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
+
+
+def pytest_sessionfinish() -> None:
+    """Millions of SymPy's expressions are kept to the end; to look through them again and again takes a process longer than
+    those it works for wait."""
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

@@ -16,10 +16,6 @@ class ContactLaw(Friction):
 
     Where the gap is closed by delta = -gap > 0 the surfaces repel each other with N = k delta^n (1 + chi delta'), never
     below zero.  Without friction and dissipation this has the potential k delta^(n+1)/(n+1).
-
-    For a coefficient of restitution e at an impact speed v, near e = 1, chi = 3 (1 - e) / (2 v) (Hunt and Crossley,
-    J. Appl. Mech. 42, 1975, 440-445) or 3 (1 - e^2) / (4 v) (Lankarani and Nikravesh, J. Mech. Des. 112, 1990,
-    369-376); for any e, chi = 8 (1 - e) / (5 e v) (Flores and others, Multibody Syst. Dyn. 25, 2011, 357-375).
     """
 
     stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
