@@ -27,13 +27,7 @@ def compile_model(model: Compilable) -> System:
     """
     bodies = tuple(model.bodies)
     of_body = BODY_KINDS[model.dimensions]
-    sorted_elements: dict[Kind, list[_Member]] = {}
-    for name, element in model.elements():
-        try:
-            kind, data = sorted_out(element, model)
-        except FormulaError as error:
-            raise InputError(f"{name}: {error}") from None
-        sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
+    sorted_elements = _sorted_elements(model)
     records = {kind: _record(kind, members[0].name) for kind, members in sorted_elements.items()}
     rows, equations, holonomic = _rows(sorted_elements, records)
     n_counters = sum(records[kind].n_counters * len(members) for kind, members in sorted_elements.items())
@@ -54,6 +48,22 @@ def compile_model(model: Compilable) -> System:
         active=np.ones(len(equations), dtype=bool),
         size=model.size(),
     )
+
+
+def kinds_of(model: Compilable) -> list[Kind]:
+    """The kinds of a model's elements, each once."""
+    return list(_sorted_elements(model))
+
+
+def _sorted_elements(model: Compilable) -> dict[Kind, list[_Member]]:
+    sorted_elements: dict[Kind, list[_Member]] = {}
+    for name, element in model.elements():
+        try:
+            kind, data = sorted_out(element, model)
+        except FormulaError as error:
+            raise InputError(f"{name}: {error}") from None
+        sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
+    return sorted_elements
 
 
 def _principal_axes(model: Compilable) -> np.ndarray:

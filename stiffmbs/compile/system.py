@@ -13,10 +13,11 @@ import numpy as np
 
 from ..describe.element import Element
 from .bodies import BodyKind
+from .kernels import kernel_of
 from .kind import Kind
-from .machine import Compiled, compiled_source
+from .machine import Compiled
 from .record import KindRecord, source_of
-from .terms import KERNEL_SIGNATURE, TERM_AXES, TERM_SETS, TURNED
+from .terms import TERM_AXES, TERM_SETS, TURNED
 
 
 @dataclass(frozen=True)
@@ -302,8 +303,7 @@ class System:
 
     def kernel(self, term_set: str, group: Group) -> Compiled | None:
         """The compiled kernel with which a group contributes to a set, if it does."""
-        source = source_of(group.kind, term_set)
-        return compiled_source(source, "kernel", KERNEL_SIGNATURE) if source else None
+        return kernel_of(group.kind, term_set)
 
     def turned(self, term_set: str) -> np.ndarray:
         """The first coordinate of each body what is shared of whose orientation the kernels of a set read."""

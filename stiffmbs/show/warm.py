@@ -5,13 +5,15 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 from .. import compile as compile_room
 from .. import solve as solve_room
-from ..compile.compile_model import compile_model
+from ..compile.compile_model import kinds_of
+from ..compile.kernels import compile_usual
 from ..compile.routines import Routine
-from ..compile.terms import TERM_SETS
 from ..describe.scene import load_scene
 
 USUAL = {
@@ -24,13 +26,12 @@ USUAL = {
 def warm() -> None:
     """Compile every kind of element in its usual forms, and the routines of all solvers.
 
-    Formulas that stand in a scene make kinds of their own, which are compiled when they are first met.
+    Formulas that stand in a scene make kinds of their own, which are compiled when they are first met, and so is what one
+    formulation alone uses.
     """
-    for path in USUAL.values():
-        system = compile_model(load_scene(path))
-        for group in system.groups:
-            for term_set in TERM_SETS:
-                system.kernel(term_set, group)
+    kinds = [kind for path in USUAL.values() for kind in kinds_of(load_scene(path))]
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
+        list(processes.map(compile_usual, kinds))
     for routine in routines():
         routine.load()
 

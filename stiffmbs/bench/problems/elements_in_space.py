@@ -13,20 +13,16 @@ import numpy as np
 
 from ...compile.cache import DIRECTORY_VARIABLE
 from ...compile.compile_model import compile_model
+from ...compile.kernels import compile_usual
 from ...compile.kind import sorted_out
-from ...compile.machine import compiled_source
-from ...compile.record import source_of
 from ...compile.state import State
 from ...compile.system import Group, System
-from ...compile.terms import KERNEL_SIGNATURE, TERM_SETS
 from ...describe.scene import load_scene
 from ...show.warm import USUAL
 from ..benchmark import Row
 
 COPIES, ROUNDS = 1000, 50
 COLD = "from stiffmbs.bench.problems.elements_in_space import compile_first; print(compile_first({element!r}))"
-RARE = ("all_levels", "all_levels_tangent")
-"""Term sets that no usual run compiles."""
 
 
 def compile_first(element: str) -> float:
@@ -37,10 +33,7 @@ def compile_first(element: str) -> float:
     scene = load_scene(USUAL[3])
     begun = time.process_time()
     kind, _ = sorted_out({**scene.joints, **scene.forces}[element].as_drawn(scene), scene)
-    for term_set in TERM_SETS:
-        source = None if term_set in RARE else source_of(kind, term_set)
-        if source:
-            compiled_source(source, "kernel", KERNEL_SIGNATURE)
+    compile_usual(kind)
     return time.process_time() - begun
 
 

@@ -1,0 +1,21 @@
+"""The compiled kernels of a kind."""
+
+from __future__ import annotations
+
+from .kind import Kind
+from .machine import Compiled, compiled_source
+from .record import RARE, source_of
+from .terms import KERNEL_SIGNATURE, TERM_SETS
+
+
+def kernel_of(kind: Kind, term_set: str) -> Compiled | None:
+    """The compiled kernel with which a kind contributes to a set, if it does."""
+    source = source_of(kind, term_set)
+    return compiled_source(source, "kernel", KERNEL_SIGNATURE) if source else None
+
+
+def compile_usual(kind: Kind) -> None:
+    """Have all kernels of a kind in the cache that solvers usually ask for."""
+    for term_set in TERM_SETS:
+        if term_set not in RARE:
+            kernel_of(kind, term_set)
