@@ -20,6 +20,8 @@ from .marker import GROUND, MarkerReference
 from .quantity import UNITS
 from .request import Request
 
+ROUNDING = 1e-13
+"""Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""
 RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
 
@@ -155,6 +157,11 @@ class ModelData(Described):
     def point(self, marker: MarkerReference) -> tuple[float, ...]:
         """Where a marker is in ground axes at the start, m."""
         return tuple(float(x) for x in self.drawn_marker(marker).point)
+
+    def at_one_place(self, i: MarkerReference, j: MarkerReference) -> bool:
+        """Whether two markers are at one point at the start, to rounding: the line through them has no direction."""
+        a, b = self.point(i), self.point(j)
+        return math.dist(a, b) <= ROUNDING * max(self.size(), *map(abs, (*a, *b)))
 
     def place(self, marker: Any) -> Any:
         """Where a marker sits on its body, in the body's own axes."""

@@ -63,7 +63,7 @@ class Mechanism:
     ----------
     least : float
         Mass of the lightest part that has any, kg.
-    tips : mapping of str to Place
+    further : mapping of str to Place
         Markers that the dataset does not have, by their references; see `tip`.
     tables : mapping of str to table
         Of the scene, by name: splines that functions have called so far, in the dataset's units.
@@ -76,7 +76,7 @@ class Mechanism:
 
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
-        self.tips: dict[str, Place] = {}
+        self.further: dict[str, Place] = {}
         self.tables: dict[str, dict[str, Any]] = {}
         self.least = lightest(dataset.parts)
         self.parts = {(part.point, part.ident): weighed(part, self.least) for part in dataset.parts}
@@ -108,10 +108,16 @@ class Mechanism:
 
         With it formulas measure that axis: ``dx(tip, marker, other)`` is its component along the x axis of the other.
         """
-        end = Frame(np.array([0.0, 0.0, 1.0]), IDENTITY)
-        found = Place(place.body, f"{place.name}_z", end.within(place.on_body), end.within(place.drawn))
-        self.tips[found.reference] = found
-        return found.reference
+        return self.moved(place, f"{place.name}_z", place.drawn.axes[:, 2]).reference
+
+    def moved(self, place: Place, name: str, way: np.ndarray) -> Place:
+        """A further marker of the scene: another one, moved on its body by a way in ground axes (m) at the start."""
+        seen = place.drawn.axes.T @ way
+        found = Place(
+            place.body, name, *(Frame(seen, IDENTITY).within(frame) for frame in (place.on_body, place.drawn))
+        )
+        self.further[found.reference] = found
+        return found
 
     @cached_property
     def moving(self) -> tuple[Part, ...]:

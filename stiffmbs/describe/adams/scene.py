@@ -12,8 +12,8 @@ from .scene_bodies import bodies, ground_markers
 from .scene_bodies import notes as body_notes
 from .scene_forces import Forces
 from .scene_joints import held, joints
-from .scene_joints import notes as joint_notes
 from .scene_motions import motions
+from .scene_racks import notes as rack_notes
 from .scene_relations import relations
 from .scene_requests import Requests
 from .starts import check_starts
@@ -35,7 +35,8 @@ def scene(dataset: Dataset) -> dict[str, Any]:
     check_starts(mechanism)
     translation = Translation(mechanism)
     requests = Requests(mechanism)
-    driven = motions(mechanism, translation)  # before bodies, which get the markers that formulas need
+    driven = motions(mechanism, translation)  # these before bodies, which get the markers that formulas need
+    joined = joints(mechanism, translation)
     found: dict[str, Any] = {
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
@@ -43,7 +44,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "markers": ground_markers(mechanism),
         "bodies": bodies(mechanism),
         "joints": {
-            **joints(mechanism, translation),
+            **joined,
             **held(mechanism),
             **relations(mechanism),
             **driven,
@@ -55,7 +56,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             *dataset.notes,
             *mechanism.notes(),
             *body_notes(mechanism),
-            *joint_notes(mechanism),
+            *rack_notes(mechanism),
             *requests.notes,
         ],
     }

@@ -64,7 +64,7 @@ def _pose(point: str, frame: Frame) -> dict[str, Any]:
 def _markers(mechanism: Mechanism, part: Part) -> list[tuple[str, dict[str, Any]]]:
     own: list[Marker] = [m for m in mechanism.dataset.markers.values() if mechanism.part_of(m) is part]
     places = [mechanism.placed(marker) for marker in own if not marker.floating]
-    places += [tip for tip in mechanism.tips.values() if tip.body == mechanism.body_name(part)]
+    places += [place for place in mechanism.further.values() if place.body == mechanism.body_name(part)]
     return [(place.name, _pose("point", place.on_body)) for place in places]
 
 

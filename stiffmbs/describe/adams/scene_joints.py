@@ -12,6 +12,7 @@ from .constraints import GeneralConstraint, Joint
 from .geometry import Frame
 from .mechanism import Mechanism, Place
 from .plain import plain, quaternion, vector
+from .scene_racks import rolling
 from .translate import ANGULAR_VELOCITIES as TURNING
 from .translate import VELOCITIES, Translation
 
@@ -35,8 +36,6 @@ KINDS = {
 Z_ALONG_X = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Axes whose z is the x axis of those that they are given in."""
 Z_ALONG_Y = Z_ALONG_X.T
-NEAR = 1e-6
-"""Of a pitch diameter: how near a rack's line is to go through the pinion's centre."""
 
 
 def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
@@ -75,7 +74,7 @@ def _joint(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
         case "SCREW":
             return {"type": "thread", "i": i.reference, "j": j.reference, "pitch": plain(joint.pitch)}
         case "RACKPIN":
-            return {"type": "velocity_equation", "i": i.reference, "j": j.reference, "zero": _rolling(joint, i, j)}
+            return rolling(joint, mechanism)
     return {"type": KINDS[joint.kind], "i": i.reference, "j": j.reference}
 
 
@@ -84,48 +83,6 @@ def turned(place: Place, axes: np.ndarray) -> dict[str, Any]:
     return {
         "body": place.body, "point": vector(place.on_body.point), "orientation": quaternion(place.on_body.axes @ axes),
     }  # fmt: skip
-
-
-def _rolling(joint: Joint, i: Place, j: Place) -> str:
-    """A pinion (marker i) and a rack (marker j) have one velocity along the rack where they touch.
-
-    They touch beside the pinion's axis, at the point of the rack's line (the z axis of j) that is nearest to it.  A line
-    through the pinion's centre does not tell on which side the rack is; then it is on that of -y of marker i, whose x is
-    along the rack, as Adams' manual draws them (constraint modify joint rackpin).
-    """
-    I, J = i.reference, j.reference
-    distance = _beside(i, j)
-    if distance > NEAR * abs(joint.diameter):
-        ratio = joint.diameter / 2 / distance
-        factor = "" if abs(ratio - 1) < 1e-9 else f"{plain(ratio)!r} * "
-        turning = f"wx({I}, ground, {J}) * dy({J}, {I}, {J}) - wy({I}, ground, {J}) * dx({J}, {I}, {J})"
-        return f"vz({J}, {I}, {J}) - {factor}({turning})"
-    along = float(i.drawn.axes[:, 0] @ j.drawn.axes[:, 2])
-    if abs(along) < 0.5:
-        raise joint.fault(
-            "found the rack's line (the z axis of J) through the pinion's centre (I) and across its x axis, expected it half "
-            "the pitch diameter beside it, or along its x axis"
-        )
-    return f"vz({J}, {I}, {J}) - {plain(np.sign(along) * joint.diameter / 2)!r} * wz({I}, {J}, {I})"
-
-
-def _beside(i: Place, j: Place) -> float:
-    """How far the z axis of j passes the origin of i, m."""
-    across = j.drawn.axes.T @ (j.drawn.point - i.drawn.point)
-    return float(np.hypot(across[0], across[1]))
-
-
-def notes(mechanism: Mechanism) -> Iterator[str]:
-    """What is taken for granted of racks, a sentence each."""
-    for joint in mechanism.dataset.joints.values():
-        if joint.kind != "RACKPIN":
-            continue
-        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
-        if _beside(i, j) <= NEAR * abs(joint.diameter):
-            yield (
-                f"{joint.label}: the rack's line goes through the pinion's centre, and the rack is taken to be at -y of "
-                f"MARKER/{joint.i}, half the pitch diameter away"
-            )
 
 
 def _general(constraint: GeneralConstraint, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:

@@ -27,7 +27,7 @@ class ForceAlongLine(Force, Generic[M]):
 
     def misplaced(self, model: ModelData) -> Iterator[str]:
         """Points at one place give the force no direction."""
-        if model.point(self.i) == model.point(self.j):
+        if model.at_one_place(self.i, self.j):
             yield "found both of its points at one place, where its force has no direction, expected them apart"
 
     @staticmethod

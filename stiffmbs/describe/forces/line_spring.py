@@ -34,7 +34,7 @@ class LineSpring(Spring, Generic[M]):
 
     def misplaced(self, model: ModelData) -> Iterator[str]:
         """Points at one place give the spring's force no direction."""
-        if (self.free_length or self.preload) and model.point(self.i) == model.point(self.j):
+        if (self.free_length or self.preload) and model.at_one_place(self.i, self.j):
             yield (
                 "found both of its points at one place, where its force has no direction, expected them apart or "
                 "neither free_length nor preload"
