@@ -106,3 +106,19 @@ def coupled(*terms):
 def driven(measure, i, j, second):
     """A displacement with a given second derivative in time; its start is the parts' own."""
     return lambda view: (measure(view, i, j).second - second(view.t))[None]
+
+
+def meshed(one, other, contact):
+    """Two parts move alike at the contact, a marker of their carrier, along its z axis: what teeth do."""
+
+    def equation(view):
+        at, along = view.point(contact), view.axis(contact, "z")
+        speeds, gains = [], []
+        for own in (one, other):
+            hub, spin = view.point(own), view.spin(own)
+            arm = at - hub
+            speeds.append(hub.rate + np.cross(spin.rate, arm.value))
+            gains.append(hub.second + np.cross(spin.second, arm.value) + np.cross(spin.rate, arm.rate))
+        return ((gains[0] - gains[1]) @ along.value + (speeds[0] - speeds[1]) @ along.rate)[None]
+
+    return equation

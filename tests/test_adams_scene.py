@@ -253,9 +253,14 @@ GEAR/1, JOINTS=1,2, CV=12
 
 
 def test_gears_turn_by_the_distances_of_their_contact():
-    """Wheels of radius 1 and 2 side by side: w1 = -2 w2; with ground as marker I of the second joint its angle is -."""
-    assert joint(GEARS.format("I=34, J=11"))["scale"] == pytest.approx(-2)
-    assert joint(GEARS.format("I=11, J=34"))["scale"] == pytest.approx(2)
+    """Wheels of radius 1 and 2 side by side, whichever marker of a joint is on the wheel; force and torque of the teeth."""
+    for pair in ("I=34, J=11", "I=11, J=34"):
+        meshed = joint(GEARS.format(pair))
+        assert meshed["type"] == "equation" and meshed["i"] == "PART_2.MARKER_22" and meshed["j"] == "PART_3.MARKER_34"
+        assert meshed["zero"] == (
+            "dz(PART_2.MARKER_22, ground.MARKER_1, ground.MARKER_12) + -1.0 * az(PART_2.MARKER_22, ground.MARKER_1) + -1.0 * "
+            "(dz(PART_3.MARKER_34, ground.MARKER_11, ground.MARKER_12) + 2.0 * az(PART_3.MARKER_34, ground.MARKER_11))"
+        )
     with pytest.raises(InputError, match="GEAR/1: found the z axis of the marker CV across the motion"):
         made(GEARS.format("I=34, J=11").replace("QP=1,0,0, REULER=0,90D,0", "QP=1,0,0"))
     with pytest.raises(InputError, match="GEAR/1: found the marker CV on PART_3"):

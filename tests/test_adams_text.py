@@ -231,3 +231,13 @@ def test_graphics_and_settings_are_left_out_with_a_note():
 
 def test_a_missing_end_is_told():
     assert read_dataset("t\nPART/1, GROUND").notes == ("the dataset has no END, and may have been cut off",)
+
+
+def test_a_first_line_that_can_only_be_a_statement_is_one_with_a_note():
+    """Adams would leave it out; units that are lost without a word would make millimetres metres."""
+    body = "\nPART/1, GROUND\nEND"
+    for first in ("UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND", "units/\n, SYSTEM=CGS"):
+        found = read_dataset(first + body)
+        assert found.units.length in (1e-3, 1e-2) and "line 1 is the title" in found.notes[0]
+    for title in ("joint / 3 of them", "UNITS of all sorts", "! PART/2", "gear/box", "part/2b"):
+        assert read_dataset(title + body).title == title and not read_dataset(title + body).notes

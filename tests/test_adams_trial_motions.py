@@ -213,28 +213,14 @@ def test_a_coupler_of_two_joints_with_one_scale_and_a_ground_marker_first(tmp_pa
     compare(tmp_path, text, mechanism, {}, BODIES)
 
 
-def gears(contact, direction):
-    """Points of wheels 1 and 2 at the contact move alike along its direction, both hinges being on the ground."""
-    contact, direction = np.array(contact, float), np.array(direction, float)
-
-    def equation(view):
-        parts = []
-        for k in (0, 1):
-            arm = contact - np.array([k, 0, 0])
-            spin = view.spin(AXES[k][0])
-            parts.append(np.cross(spin.second, arm) @ direction)
-        return (parts[0] - parts[1])[None]
-
-    return equation
-
-
 @pytest.mark.parametrize("contact", [(0.3, 0, 0), (-0.5, 0, 0)], ids=["outside", "inside"])
 def test_spur_gears_outside_and_inside(tmp_path, contact):
     """CV's z is along the teeth's motion, -z of ground here; radii 0.3 and 0.7, or 0.5 and 1.5 within a ring."""
     text = GEARED + (
         f"MARKER/5, PART=1, QP={contact[0]},0,0, REULER=0,180D,0\n"
         "JOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, REVOLUTE, I=31, J=2\nJOINT/3, FIXED, I=41, J=3\n"
-        "GEAR/1, JOINTS=1,2, CV=5"
+        "GEAR/1, JOINTS=1,2, CV=5\n"
+        r"REQUEST/1, F2=GEAR(1,1,2,0)\F3=GEAR(1,1,3,0)\F4=GEAR(1,1,4,0)\F6=GEAR(1,1,6,0)\F7=GEAR(1,1,7,0)\F8=GEAR(1,1,8,0)"
     )
     mechanism = Mechanism(
         WHEELS,
@@ -242,14 +228,16 @@ def test_spur_gears_outside_and_inside(tmp_path, contact):
             "JOINT_1": joints.revolute(*AXES[0]),
             "JOINT_2": joints.revolute(*AXES[1]),
             "JOINT_3": joints.fixed(*AXES[2]),
-            "GEAR_1": gears(contact, (0, 0, -1)),
+            "GEAR_1": joints.meshed(AXES[0][0], AXES[1][0], Marker(-1, contact, euler(0, 180, 0))),
         },
     )
-    compare(tmp_path, text, mechanism, {}, BODIES, 1e-6)
+    reactions = {"JOINT_1": AXES[0][0], "JOINT_2": AXES[1][0], "GEAR_1": AXES[0][0]}
+    solution, history = compare(tmp_path, text, mechanism, reactions, BODIES, 1e-6)
+    near(table(solution, "REQUEST_1", "f2 f3 f4 f6 f7 f8"), history.reaction("GEAR_1", AXES[1][0]), 1e-4)
 
 
 def test_bevel_gears_at_an_angle_of_sixty_degrees(tmp_path):
-    """Axes in the x-y plane that meet at the origin, teeth moving along z where they touch."""
+    """Axes in the x-y plane that meet at the origin, teeth moving along z where they touch, bearings that feel them."""
     text = (
         WEIGHT
         + """MARKER/1, PART=1, REULER=0,90D,0
@@ -265,21 +253,18 @@ JOINT/1, REVOLUTE, I=21, J=1
 JOINT/2, REVOLUTE, I=31, J=2
 GEAR/1, JOINTS=1,2, CV=5"""
     )
-    contact = np.array([0.4, -0.6, 0])
     pairs = [
         (Marker(0, turn=euler(0, 90, 0)), Marker(-1, turn=euler(0, 90, 0))),
         (Marker(1, turn=euler(60, 90, 0)), Marker(-1, turn=euler(60, 90, 0))),
     ]
 
-    def teeth(view):
-        one, two = (np.cross(view.spin(own).second, contact)[:, 2] for own, _ in pairs)
-        return (one - two)[None]
-
+    teeth = joints.meshed(pairs[0][0], pairs[1][0], Marker(-1, (0.4, -0.6, 0)))
     mechanism = Mechanism(
         [Part(1, tensor(0.02, 0.03, 0.04), (0.1, -0.4, 0.05)), Part(2, tensor(0.2, 0.1, 0.3), (0.8, -0.3, -0.1))],
         {"JOINT_1": joints.revolute(*pairs[0]), "JOINT_2": joints.revolute(*pairs[1]), "GEAR_1": teeth},
     )
-    compare(tmp_path, text, mechanism, {}, ("PART_2", "PART_3"))
+    reactions = {"JOINT_1": pairs[0][0], "JOINT_2": pairs[1][0], "GEAR_1": pairs[0][0]}
+    compare(tmp_path, text, mechanism, reactions, ("PART_2", "PART_3"))
 
 
 def test_planetary_gears_on_a_turning_carrier(tmp_path):
@@ -306,7 +291,7 @@ GEAR/1, JOINTS=2,3, CV=23"""
     y = euler(0, 90, 0)
     carrier, sun, planet = Marker(0, turn=y), Marker(1, turn=y), Marker(2, (0.5, 0, 0), y)
     seat = Marker(0, (0.5, 0, 0), y)
-    relation = joints.coupled((0.2, joints.twist, sun, carrier), (0.3, joints.twist, planet, seat))
+    relation = joints.meshed(sun, planet, Marker(0, (0.2, 0, 0)))
     mechanism = Mechanism(
         [
             Part(1, tensor(0.02, 0.03, 0.04), (0.4, 0, 0.1)),
@@ -320,4 +305,29 @@ GEAR/1, JOINTS=2,3, CV=23"""
             "GEAR_1": relation,
         },
     )
-    compare(tmp_path, text, mechanism, {"JOINT_1": carrier}, BODIES)
+    reactions = {"JOINT_1": carrier, "JOINT_2": sun, "JOINT_3": seat, "GEAR_1": sun}
+    compare(tmp_path, text, mechanism, reactions, BODIES)
+
+
+@pytest.mark.long
+def test_a_rack_by_a_gear_and_a_helical_wheel_on_a_sleeve(tmp_path):
+    """A wheel between a guide and a sleeve, crooked teeth: CV leans out of the wheels' planes."""
+    text = (
+        GEARED
+        + "MARKER/5, PART=1, QP=0.4,0.1,0.2, REULER=70D,30D,0\nMARKER/6, PART=1, QP=1.6,0.05,0.3, REULER=20D,70D,0\n"
+        + "JOINT/1, CYLINDRICAL, I=1, J=21\nJOINT/2, REVOLUTE, I=31, J=2\nJOINT/3, TRANSLATIONAL, I=41, J=3\n"
+        + "GEAR/1, JOINTS=1,2, CV=5\nGEAR/2, JOINTS=3,2, CV=6"
+    )
+    contacts = Marker(-1, (0.4, 0.1, 0.2), euler(70, 30, 0)), Marker(-1, (1.6, 0.05, 0.3), euler(20, 70, 0))
+    mechanism = Mechanism(
+        WHEELS,
+        {
+            "JOINT_1": joints.cylindrical(*AXES[0][::-1]),
+            "JOINT_2": joints.revolute(*AXES[1]),
+            "JOINT_3": joints.translational(*AXES[2]),
+            "GEAR_1": joints.meshed(AXES[0][0], AXES[1][0], contacts[0]),
+            "GEAR_2": joints.meshed(AXES[2][0], AXES[1][0], contacts[1]),
+        },
+    )
+    reactions = {"JOINT_1": AXES[0][1], "JOINT_2": AXES[1][0], "JOINT_3": AXES[2][0], "GEAR_1": AXES[0][0]}
+    compare(tmp_path, text, mechanism, reactions | {"GEAR_2": AXES[2][0]}, BODIES)

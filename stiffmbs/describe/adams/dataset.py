@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
@@ -14,7 +15,7 @@ from .fault import DatasetFault
 from .forces import SingleForce, VectorForce, read_gravity
 from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
 from .outputs import Array, Request, Spline, Variable
-from .text import Statement, statements
+from .text import Statement, statements, untitled
 from .units import Units, read_units
 
 MOST_LISTED = 8
@@ -113,6 +114,9 @@ def read_dataset(text: str) -> Dataset:
         When a statement cannot be read, or holds mass, force or constraint of a kind that is not.
     """
     title, found, ended = statements(text)
+    without_title = _is_statement(title)
+    if without_title:
+        title, (found, ended) = "", untitled(text)
     named = [(keyword(statement.word), statement) for statement in found]
     _refuse(named)
     units = Units()
@@ -130,7 +134,7 @@ def read_dataset(text: str) -> Dataset:
                     statement.line, one.label, f"found it a second time (first in line {data[name][one.ident].line})"
                 )
             data[name][one.ident] = one
-    return Dataset(title, units, gravity, data, tuple(_notes(named, ended)))
+    return Dataset(title, units, gravity, data, tuple(_notes(named, ended, without_title)))
 
 
 def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statement]:
@@ -157,7 +161,15 @@ def _refuse(named: list[tuple[str | None, Statement]]) -> None:
     )
 
 
-def _notes(named: list[tuple[str | None, Statement]], ended: bool) -> Iterator[str]:
+def _is_statement(title: str) -> bool:
+    """Whether the first line, which Adams takes for a title whatever it says, can only be a statement."""
+    found = re.match(r"(\w+)\s*/\s*(\d+\s*(?:,|$)|$|\w+\s*=)", title)
+    return found is not None and found[1].upper() in (*SINGLE, *READERS)
+
+
+def _notes(named: list[tuple[str | None, Statement]], ended: bool, without_title: bool) -> Iterator[str]:
+    if without_title:
+        yield "line 1 is the title of a dataset, but reads as a statement: it is taken as one, which Adams would leave out"
     kinds: dict[str, list[int]] = {}
     for name, statement in named:
         if name in LEFT_OUT:

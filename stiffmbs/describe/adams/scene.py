@@ -11,6 +11,7 @@ from .plain import vector
 from .scene_bodies import bodies, ground_markers
 from .scene_bodies import notes as body_notes
 from .scene_forces import Forces
+from .scene_gears import gears
 from .scene_joints import held, joints
 from .scene_motions import motions
 from .scene_racks import notes as rack_notes
@@ -37,6 +38,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
     requests = Requests(mechanism)
     driven = motions(mechanism, translation)  # these before bodies, which get the markers that formulas need
     joined = joints(mechanism, translation)
+    meshed = gears(mechanism)
     found: dict[str, Any] = {
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
@@ -47,6 +49,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             **joined,
             **held(mechanism),
             **relations(mechanism),
+            **meshed,
             **driven,
         },
         "forces": Forces(mechanism, translation).all(),

@@ -1,13 +1,11 @@
-"""Couplers and gears: linear equations between the displacements of joints."""
+"""Couplers: linear equations between the displacements of joints."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from .constraints import ROTATIONAL, TRANSLATIONAL, Coupler, Gear, Joint, Numbered
-from .mechanism import Mechanism, Place
+from .constraints import ROTATIONAL, TRANSLATIONAL, Coupler, Joint, Numbered
+from .mechanism import Mechanism
 from .plain import plain
 from .starts import drawn_displacement
 
@@ -16,51 +14,17 @@ SORTS = {"REVOLUTE": ROTATIONAL, "TRANSLATIONAL": TRANSLATIONAL}
 
 
 def relations(mechanism: Mechanism) -> dict[str, Any]:
-    """The scene's couplers by name, of COUPLER and GEAR statements."""
-    dataset = mechanism.dataset
-    found = {coupler.name: _coupled(coupler, mechanism) for coupler in dataset.couplers.values()}
-    return found | {gear.name: _geared(gear, mechanism) for gear in dataset.gears.values()}
+    """The scene's couplers by name."""
+    return {coupler.name: _coupled(coupler, mechanism) for coupler in mechanism.dataset.couplers.values()}
 
 
 def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, Any]:
     """Scales times displacements add up to nothing."""
-    tied = [_joint(coupler, ident, mechanism) for ident in coupler.joints]
+    tied = [coupled_joint(coupler, ident, mechanism) for ident in coupler.joints]
     sorts = [_sort(coupler, joint, sort) for joint, sort in zip(tied, coupler.sorts, strict=True)]
     units = [1.0 if sort == ROTATIONAL else mechanism.dataset.units.length for sort in sorts]
     scales = [scale / unit for scale, unit in zip(coupler.scales, units, strict=True)]
     return _tied(tied, sorts, [scale / scales[0] for scale in scales], mechanism)
-
-
-def _geared(gear: Gear, mechanism: Mechanism) -> dict[str, Any]:
-    """Two parts on one carrier have one velocity at a marker of it, along its z axis, as seen from the carrier."""
-    contact = mechanism.place(gear.contact, gear, "CV")
-    tied = [_joint(gear, ident, mechanism) for ident in gear.joints]
-    sorts = [_sort(gear, joint, _gear_sort(joint)) for joint in tied]
-    one, other = (_velocity(gear, joint, s, contact, mechanism) for joint, s in zip(tied, sorts, strict=True))
-    return _tied(tied, sorts, [1.0, -other / one], mechanism)
-
-
-def _gear_sort(joint: Joint) -> str | None:
-    return ROTATIONAL if joint.kind == "CYLINDRICAL" else None
-
-
-def _velocity(gear: Gear, joint: Joint, sort: str, contact: Place, mechanism: Mechanism) -> float:
-    """The velocity of the joint's moving part at the contact, along its z axis, per unit of the joint's own rate."""
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
-    if contact.body not in (i.body, j.body):
-        raise gear.fault(
-            f"found the marker CV on {contact.body}, expected it on the carrier, which {joint.label} joins too"
-        )
-    axis = j.drawn.axes[:, 2]
-    moved = axis if sort == TRANSLATIONAL else np.cross(axis, contact.drawn.point - j.drawn.point)
-    along = float(moved @ contact.drawn.axes[:, 2]) * (1 if contact.body == j.body else -1)
-    reach = 1.0 if sort == TRANSLATIONAL else float(np.linalg.norm(contact.drawn.point - j.drawn.point))
-    if not abs(along) > 1e-9 * max(reach, 1e-9):
-        raise gear.fault(
-            f"found the z axis of the marker CV across the motion that {joint.label} allows there, expected it along the "
-            "motion of the teeth"
-        )
-    return along
 
 
 def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: Mechanism) -> dict[str, Any]:
@@ -85,7 +49,14 @@ def coordinate(joint: Joint, sort: str) -> str:
     return f"{joint.name}.{'angle' if sort == ROTATIONAL else 'displacement'}"
 
 
-def _joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:
+def coupled_joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:
+    """A joint that a coupler or a gear names.
+
+    Raises
+    ------
+    DatasetFault
+        When there is none of that number, or it has no displacement to tie.
+    """
     joint = mechanism.dataset.joints.get(ident)
     if joint is None:
         raise user.fault(f"found JOINTS = {ident}, expected the number of a JOINT")

@@ -70,6 +70,11 @@ def statements(text: str) -> tuple[str, tuple[Statement, ...], bool]:
     return title.strip(), found, ended
 
 
+def untitled(text: str) -> tuple[tuple[Statement, ...], bool]:
+    """The statements of a dataset whose title is missing, and whether END was found."""
+    return _statements(text.lstrip("\ufeff").splitlines(), 1)
+
+
 def commands(text: str) -> tuple[Statement, ...]:
     """The commands of a command file, which has no title."""
     return _statements(text.lstrip("\ufeff").splitlines(), 1)[0]
