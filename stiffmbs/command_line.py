@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,7 +18,12 @@ from .show.report_command import report
 from .show.scene_command import CHANGES, STOPPED_EARLY, changes_of, refuse, solve_scene, solving_options
 from .stress.command import stress
 
+if TYPE_CHECKING:
+    from rich.console import Console
+
 PROBLEMS = 1
+UNBROKEN = 10_000
+"""Characters of a line in files and pipes."""
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -104,9 +110,15 @@ def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
     if as_json:
         click.echo(summary.as_json(scene, solution))
         return
+    summary.print_summary(scene, solution, results, _console())
+
+
+def _console() -> Console:
+    """Standard output; lines are broken to the width of a terminal, or of COLUMNS, and nowhere else."""
     from rich.console import Console
 
-    summary.print_summary(scene, solution, results, Console())
+    to_a_width = sys.stdout.isatty() or "COLUMNS" in os.environ
+    return Console(width=None if to_a_width else UNBROKEN)
 
 
 @main.command()

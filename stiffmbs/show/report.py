@@ -17,6 +17,7 @@ from ..describe.figure import Figure
 from ..describe.scene import Scene
 from ..errors import InputError
 from .check import check
+from .counters import solver_words
 from .digits import with_bar
 from .error_bars import UNKNOWN
 from .figure import drawn
@@ -80,7 +81,7 @@ def report_page(scene: Scene, solution: Solution) -> str:
         solution=solution, check=check(scene), settings=_settings(scene), peaks=_peaks(solution),
         start=float(solution.time[0]), end=float(solution.time[-1]), drift=solution.energy_drift(),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
-        violation=float(np.nanmax(solution.channels["constraint.position"])),
+        counted=solver_words(solution.solver), violation=float(np.nanmax(solution.channels["constraint.position"])),
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..solve.trajectory import Outcome
+from .counters import solver_words
 from .error_bars import UNKNOWN
 from .force_table import NOT_UNIQUE, force_table
 from .solution import Solution, channel_ranges
@@ -99,11 +100,5 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
         f"{np.nanmax(solution.channels['constraint.velocity']):.2g} in velocity",
         highlight=False,
     )
-    console.print(_solver_line(solution.solver), highlight=False)
+    console.print(f"solver: {solver_words(solution.solver)}", highlight=False)
     console.print(f"results: {results}", highlight=False, soft_wrap=True)
-
-
-def _solver_line(solver: dict[str, Any]) -> str:
-    linear = [f"linear solver {solver['linear_solver']}"] if "linear_solver" in solver else []
-    counts = [f"{value} {name}" for name, value in solver.items() if isinstance(value, int)]
-    return f"solver: {', '.join([solver['name'], *linear, *counts])}, {solver['seconds'] * 1e3:.1f} ms"
