@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,8 @@ PLACES, RATES = ("m", "rad"), ("m/s", "rad/s")
 """Units of centres of mass and of turns, on the level of positions and on that of velocities."""
 WORTH_TELLING = 1e-9
 """Moves of a coordinate (m, rad, m/s, rad/s) below this are not mentioned."""
+MUCH_LESS = 1e-3
+"""Part of the largest move below which one of another unit is not mentioned."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,9 @@ class Move:
     coordinate: str
     unit: str
     change: float
+
+    def __str__(self) -> str:
+        return f"{self.body}.{self.coordinate} by {self.change:.3g} {self.unit}"
 
 
 @dataclass(frozen=True)
@@ -57,19 +62,22 @@ class InitialValues:
     moved: tuple[Move, ...]
 
     def sentence(self) -> str:
-        """What was moved, in words; empty where nothing was."""
-        parts = [_largest(move for move in self.moved if move.unit in units) for units in (PLACES, RATES)]
-        told = " and ".join(part for part in parts if part)
-        return f"to satisfy the joints at the start, assembly changed {told}" if told else ""
+        """What was moved, in words: the largest moves of points and turns, and of their rates; empty where nothing was."""
+        levels = [list(_largest(self.moved, units)) for units in (PLACES, RATES)]
+        told = [move for level in levels for move in level]
+        if not told:
+            return ""
+        words = " and ".join(", ".join(map(str, level)) for level in levels if level)
+        others = len({move.body for move in self.moved} - {move.body for move in told})
+        less = f" ({others} other {'bodies' if others > 1 else 'body'} by less)" if others else ""
+        return f"to satisfy the joints at the start, assembly changed {words}{less}"
 
 
-def _largest(moves: Iterator[Move]) -> str:
-    changes = sorted(moves, key=lambda move: -abs(move.change))
-    if not changes:
-        return ""
-    others = len({move.body for move in changes}) - 1
-    largest = f"{changes[0].body}.{changes[0].coordinate} by {changes[0].change:.3g} {changes[0].unit}"
-    return largest + (f" ({others} other {'bodies' if others > 1 else 'body'} by less)" if others else "")
+def _largest(moves: Sequence[Move], units: tuple[str, str]) -> Iterator[Move]:
+    """Of both units the largest move, that which is far smaller in numbers than the other left out."""
+    own = [max((m for m in moves if m.unit == unit), key=lambda m: abs(m.change), default=None) for unit in units]
+    largest = max((abs(move.change) for move in own if move), default=0.0)
+    yield from (move for move in own if move and abs(move.change) >= MUCH_LESS * largest)
 
 
 def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
