@@ -218,6 +218,7 @@ def test_each_kind_is_the_same_in_space(kind, settings):
     check_same(scene, plane, space, energies, AFTER_CORNERS if kind in WITH_CORNERS else AGREES)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["revolute", "fixed", "distance", "point_on_line", "point_on_curve", "equation"])
 def test_assembly_moves_bodies_as_in_the_plane(kind):
     """By the least amount in m and rad: the same to first order in moves that go up to half a metre and one radian."""
