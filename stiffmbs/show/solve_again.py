@@ -59,7 +59,7 @@ class Again:
     obstacle : str
         Why it did not come to the end; empty where it did.
     remark : str
-        What the solver says of a run that it brought to the end; empty for nothing.
+        What the solver says of its steps; empty for nothing.
     at : ndarray of int
         Which of its instants are those of the first run.
     """
@@ -108,5 +108,6 @@ def solve_again(
         if not deadline.passed:
             raise KeyboardInterrupt
         obstacle = f"given up at t = {solution.time[-1]:.4g} s: it would have taken more than {allowed:.2g} s"
-    remark = solution.message if not obstacle and solution.message != Outcome.DONE.value else ""
+    how = solution.outcome.value
+    remark = solution.message.removeprefix(how).removeprefix("; ") if solution.message.startswith(how) else ""
     return Again(name, solution, obstacle, at[at < len(solution.time)], remark)

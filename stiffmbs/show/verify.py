@@ -1,9 +1,13 @@
 """Trust in one run: the scene is solved again, tighter and in another way, and what differs becomes error bars and doubts.
 
-1. With the same solver at a tenth of the tolerance (half the step of fixed schemes), reported at the first run's own
+1. With the same solver at a hundredth of the tolerance (half the step of fixed schemes), reported at the first run's own
    steps besides its output instants, so that peaks between these are seen.
 2. With the other integrator, at a hundredth of the tolerance: bdf's errors and those of explicit steps have nothing in common.
-3. At a hundredth of the tolerance, where the first two look suspicious: then the order of convergence tells.
+3. With the same solver at a tolerance between (a quarter of the step), where the other integrator says nothing, or the
+   first two look suspicious: then the order of convergence tells.
+
+A tenth of the tolerance is not enough for the first: bdf's error then shrinks by 2 to 10 times, and one peak in twenty has
+nearly the same error in both runs.
 
 All within a few times the first run's time; what was not done is said.
 """
@@ -31,12 +35,12 @@ from .solve_again import Again, solve_again
 
 MOST_EFFORT, PATIENCE = 3.0, 0.2
 """Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
-TIGHTEST = 0.99e-13
+TIGHTEST = 1e-13
 """Relative tolerance below which steps fail by rounding."""
+APART = 2.0
+"""Times tighter that a tolerance must be at the least to tell anything beside another."""
 OTHER_OF_FIXED = 1e-10
 """Relative tolerance of the other solver where the first has fixed steps."""
-OWN = 1e3
-"""Times its tolerance: so much of a difference to the other solver may be its own error."""
 ROUNDING = 1e-13
 """Part of a channel's scale that rounding takes."""
 
@@ -57,7 +61,20 @@ def verify(
     first = solved(job, watch)
     if len(first.time) < 2:
         return replace(first, verification=("not verified: nothing was solved",))
-    allowed = max(PATIENCE, MOST_EFFORT * (time.perf_counter() - begun))
+    return verified(job, first, max(PATIENCE, MOST_EFFORT * (time.perf_counter() - begun)))
+
+
+def verified(job: Job, first: Solution, allowed: float) -> Solution:
+    """What `verify` returns, for a job that was solved already.
+
+    Parameters
+    ----------
+    job : Job
+    first : Solution
+        Of the job, at two instants at least.
+    allowed : float
+        Time for all that is solved again, s.
+    """
     return _Verification(job, first, allowed).result()
 
 
@@ -70,7 +87,7 @@ class _Verification:
         self._sizes = scales(first.channels, job.mechanics.system.size)
         self._exact = job.settings.solver == "kinematic"
         self._between: Between | None = None
-        self._tighter: list[Again] = []
+        self._tighter: dict[int, Again] = {}
         self._other: Again | None = None
         self._skipped: list[str] = []
 
@@ -90,26 +107,41 @@ class _Verification:
         self._look_between()
         if self._exact:
             return
-        if self._comparison().suspicious:
-            self._tighten(2)
         self._ask_the_other()
-        if len(self._tighter) < 2 and self._comparison().suspicious:
-            self._tighten(2)
+        if self._other is None or self._other.obstacle or not _judges(self._other) or self._comparison().suspicious:
+            self._tighten()
 
     def _look_between(self) -> None:
-        """The next tighter run, also at instants between those of the output."""
+        """The first tighter run, also at instants between those of the output; the next one where it does not end."""
         times = more_instants(self._first)
         at = np.searchsorted(times, self._first.time)
-        name, changes = self._tighter_settings(1)
-        run = solve_again(self._job, name, changes, times, at, self._left())
-        self._between = looked_between(self._job, run, self._sizes, max(self._left(), PATIENCE))
-        if not self._exact:
-            self._tighter.append(run)
+        for level in self._levels():
+            run = self._run(level, times, at)
+            self._between = looked_between(self._job, run, self._sizes, max(self._left(), PATIENCE))
+            if not run.obstacle:
+                return
 
-    def _tighten(self, level: int) -> None:
-        name, changes = self._tighter_settings(level)
+    def _tighten(self) -> None:
+        """The next of the tighter runs."""
         reported = self._first.time
-        self._tighter.append(solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left()))
+        for level in self._levels():
+            if level not in self._tighter:
+                self._run(level, reported, np.arange(len(reported)))
+                return
+
+    def _run(self, level: int, times: np.ndarray, at: np.ndarray) -> Again:
+        name, changes = self._tighter_settings(level)
+        run = solve_again(self._job, name, changes, times, at, self._left())
+        if not self._exact:
+            self._tighter[level] = run
+        return run
+
+    def _levels(self) -> tuple[int, ...]:
+        """How much tighter the runs are, in tenths of the tolerance or halves of the step, in the order of their use."""
+        settings = self._job.settings
+        if self._exact:
+            return (1,)
+        return (1, 2) if _fixed(settings) else _levels_of(settings.rtol)
 
     def _tighter_settings(self, level: int) -> tuple[str, dict[str, Any]]:
         settings = self._job.settings
@@ -123,9 +155,9 @@ class _Verification:
 
     def _ask_the_other(self) -> None:
         settings, reported = self._job.settings, self._first.time
-        solver = "projected" if settings.solver == "bdf" else "bdf"
+        solver = "projected" if self._first.solver["name"] == "bdf" else "bdf"
         how = {"solver": solver, "scheme": "dop853", "formulation": "SI2", "projection": True}
-        changes = {**how, **_tolerances(settings, 2), "rtol": self._other_rtol()}
+        changes = {**how, **({"rtol": OTHER_OF_FIXED} if _fixed(settings) else _tolerances(settings, 2))}
         name = f"{_name(solver, 'dop853')} at rtol {changes['rtol']:.3g}"
         self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
 
@@ -133,7 +165,8 @@ class _Verification:
         return self._allowed - (time.perf_counter() - self._begun)
 
     def _comparison(self) -> Comparison:
-        tighter = tuple(run for run in self._tighter if run.solution is not None)
+        runs = [self._tighter[level] for level in sorted(self._tighter)]
+        tighter = tuple(run for run in runs if run.solution is not None)
         other = self._other if _judges(self._other) else None
         bars = {
             name: self._bar(name, [*tighter, *([other] if other else [])])
@@ -144,21 +177,11 @@ class _Verification:
 
     def _bar(self, name: str, runs: list[Again]) -> ErrorBar:
         fine = self._between.fine(name) if self._between else None
-        size = self._sizes[name]
-        reported = [(run.reported(name), size * self._own_error(run)) for run in runs]
-        return error_bar(self._first[name], reported, fine, ROUNDING * size)
-
-    def _own_error(self, run: Again) -> float:
-        """By how much the other solver may be wrong itself, in parts of a channel's scale: nothing where it stands alone."""
-        return OWN * self._other_rtol() if run is self._other and self._tighter else 0.0
-
-    def _other_rtol(self) -> float:
-        settings = self._job.settings
-        return OTHER_OF_FIXED if _fixed(settings) else _tolerances(settings, 2)["rtol"]
+        return error_bar(self._first[name], [run.reported(name) for run in runs], fine, ROUNDING * self._sizes[name])
 
     def _told(self) -> list[str]:
         """What was compared with, and what could not be."""
-        runs = [run for run in (*self._tighter, self._other) if run is not None]
+        runs = [run for run in (*self._tighter.values(), self._other) if run is not None]
         done = [run.name for run in runs if not run.obstacle and (run is not self._other or _judges(run))]
         told = [f"solved again with {' and '.join(done)}"] if done else []
         if self._exact:
@@ -181,10 +204,16 @@ def _judges(other: Again | None) -> bool:
     return other is not None and other.solution is not None and not other.remark
 
 
+def _levels_of(rtol: float) -> tuple[int, ...]:
+    """A hundredth and a tenth of a tolerance, as far as rounding leaves both."""
+    return tuple(level for level, most in ((2, 10 * APART), (1, 0.0)) if rtol > most * TIGHTEST)
+
+
 def _tolerances(settings: RunSettings, level: int) -> dict[str, Any]:
-    """Tighter by so many powers of ten; looser where rounding leaves nothing tighter: then that run's error shows."""
-    tighter = settings.rtol / 10**level
-    rtol = tighter if tighter >= TIGHTEST else settings.rtol * 10**level
+    """Tighter by so many powers of ten, down to the tightest; looser where that is hardly tighter: then that run's error shows."""
+    rtol = max(settings.rtol / 10**level, TIGHTEST)
+    if settings.rtol < APART * rtol:
+        rtol = 10 * settings.rtol
     return {"rtol": rtol, **({"atol": settings.atol * rtol / settings.rtol} if settings.atol else {})}
 
 
