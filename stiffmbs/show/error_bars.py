@@ -109,8 +109,8 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> float:
     fall, rise = (values[k - 1] - values[k]) / before, (values[k + 1] - values[k]) / after
     bend = np.minimum((rise - fall) / (after - before), -LEVEL)
     slope = fall - bend * before
-    higher = values[k] - np.minimum(values[k - 1], values[k + 1])
-    top = np.minimum(slope**2 / (-4 * bend), higher)
+    around = [values[np.clip(k + beside, 0, len(values) - 1)] for beside in (-2, -1, 1, 2)]
+    top = np.minimum(slope**2 / (-4 * bend), values[k] - np.nanmin(around, axis=0))  # of jumps no more than these
     shown = float(np.nanmax(values)) - highest
     reached = values[k] - highest
     return max(FINER * shown, float(np.max(np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top, initial=0.0)))

@@ -33,7 +33,7 @@ from .scales import scales
 from .solution import Solution
 from .solve_again import Again, solve_again
 
-MOST_EFFORT, PATIENCE = 3.0, 0.2
+MOST_EFFORT, PATIENCE = 3.0, 1.0
 """Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
 TIGHTEST = 1e-13
 """Relative tolerance below which steps fail by rounding."""
