@@ -63,7 +63,7 @@ def test_a_page_holds_check_peaks_figures_and_settings(page_of):
         "presolve:",
         "rail.fy",
         "\u00b1",
-        "solved again with bdf at rtol 1e-08",
+        "solved again with bdf at rtol 1e-09",
         "steps",
         "1e-07",
     ):
