@@ -33,7 +33,13 @@ class Model(DescribedModel):
     __doc__ = DescribedModel.__doc__
 
     def check(self, **changes: Any) -> Any:
-        """Examine the model: degrees of freedom, redundancy; see `stiffmbs.check`."""
+        """Examine the model: degrees of freedom, redundancy.
+
+        Parameters
+        ----------
+        **changes
+            Fields of the settings to change; returns and raises what `stiffmbs.check` does.
+        """
         from .show.check import check
 
         return check(self, **changes)

@@ -175,3 +175,9 @@ def test_a_point_of_ground_is_named_in_python():
         model.mark("pivot", Marker(body="ground", point=(0, 2)))
     with pytest.raises(InputError, match=r"axle: found .* expected a marker with a point on ground"):
         model.mark("axle", Marker(body="bar"))
+
+
+def test_a_model_is_compiled_as_its_data_are():
+    system, of_data = stiffmbs.compile_model(cart_pendulum()), stiffmbs.compile_model(cart_pendulum().data())
+    assert system.bodies == of_data.bodies == ("cart", "bar")
+    assert system.equations == of_data.equations

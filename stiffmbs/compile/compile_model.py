@@ -10,6 +10,7 @@ import numpy as np
 from ..describe.element import Element
 from ..describe.formula import FormulaError
 from ..describe.marker import GROUND
+from ..describe.model_builder import ModelBuilder
 from ..errors import InputError
 from .bodies import BODY_KINDS, BodyKind
 from .kind import Compilable, ElementData, Kind, sorted_out
@@ -17,14 +18,25 @@ from .record import KindRecord, record_of
 from .system import Group, System
 
 
-def compile_model(model: Compilable) -> System:
+def compile_model(model: Compilable | ModelBuilder) -> System:
     """Compile a model: kernels from the cache or newly made, and every term's place.
+
+    Parameters
+    ----------
+    model : Model or Scene
+
+    Returns
+    -------
+    System
+        What solvers see: sizes, mass, and the terms of all elements.
 
     Raises
     ------
     InputError
         When an element's equations cannot be compiled; names the element.
     """
+    if isinstance(model, ModelBuilder):
+        return compile_model(model.data())
     bodies = tuple(model.bodies)
     of_body = BODY_KINDS[model.dimensions]
     sorted_elements = _sorted_elements(model)

@@ -10,7 +10,7 @@ import ast
 import math
 from collections.abc import Callable, Iterator
 from functools import partial, reduce
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from .zeros import TooMany, zeros
 
 FLAT = 1e-12
 """Change between two points of a table, in parts of its largest value, up to which it is flat there."""
+STEADY = 1e-12
+"""How far the argument of a table may be from a straight line in time, in parts of its size."""
 
 
 def corner_times(system: System, start: float, end: float) -> np.ndarray:
@@ -63,11 +65,9 @@ def _is_of_time(element: Element, name: str) -> bool:
 
 
 def _marks(metadata: list[object], annotation: object) -> Iterator[object]:
-    import typing
-
     yield from metadata
     yield from getattr(annotation, "__metadata__", ())
-    for part in typing.get_args(annotation):
+    for part in get_args(annotation):
         yield from _marks([], part)
 
 
@@ -113,10 +113,6 @@ def _of_called_table(formula: Formula, table: Table, argument: ast.expr, start: 
     if rate and abs(first + last - 2 * middle) <= STEADY * max(abs(first), abs(last)):
         low, high = sorted((first, last))
         yield from (start + (knot - first) / rate for knot in _of_table(table, low, high))
-
-
-STEADY = 1e-12
-"""How far an argument may be from a straight line, in parts of its size."""
 
 
 def _conditions(node: ast.expr) -> list[ast.expr]:

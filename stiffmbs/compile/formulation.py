@@ -15,8 +15,9 @@ class Product:
     """One line of a residual: in `rows`, factor * block @ operand.
 
     `rows` and `operand` are names of unknowns (``q u mu lam``); an operand with a prime is a derivative; a vector
-    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``Z`` takes u to q', ``Z_q`` is d(Z u)/dq, ``E_mu`` and
-    ``E_lam`` are the relaxations of the rows, ``.T`` transposes, ``:rates`` keeps rows without a position form, ``:turning`` those of quaternions.
+    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``Z`` takes u to q', ``Z_q`` is
+    d(Z u)/dq, ``E_mu`` and ``E_lam`` are the relaxations of the rows, ``.T`` transposes, ``:rates`` keeps rows without a
+    position form, ``:turning`` those of quaternions.
     """
 
     rows: str
@@ -42,6 +43,8 @@ class Formulation:
 
     Attributes
     ----------
+    name : str
+        As in the settings of a run.
     unknowns : tuple of str
         Of ``q u mu lam``.
     residual_set, matrix_set : str

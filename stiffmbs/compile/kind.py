@@ -22,6 +22,8 @@ from ..describe.table import Table
 from .table_values import spline_data
 
 Shape = tuple[Any, ...]
+OWN = "own_"
+"""Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
 
 
 class Compilable(Protocol):
@@ -159,8 +161,8 @@ def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:
 class _FormulaShape(ast.NodeTransformer):
     """Takes numbers, bodies, measures and tables out of a formula.
 
-    Bodies become ``b0.x``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is constant one number
-    ``p0``; whole exponents stay, as they decide about the derivatives.
+    Bodies become ``b0.x``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
+    constant one number ``p0``; whole exponents stay, as they decide about the derivatives.
     """
 
     def __init__(self, formula: Formula, model: Compilable, data: ElementData) -> None:
@@ -233,7 +235,3 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
         if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
             return None
     return formula_value(formula, node)
-
-
-OWN = "own_"
-"""Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""

@@ -22,8 +22,10 @@ STATE: Layout = {
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS, "n_turned": INTS, "turned": INTS,
     "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS, "left_open": FLOATS,
 }  # fmt: skip
-"""A system's state and kernels: whether its bodies are spatial; q, u and accelerations a with the ground's at their end; what kernels share of each body's
-orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first coordinate) for which that is read, and the number of its kernel calls, the address of their arguments (rows of `CALL`) and the address of its values; the first row of each joint; what each equation may be off by."""
+"""A system's state and kernels: whether its bodies are spatial; q, u and accelerations a with the ground's at their end;
+what kernels share of each body's orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first
+coordinate) for which that is read, the number of its kernel calls, the address of their arguments (rows of `CALL`) and
+the address of its values; the first row of each joint; what each equation may be off by."""
 
 CALL = ("kernel", "count", "index", "number", "place")
 """The arguments of one kernel call, as 64-bit numbers."""
@@ -59,8 +61,8 @@ MECHANICS: Layout = {
     "accelerations": INTS, "acceleration_factors": INTS, "status": INTS,
     "n_counting": INT, "counting_source": INTS, "counting_row": INTS,
 }  # fmt: skip
-"""The tables of one state and its three block systems; `status` receives why no more instants could be reported; where the
-rates of the counters of turns stand among the terms of accelerations."""
+"""The tables of one state and its three block systems; `status` receives why no more instants could be reported;
+`counting` tells where the rates of the counters of turns stand among the terms of accelerations."""
 
 
 IDA: Layout = {
@@ -71,7 +73,7 @@ IDA: Layout = {
 
 
 ELIMINATED: Layout = {
-    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_products": INT, "n_slots": INT, "ready": INTS,
+    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "ready": INTS,
     "f_source": INDICES, "f_row": INDICES, "gamma_source": INDICES, "gamma_row": INDICES,
     "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "at_lam": INTS,
     "product_end": INDICES, "product_first": INDICES, "product_second": INDICES,
@@ -100,7 +102,8 @@ EXPLICIT: Layout = {
     "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 }  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
-switches' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends of steps that one call stores."""
+switches' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends
+of steps that one call stores."""
 
 NATIVE_IDA: Layout = {
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,

@@ -19,7 +19,8 @@ f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q
 of friction hang on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
 A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, Z of q' = Z u where that is not u itself and
 Z_q = d(Z u)/dq, counted = angles that count turns and counting = their rates, potential = energy, request =
-what the user asked for, switch = what changes its sign at corners of a force, limit = what is above zero for as long as its law holds.
+what the user asked for, switch = what changes its sign at corners of a force, limit = what is above zero for as long as
+a force's law holds.
 """
 
 TERM_AXES: dict[str, str] = {
@@ -33,7 +34,8 @@ referred to, r parts of a reaction, s switches, e elements."""
 KERNEL_ARGUMENTS = "count, index, number, t, q, turn, u, a, lam, mu, place, value"
 KERNEL_SIGNATURE = "void(int64, int64*, float64*, float64, float64*, float64*, float64*, float64*, float64*, float64*, int64*, float64*)"
 """Arguments of every kernel: the number of elements; for each element and body the offsets in q and u; parameters;
-time, q, what kernels share of each body's orientation (`stiffmbs.compile.bodies`), u, accelerations and multipliers; `place`, the kind's first equation and the first value of each term; the values, written."""
+time, q, what kernels share of each body's orientation (`stiffmbs.compile.bodies`), u, accelerations and multipliers;
+`place`, the kind's first equation and the first value of each term; the values, written."""
 
 TURNED = "turn["
 """In the source of a kernel that reads what is shared of its bodies' orientations."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from typing import Any
 
 from pydantic import Field, field_validator
 
@@ -72,7 +73,7 @@ class BodyHandle:
         """The marker at a point of the body's own axes, m, turned by `angle`, rad."""
         return Marker(body=self.name, point=(xi, eta), angle=angle)
 
-    def __getattr__(self, coordinate: str):
+    def __getattr__(self, coordinate: str) -> Any:
         """The SymPy symbol of a coordinate (``x``, ``y``, ``angle``), for `ConstraintEquation`."""
         if coordinate not in ("x", "y", "angle"):
             raise AttributeError(f"a body has the coordinates x, y and angle, not '{coordinate}'")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DrawnMarker:
-    """A marker with numbers, in ground axes: what `stiffmbs.compile.frames.Frame` is with symbols.
+    """A marker with numbers, in ground axes: what `stiffmbs.compile.planar_frames.Frame` is with symbols.
 
     Attributes
     ----------

@@ -54,7 +54,7 @@ class MarkerReference(Described):
         if (
             isinstance(found, dict)
             and found.get("marker")
-            and found.keys() - {"body", "marker"} & cls.model_fields.keys()
+            and (found.keys() - {"body", "marker"}) & cls.model_fields.keys()
         ):
             raise ValueError("found a marker's name and a point, expected one or the other")
         if not isinstance(found, dict | MarkerReference):

@@ -87,7 +87,24 @@ class Model(ModelBuilder):
     def add(self, name: str, part: Joint | Force) -> None: ...
 
     def add(self, name: str, part: Body | Joint | Force) -> BodyHandle | None:
-        """Add a body (its handle is returned), a joint or a force under a name; errors as for `ModelBuilder.add`."""
+        """Add a body, a joint or a force.
+
+        Parameters
+        ----------
+        name : str
+            Letters, digits and ``_``; no other part has it.
+        part : Body, Joint or Force
+
+        Returns
+        -------
+        BodyHandle or None
+            For a body a shorthand for its markers and coordinates.
+
+        Raises
+        ------
+        InputError
+            When the name is taken, reserved or no identifier, or the part names an unknown body.
+        """
         return super().add(name, part)
 
     def data(self) -> PlanarData:

@@ -74,6 +74,12 @@ class ModelBuilder:
     def mark(self, name: str, marker: Any) -> None:
         """Give a marker on ground a name, for references and formulas: ``ground.name``.
 
+        Parameters
+        ----------
+        name : str
+        marker : Marker
+            On ``ground``, with its point and direction given on the spot.
+
         Raises
         ------
         InputError
@@ -89,6 +95,13 @@ class ModelBuilder:
 
     def request(self, name: str, formula: Any) -> None:
         """Report a formula of coordinates, velocities, measures and time as a channel of the given name.
+
+        Parameters
+        ----------
+        name : str
+            Of the channel.
+        formula : str or float
+            In SI units, such as ``"0.6*abs(bar.omega)"``.
 
         Raises
         ------

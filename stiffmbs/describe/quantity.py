@@ -199,7 +199,7 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
 
     try:
         result: Quantity = evaluate(tree, names, FUNCTIONS, lambda value: Quantity(float(value)))
-    except (ZeroDivisionError, OverflowError, ArithmeticError):
+    except ArithmeticError:
         raise FormulaError(f"found '{text}', which divides by zero or overflows") from None
     except ValueError as error:
         if isinstance(error, FormulaError):

@@ -66,6 +66,11 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     changes : sequence of (path, text)
         Values put in place of the file's, such as ``("bodies.cart.mass", "12 kg")``.
 
+    Returns
+    -------
+    Scene
+        `PlanarScene`, or `SpatialScene` where it says ``dimensions: 3``.
+
     Raises
     ------
     InputError
@@ -101,7 +106,26 @@ def file_text(path: str | Path, otherwise: str = "") -> str:
 
 
 def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene") -> Scene:
-    """Read a scene from text; as `load_scene`."""
+    """Read a scene from text.
+
+    Parameters
+    ----------
+    text : str
+        YAML, as in a scene file.
+    changes : sequence of (path, text)
+        Values put in place of the text's, such as ``("bodies.cart.mass", "12 kg")``.
+    source : str
+        What messages call it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    InputError
+        When it is no valid scene; names the line and the path in it.
+    """
     found = _yaml(text, source)
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
@@ -231,7 +255,13 @@ def _line(text: str, path: tuple[Any, ...]) -> int | None:
 
 
 def scene_schema() -> dict[str, Any]:
-    """The JSON schema of scene files, of the plane and of space."""
+    """The JSON schema of scene files, of the plane and of space.
+
+    Returns
+    -------
+    dict
+        For editors, as ``stiffmbs schema`` prints it.
+    """
     from pydantic.json_schema import models_json_schema
 
     planar: list[type[Any]] = [PlanarBody, *JOINTS.values(), *FORCES.values()]

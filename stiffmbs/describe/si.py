@@ -7,7 +7,6 @@ from typing import Annotated
 from .fields import Measured
 
 Anything = Annotated[float, Measured("value")]
-Number = Annotated[float, Measured("number")]
 Angle = Annotated[float, Measured("angle")]
 Length = Annotated[float, Measured("length")]
 Time = Annotated[float, Measured("time")]

@@ -68,7 +68,13 @@ class Report:
     sound: bool
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """The content of ``stiffmbs check --json``."""
+        """The content of ``stiffmbs check --json``.
+
+        Parameters
+        ----------
+        scene : str
+            The file, or what else the scene is called.
+        """
         return {
             "scene": scene,
             "degrees_of_freedom": self.degrees_of_freedom,

@@ -89,7 +89,7 @@ class Eliminated:
         return {
             **{name: np.array(values, dtype=DTYPES[ELIMINATED[name]]) for name, values in lists.items()},
             "state": state.table, "ready": np.zeros(1, dtype=np.int64), "n": n, "n_u": system.n_u, "n_f": len(force.source),
-            "n_gamma": len(lists["gamma_source"]), "n_j": len(self._j[0]), "n_products": len(products),
+            "n_gamma": len(lists["gamma_source"]), "n_j": len(self._j[0]),
             "n_slots": int(starts[-1]), "scale": scale, "j_scale": scale[self._j[2]], "j": np.zeros(len(self._j[0])),
             "s": np.zeros(int(starts[-1])), "l": np.zeros(int(starts[-1])), "diagonal": np.zeros(n),
             "a": np.zeros(system.n_u), "b": np.zeros(n),

@@ -11,8 +11,8 @@ from . import andrews_minimal as given
 from .ida import Equations, Settings, at_rest
 from .loop import JACOBIAN, RESIDUAL, array, fast, matrix
 
-Q, V, MU, LAM, N = 0, 21, 42, 62, 82
-"""Where coordinates, velocities and the multipliers of ten pins begin, and the number of unknowns."""
+V, MU, LAM, N = 21, 42, 62, 82
+"""Where velocities and the multipliers of ten pins begin, behind the coordinates, and the number of unknowns."""
 
 
 @fast

@@ -21,7 +21,7 @@ DONE, SINGULAR, FULL = 0, 1, 2
 
 
 @compiled
-def _reach(f, column, top_of_stack):
+def _reach(f, column):
     """The rows that a column's elimination touches, in topological order at stack[top:n]; marks are undone later."""
     n = f.n
     top = n
@@ -72,7 +72,7 @@ def factor(f):
             return FULL
         column = f.order[k]
         f.l_start[k + 1] = l_end  # so that a column that is not there yet looks empty
-        top = _reach(f, column, n)
+        top = _reach(f, column)
         for at in range(top, n):
             f.work[f.stack[at]] = 0.0
         for p in range(f.a_start[column], f.a_start[column + 1]):

@@ -58,6 +58,8 @@ class AppliedTorque(Force):
     """A torque on a body: constant, or a formula of time and of anything measured.
 
     With `j` a second body takes the opposite torque.  A constant torque has a potential, others have none.
+
+    This is Adams' rotational SFORCE in the plane.
     """
 
     kind: ClassVar[str] = "torque"

@@ -16,6 +16,8 @@ class ConstraintEquation(KeptAtZero):
 
     The equations are named ``zero[0] zero[1] ...`` in reports.  The reaction is reported on the body of marker `i`, about
     its point; without one on the first body that the formulas name, about its centre of mass.
+
+    This is Adams' GCON of positions.
     """
 
     kind: ClassVar[str] = "equation"

@@ -13,7 +13,7 @@ from ..marker import Marker
 class Fixed(Joint):
     """Weld: two markers coincide in place and direction.
 
-    The reaction is a force of any direction and a torque.
+    The reaction is a force of any direction and a torque.  This is Adams' FIXED in the plane.
     """
 
     kind: ClassVar[str] = "fixed"

@@ -39,8 +39,8 @@ class Body(Described):
     omega : tuple of float
         Angular velocity at the start in the body's own axes, rad/s.
     open : tuple of str
-        Which of ``velocity`` and ``omega`` are not given: joints and drives decide about them before they change any that
-        is given, and what they leave open is as written.
+        Which of ``velocity`` and ``omega`` are not prescribed: they follow, through joints and drives, from those that
+        are; where these leave a choice, the value written stands.
     markers : mapping of str to Placement
         Named points and orientations on the body, in its own axes from its origin.
     """
@@ -59,7 +59,7 @@ class Body(Described):
         (0.0, 0.0, 0.0), description="angular velocity at the start, in the body's own axes, rad/s"
     )
     open: tuple[Literal["velocity", "omega"], ...] = Field(
-        (), description="which of both at the start are what joints make of the others"
+        (), description="which of velocity and omega follow at the start from joints, drives and what is given"
     )
     markers: dict[str, Placement] = Field(
         default_factory=dict, description="named points and orientations on the body, in its own axes"

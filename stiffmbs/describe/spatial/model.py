@@ -117,11 +117,35 @@ class Model(ModelBuilder):
     def add(self, name: str, part: Joint | Force) -> None: ...
 
     def add(self, name: str, part: Body | Joint | Force) -> BodyHandle | None:
-        """Add a body (its handle is returned), a joint or a force under a name; errors as for `ModelBuilder.add`."""
+        """Add a body, a joint or a force.
+
+        Parameters
+        ----------
+        name : str
+            Letters, digits and ``_``; no other part has it.
+        part : Body, Joint or Force
+
+        Returns
+        -------
+        BodyHandle or None
+            For a body a shorthand for its markers and coordinates.
+
+        Raises
+        ------
+        InputError
+            When the name is taken, reserved or no identifier, or the part names an unknown body.
+        """
         return super().add(name, part)
 
     def request(self, name: str, formula: str | float | Mapping[str, str | float]) -> None:
         """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
+
+        Parameters
+        ----------
+        name : str
+            Of the channel.
+        formula : str, float or mapping of str to these
+            In SI units, such as ``"dm(bar.end, ground)"``; several by the names of their components.
 
         Raises
         ------

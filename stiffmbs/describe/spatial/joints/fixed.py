@@ -17,7 +17,7 @@ from ..primitives import COINCIDE, ORIENT, coincide, orient
 class Fixed(Joint):
     """Weld: two markers coincide in place and orientation.
 
-    The reaction is a force and a torque of any direction.
+    The reaction is a force and a torque of any direction.  This is Adams' FIXED.
 
     The equations of orientation hold for seven other orientations too (half turns and turns by a third), so that
     markers drawn 60 degrees apart and more are refused.

@@ -19,7 +19,8 @@ class Planar(Joint):
 
     The reaction is a force along z and a torque across it.  This is Adams' PLANAR.
 
-    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 and dot 2 constraints); Nikravesh (1988), section 7.2.
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 and dot
+    2 constraints); Nikravesh (1988), section 7.2.
     """
 
     kind: ClassVar[str] = "planar"

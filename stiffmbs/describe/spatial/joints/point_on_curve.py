@@ -18,7 +18,7 @@ class PointOnCurve(Curve[Marker]):
     repeating after every turn.  Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
     The curve should have no corners.  The reaction is across the curve, without friction, and may pull: the point
-    cannot lift off.  Flat curves are all that Adams' PTCV has here.
+    cannot lift off.  Of Adams' PTCV it covers the flat curves.
     """
 
     kind: ClassVar[str] = "point_on_curve"

@@ -18,7 +18,8 @@ class RevoluteSpherical(Rod[Marker]):
     The point of marker i stays at a distance L from the point of marker j, and in the plane across j's z axis, the
     axis of the hinge: d . z_j = 0 and (d . d - L^2)/(2 L) = 0.  The reaction is a force on the ball, without torque.
 
-    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (revolute-spherical composite joint).
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4
+    (revolute-spherical composite joint).
     """
 
     kind: ClassVar[str] = "revolute_spherical"
