@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.group import Group
 from ..compile.state import State
-from ..compile.system import Group, System
+from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..describe.element import Element
 

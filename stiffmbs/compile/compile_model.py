@@ -13,9 +13,10 @@ from ..describe.marker import GROUND
 from ..describe.model_builder import ModelBuilder
 from ..errors import InputError
 from .bodies import BODY_KINDS, BodyKind
+from .group import Group
 from .kind import Compilable, ElementData, Kind, sorted_out
 from .record import KindRecord, record_of
-from .system import Group, System
+from .system import System
 
 
 def compile_model(model: Compilable | ModelBuilder) -> System:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..describe.request import Request
-from .system import Group, System
+from .group import Group
+from .system import System
 
 
 def mechanisms(system: System) -> list[np.ndarray]:

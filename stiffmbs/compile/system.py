@@ -11,61 +11,12 @@ from functools import cached_property
 
 import numpy as np
 
-from ..describe.element import Element
 from .bodies import BodyKind
+from .group import Group
 from .kernels import kernel_of
-from .kind import Kind
 from .machine import Compiled
-from .record import KindRecord, source_of
+from .record import source_of
 from .terms import TERM_AXES, TERM_SETS, TURNED
-
-
-@dataclass(frozen=True)
-class Group:
-    """The elements of one kind.
-
-    Attributes
-    ----------
-    names : tuple of str
-        Element by element.
-    of_body : BodyKind
-        Coordinates and velocities of the bodies.
-    index : ndarray of int, shape (count, 2 * bodies + 1 + joints + counters)
-        Offsets of each body in q and u (the ground's are past the end), of the element's first number, of the
-        first row of each joint that it refers to, and of its counters of turns in q.
-    numbers : ndarray
-        Kernel parameters and tables, element after element; may be changed in place.
-    first_row : int
-        Of the first element's equations.
-    """
-
-    kind: Kind
-    record: KindRecord
-    of_body: BodyKind
-    names: tuple[str, ...]
-    elements: tuple[Element, ...]
-    index: np.ndarray
-    numbers: np.ndarray
-    first_row: int
-
-    @property
-    def count(self) -> int:
-        """Number of elements."""
-        return len(self.names)
-
-    def entries(self, term: str) -> int:
-        """Number of entries that one element has in a term."""
-        return len(self.record.patterns.get(term, ()))
-
-    @property
-    def bodies(self) -> np.ndarray:
-        """Numbers of the bodies that each element acts on, shape (count, bodies); the ground's is behind the last body's."""
-        return self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u
-
-    @property
-    def counters(self) -> np.ndarray:
-        """Numbers of the coordinates that count turns for each element, shape (count, counters)."""
-        return self.index[:, self.index.shape[1] - self.record.n_counters :]
 
 
 @dataclass(frozen=True)
@@ -253,10 +204,7 @@ class System:
     def _term(self, term_set: str, name: str) -> Term:
         k = TERM_SETS[term_set].index(name)
         axes = TERM_AXES[name]
-        parts = [
-            self._group_entries(g, group, int(self.places[term_set][g, 1 + k]), name, axes)
-            for g, group in enumerate(self.groups)
-        ]
+        parts = [group.placed(name, int(self.places[term_set][g, 1 + k])) for g, group in enumerate(self.groups)]
         nothing = np.empty(0, dtype=np.int64)  # of a scene without joints, forces and weight
         source, row, column = (np.concatenate([nothing, *(part[i] for part in parts)]) for i in range(3))
         inside = (row < self.extent(axes[0])) & (column < (self.extent(axes[1]) if len(axes) > 1 else 1))
@@ -265,41 +213,6 @@ class System:
     def extent(self, axis: str) -> int:
         """How many there are of what a term's rows or columns count (`stiffmbs.compile.terms.TERM_AXES`)."""
         return {"q": self.n_q, "u": self.n_u, "c": self.n_c, "l": self.n_c}.get(axis, np.iinfo(np.int64).max)
-
-    def _group_entries(self, g: int, group: Group, first: int, name: str, axes: str) -> tuple[np.ndarray, ...]:
-        pattern = np.array(group.record.patterns.get(name, ()), dtype=np.int64).reshape(-1, 2)
-        elements = np.arange(group.count)[:, None]
-        source = first + elements * len(pattern) + np.arange(len(pattern))[None, :]
-        row = self._whole(group, axes[0], pattern[:, 0])
-        column = self._whole(group, axes[1], pattern[:, 1]) if len(axes) > 1 else np.zeros_like(source)
-        return source.ravel(), row.ravel(), column.ravel()
-
-    def _whole(self, group: Group, axis: str, own: np.ndarray) -> np.ndarray:
-        """Numbers in the whole for the elements' own numbers, shape (count, entries)."""
-        elements = np.arange(group.count)[:, None]
-        match axis:
-            case "c":
-                return group.first_row + elements * group.record.n_equations + own[None, :]
-            case "q" | "u":
-                width = self.of_body.n_q if axis == "q" else self.of_body.n_u
-                body, offset = own // width, own % width
-                counter = own - width * group.kind.n_bodies
-                of_counter = group.index.shape[1] - group.record.n_counters + counter
-                return group.index[:, np.where(counter < 0, 2 * body + (axis == "u"), of_counter)] + np.where(
-                    counter < 0, offset, 0
-                )
-            case "l":
-                joint, offset = self._joint_of_column(group, own)
-                return group.index[:, 2 * group.kind.n_bodies + 1 + joint] + offset[None, :]
-            case _:
-                return np.broadcast_to(own[None, :], (group.count, len(own)))
-
-    @staticmethod
-    def _joint_of_column(group: Group, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """For columns that count the equations of all joints referred to: which joint, and which of its equations."""
-        starts = np.cumsum([0, *group.record.joint_equations])
-        joint = np.searchsorted(starts, own, side="right") - 1
-        return joint, own - starts[joint]
 
     def kernel(self, term_set: str, group: Group) -> Compiled | None:
         """The compiled kernel with which a group contributes to a set, if it does."""

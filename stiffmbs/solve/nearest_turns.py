@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..compile.system import Group
+from ..compile.group import Group
 from .mechanics import Mechanics
 
 TURN = 2 * math.pi

@@ -13,10 +13,11 @@ import numpy as np
 
 from ...compile.cache import DIRECTORY_VARIABLE
 from ...compile.compile_model import compile_model
+from ...compile.group import Group
 from ...compile.kernels import compile_usual
 from ...compile.kind import sorted_out
 from ...compile.state import State
-from ...compile.system import Group, System
+from ...compile.system import System
 from ...describe.scene import load_scene
 from ...show.warm import USUAL
 from ..benchmark import Row

@@ -1,0 +1,113 @@
+"""The elements of one kind in a compiled model, and where the entries of their terms stand in the whole."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..describe.element import Element
+from .bodies import BodyKind
+from .kind import Kind
+from .record import KindRecord
+from .terms import TERM_AXES
+
+
+@dataclass(frozen=True)
+class Group:
+    """The elements of one kind.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Element by element.
+    of_body : BodyKind
+        Coordinates and velocities of the bodies.
+    index : ndarray of int, shape (count, 2 * bodies + 1 + joints + counters)
+        Offsets of each body in q and u (the ground's are past the end), of the element's first number, of the
+        first row of each joint that it refers to, and of its counters of turns in q.
+    numbers : ndarray
+        Kernel parameters and tables, element after element; may be changed in place.
+    first_row : int
+        Of the first element's equations.
+    """
+
+    kind: Kind
+    record: KindRecord
+    of_body: BodyKind
+    names: tuple[str, ...]
+    elements: tuple[Element, ...]
+    index: np.ndarray
+    numbers: np.ndarray
+    first_row: int
+
+    @property
+    def count(self) -> int:
+        """Number of elements."""
+        return len(self.names)
+
+    def entries(self, term: str) -> int:
+        """Number of entries that one element has in a term."""
+        return len(self.record.patterns.get(term, ()))
+
+    @property
+    def bodies(self) -> np.ndarray:
+        """Numbers of the bodies that each element acts on, shape (count, bodies); the ground's is behind the last body's."""
+        return self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u
+
+    @property
+    def counters(self) -> np.ndarray:
+        """Numbers of the coordinates that count turns for each element, shape (count, counters)."""
+        return self.index[:, self.index.shape[1] - self.record.n_counters :]
+
+    def placed(self, term: str, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Source, row and column of a term's entries, element after element.
+
+        Parameters
+        ----------
+        term : str
+            One of `stiffmbs.compile.terms.TERM_AXES`.
+        first : int
+            Where the first of its values stands among those of its set.
+
+        Returns
+        -------
+        ndarrays of int, shape (count * entries,)
+            Places among the values, and rows and columns in the whole; those of the ground are past the end.
+        """
+        axes = TERM_AXES[term]
+        pattern = np.array(self.record.patterns.get(term, ()), dtype=np.int64).reshape(-1, 2)
+        elements = np.arange(self.count)[:, None]
+        source = first + elements * len(pattern) + np.arange(len(pattern))[None, :]
+        row = self._in_whole(axes[0], pattern[:, 0])
+        column = self._in_whole(axes[1], pattern[:, 1]) if len(axes) > 1 else np.zeros_like(source)
+        return source.ravel(), row.ravel(), column.ravel()
+
+    def _in_whole(self, axis: str, own: np.ndarray) -> np.ndarray:
+        """Numbers in the whole for the elements' own numbers, shape (count, entries)."""
+        elements = np.arange(self.count)[:, None]
+        match axis:
+            case "c":
+                return self.first_row + elements * self.record.n_equations + own[None, :]
+            case "q" | "u":
+                return self._of_bodies(axis, own)
+            case "l":
+                joint, offset = self._joint_of_column(own)
+                return self.index[:, 2 * self.kind.n_bodies + 1 + joint] + offset[None, :]
+            case _:
+                return np.broadcast_to(own[None, :], (self.count, len(own)))
+
+    def _of_bodies(self, axis: str, own: np.ndarray) -> np.ndarray:
+        """For coordinates or velocities of the elements' bodies, behind which stand the elements' counters of turns."""
+        width = self.of_body.n_q if axis == "q" else self.of_body.n_u
+        body, offset = own // width, own % width
+        counter = own - width * self.kind.n_bodies
+        of_counter = self.index.shape[1] - self.record.n_counters + counter
+        first = self.index[:, np.where(counter < 0, 2 * body + (axis == "u"), of_counter)]
+        return first + np.where(counter < 0, offset, 0)
+
+    def _joint_of_column(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """For columns that count the equations of all joints referred to: which joint, and which of its equations."""
+        starts = np.cumsum([0, *self.record.joint_equations])
+        joint = np.searchsorted(starts, own, side="right") - 1
+        return joint, own - starts[joint]
