@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stiffmbs.describe.formula import FormulaError
-from stiffmbs.describe.quantity import Quantity, in_si, quantity
+from stiffmbs.describe.quantity import in_si, quantity
+from stiffmbs.describe.units import Quantity
 
 
 @pytest.mark.parametrize(
@@ -54,6 +55,7 @@ def test_value_in_si(text, dimension, value):
         "True",
         "1j",
         "1, 2",
+        "abs(1, 2)",
         "",
         "   ",
         "1 +",

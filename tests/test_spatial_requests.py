@@ -226,3 +226,14 @@ def test_requests_from_python():
     np.testing.assert_allclose(solution["way.y"], 4 * solution.t, atol=1e-9)
     with pytest.raises(InputError, match="taken or reserved"):
         model.request("stone", "1")
+
+
+def test_a_parameter_of_any_name_keeps_its_value():
+    text = """
+dimensions: 3
+parameters: {term0: 5, term1: 7}
+bodies: {ball: {mass: 1, inertia: [1, 1, 1], position: [3, 0, 0]}}
+requests: {far: term0 + term1*dx(ball)}
+run: {duration: 0.1, points: 2}
+"""
+    assert stiffmbs.run(stiffmbs.read_scene(text))["far"] == pytest.approx(26)

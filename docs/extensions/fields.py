@@ -12,9 +12,9 @@ from stiffmbs.describe.element import Force, Joint, JointName
 from stiffmbs.describe.fields import Described, Measured
 from stiffmbs.describe.formula_field import FormulaOf
 from stiffmbs.describe.marker import MarkerReference, Placement
-from stiffmbs.describe.quantity import DIMENSIONS
 from stiffmbs.describe.spatial.marker import Placement as SpatialPlacement
 from stiffmbs.describe.spatial.orientation import OrientationField
+from stiffmbs.describe.units import DIMENSIONS
 
 WORDS = {
     MarkerReference: "marker",

@@ -12,7 +12,7 @@ from ..compile.table_values import curve
 from ..describe.formula import evaluate
 from ..describe.formula_field import TIME
 from ..describe.formula_value import branch_value, step5_value, step_value
-from ..describe.spatial.output import ACTIONS, Output, Term, ends
+from ..describe.spatial.output import ACTIONS, Output, Term, ends, placeholder
 from .marker_measures import ANGLES, MAGNITUDES, SCALARS, VECTORS
 from .marker_motion import Motions
 
@@ -41,13 +41,15 @@ def outputs(model: Any, time: np.ndarray, channels: Mapping[str, np.ndarray]) ->
 
 
 def _value(output: Output, time: np.ndarray, channels: Mapping[str, np.ndarray], terms: _Terms) -> np.ndarray:
+    of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
+
     def names(name: str) -> Any:
         if name == TIME:
             return time
         if name in output.values:
             return np.float64(output.values[name])
-        if name.startswith("term"):
-            return terms.value(output.terms[int(name.removeprefix("term"))])
+        if name in of_terms:
+            return terms.value(of_terms[name])
         return channels[name]
 
     tables = {name: curve(table) for name, table in output.tables.items()}

@@ -19,8 +19,9 @@ from .formula import UNIT, FormulaError
 from .formula_field import FUNCTIONS as FORMULA_FUNCTIONS
 from .formula_field import TIME
 from .formula_names import MEASURES
-from .quantity import CONSTANTS, FUNCTIONS, Quantity, in_si, quantity
+from .quantity import FUNCTIONS, in_si, quantity
 from .table import Table
+from .units import CONSTANTS, Quantity
 
 MOST_REPEATS = 1_000_000
 _LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")

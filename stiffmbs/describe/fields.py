@@ -23,7 +23,8 @@ from pydantic_core import core_schema
 
 from ..errors import InputError
 from .formula import FormulaError
-from .quantity import DIMENSIONS, in_si, one
+from .quantity import in_si
+from .units import DIMENSIONS, one
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
@@ -89,7 +90,7 @@ class Measured:
     Parameters
     ----------
     dimension : str
-        One of `stiffmbs.describe.quantity.DIMENSIONS`.
+        One of `stiffmbs.describe.units.DIMENSIONS`.
     above, at_least, at_most, other_than : float, optional
         Bounds, and a number that is none of them, in SI units.
     """

@@ -15,8 +15,8 @@ from .formula import UNIT, FormulaError, parse
 from .formula_functions import FUNCTIONS, OF_TABLE, check_functions
 from .formula_names import MEASURES
 from .marker import GROUND, MarkerReference
-from .quantity import CONSTANTS, UNITS, Quantity
 from .table import Table
+from .units import CONSTANTS, UNITS, Quantity
 
 TIME = "t"
 

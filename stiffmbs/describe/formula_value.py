@@ -11,7 +11,8 @@ import numpy as np
 
 from .formula import FormulaError, evaluate
 from .formula_field import Formula
-from .quantity import FUNCTIONS, Quantity
+from .quantity import FUNCTIONS
+from .units import Quantity
 
 
 def formula_value(formula: Formula, node: ast.expr | None = None, **variables: float) -> float:

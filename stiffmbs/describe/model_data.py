@@ -17,8 +17,8 @@ from .formula import UNIT
 from .formula_field import TIME, Formula
 from .formula_names import NAMES, FormulaNames
 from .marker import GROUND, MarkerReference
-from .quantity import UNITS
 from .request import Request
+from .units import UNITS
 
 ROUNDING = 1e-13
 """Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ from .spatial.model import FORCES as SPATIAL_FORCES
 from .spatial.model import JOINTS as SPATIAL_JOINTS
 from .spatial.model import SpatialData
 from .table import Table
+from .yaml_text import line_of, read_yaml
 
 SECTIONS = ("bodies", "joints", "forces")
 DATASET = ".adm"
@@ -126,12 +126,12 @@ def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
     InputError
         When it is no valid scene; names the line and the path in it.
     """
-    found = _yaml(text, source)
+    found = read_yaml(text, source)
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, lambda path: _line(text, path))
+    return made_scene(found, changes, source, lambda path: line_of(text, path))
 
 
 def made_scene(
@@ -158,7 +158,7 @@ def made_scene(
         When it is no valid scene.
     """
     for path, value in changes:
-        set_value(found, path, _yaml(value, f"--set {path}"))
+        set_value(found, path, read_yaml(value, f"--set {path}"))
     try:
         return _validated(found)
     except _Located as error:
@@ -212,46 +212,6 @@ def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
     except PydanticError:
         return False
     return True
-
-
-def _yaml(text: str, source: str) -> Any:
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import MarkedYAMLError, YAMLError
-
-    try:
-        return YAML(typ="safe", pure=True).load(StringIO(text))
-    except MarkedYAMLError as error:
-        line = f", line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise InputError(f"{source}{line}: {_yaml_reason(error)}") from None
-    except (YAMLError, ValueError, RecursionError) as error:
-        raise InputError(f"{source}: found text that is not YAML ({str(error).splitlines()[0]})") from None
-
-
-def _yaml_reason(error: Any) -> str:
-    problem = str(error.problem or "").splitlines()[0]
-    if "duplicate key" in problem:
-        key = problem.split('"')[1]
-        return f"found the name '{key}' twice, expected each name once"
-    return f"found text that is not YAML ({problem})"
-
-
-def _line(text: str, path: tuple[Any, ...]) -> int | None:
-    """The line of the deepest key of `path` that the file holds."""
-    from ruamel.yaml import YAML
-
-    place: Any = YAML().load(StringIO(text))
-    line = None
-    for key in path:
-        marks = getattr(place, "lc", None)
-        if isinstance(place, dict) and key in place and marks:
-            line = marks.key(key)[0] + 1
-            place = place[key]
-        elif isinstance(place, list) and key.isdigit() and int(key) < len(place) and marks:
-            line = marks.item(int(key))[0] + 1
-            place = place[int(key)]
-        else:
-            break
-    return line
 
 
 def scene_schema() -> dict[str, Any]:

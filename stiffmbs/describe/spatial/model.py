@@ -22,7 +22,8 @@ from .drawn import DrawnMarker
 from .forces.turning import turnings
 from .marker import Placement
 from .orientation import matrix, product, rotated
-from .output import Output, Requested, check_output
+from .output import Output, check_output
+from .output_field import Requested
 
 JOINTS = kinds(joints, Joint)
 FORCES = kinds(forces, Force)
