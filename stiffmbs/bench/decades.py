@@ -12,7 +12,7 @@ import numpy as np
 
 from .benchmark import Row
 from .contestant import Contestant, Failed, Solve
-from .sweep import AT_TARGET, FEWEST, WINDOW, at_target_rows
+from .sweep import FEWEST, WINDOW, at_target_rows, on_line
 
 TOLERANCES = tuple(float(f"{10.0**exponent:.2g}") for exponent in np.linspace(-2, -13, 34))
 TARGETS = tuple(10.0**-k for k in range(3, 10))
@@ -89,9 +89,7 @@ def at_errors(solver: str, peer: bool, rows: Sequence[Row], targets: Sequence[fl
         if len(near) < FEWEST:
             near = [row for pair in itertools.pairwise(own) if pair[0].error <= target < pair[1].error for row in pair]
         if near and near[0].error <= target <= near[-1].error:
-            x, z = np.log([row.error / target for row in near]), np.log([row.seconds for row in near])
-            seconds = float(np.exp(np.polyfit(x, z, 1)[-1]))
-            yield Row(solver, f"{AT_TARGET} {target:g}", target, seconds, peer)
+            yield on_line(solver, peer, near, target)
 
 
 def seconds_of(solve: Solve) -> tuple[float, np.ndarray]:

@@ -66,9 +66,13 @@ def at_target(contestant: Contestant, rows: Sequence[Row], target: float) -> Ite
     own = [row for row in rows if row.solver == contestant.solver]
     if len(own) < FEWEST or not min(r.error for r in own) <= target <= max(r.error for r in own):
         return
-    x, z = np.log([row.error / target for row in own]), np.log([row.seconds for row in own])
-    at_zero = np.polyfit(x, z, 1)[-1]
-    yield Row(contestant.solver, f"{AT_TARGET} {target:g}", target, float(np.exp(at_zero)), contestant.peer)
+    yield on_line(contestant.solver, contestant.peer, own, target)
+
+
+def on_line(solver: str, peer: bool, rows: Sequence[Row], target: float) -> Row:
+    """The time at an error, on the straight line through the logarithms of the times and errors of some rows."""
+    x, z = np.log([row.error / target for row in rows]), np.log([row.seconds for row in rows])
+    return Row(solver, f"{AT_TARGET} {target:g}", target, float(np.exp(np.polyfit(x, z, 1)[-1])), peer)
 
 
 def at_target_rows(rows: Sequence[Row]) -> list[Row]:

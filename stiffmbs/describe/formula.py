@@ -166,6 +166,8 @@ def evaluate(
             try:
                 return functions[name](*(evaluate(a, names, functions, number) for a in arguments))
             except TypeError:
-                raise FormulaError(f"found {len(arguments)} arguments of '{name}', expected another number") from None
+                raise FormulaError(
+                    f"found {len(arguments)} arguments of '{name}', expected more or fewer of them"
+                ) from None
         case _:
             raise FormulaError("found something that is no arithmetic")

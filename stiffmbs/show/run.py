@@ -27,9 +27,8 @@ from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from .channels import channels_of
 from .gaps import reported
 from .presolve import presolve_sentences
+from .settings import changed, may_presolve, near_constraints, output_grid
 from .solution import Solution
-
-DEFAULT_POINTS = 1001
 
 
 @dataclass(frozen=True)
@@ -80,12 +79,6 @@ def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None
     return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
 
 
-def _may_presolve(settings: RunSettings) -> bool:
-    """Whether a smaller problem has the same results: explicit steps of fixed length and drifts are shown as they are."""
-    shown_as_it_is = settings.solver == "projected" and not _near_constraints(settings)
-    return settings.presolve and settings.solver != "kinematic" and not shown_as_it_is
-
-
 def presolved(
     model: ModelData, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
 ) -> tuple[Piece, ...]:
@@ -102,7 +95,7 @@ def presolved(
     grid : Grid
     settings : RunSettings
     """
-    if not _may_presolve(settings):
+    if not may_presolve(settings):
         return ()
     parts = parts_of(model, mechanics.system, apart=grid.times is not None)
     pieces = tuple(piece_of(part, start, grid.start) for part in parts)
@@ -161,7 +154,7 @@ def run(
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
     trajectory = job.integrate(watch)
-    project = _near_constraints(job.settings)
+    project = near_constraints(job.settings)
     rows, left_out = reported(job.mechanics, trajectory, project)
     if not len(rows.t):
         raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
@@ -185,39 +178,6 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
     sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
     return Outcome.STOPPED, sentence + suspect(job.mechanics, t, q, u)
-
-
-def _near_constraints(settings: RunSettings) -> bool:
-    """Whether states are on the constraints but for the tolerance; those of explicit fixed steps are shown as they are."""
-    return settings.solver != "projected" or (settings.projection and settings.scheme in ADAPTIVE)
-
-
-def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:
-    """The settings with some fields changed, checked as a whole.
-
-    Raises
-    ------
-    InputError
-        When a field is unknown or its value out of bounds.
-    """
-    kept = {name: getattr(settings, name) for name in settings.model_fields_set}
-    if {"output", "points"} & changes.keys():
-        kept = {name: value for name, value in kept.items() if name not in ("output", "points")}
-    return RunSettings(**{**kept, **changes})
-
-
-def output_grid(settings: RunSettings) -> Grid:
-    """The instants to report, from the settings: ends included."""
-    start, end = settings.start, settings.start + settings.duration
-    if settings.points == "steps":
-        return Grid(start, end, None)
-    if settings.output is not None:
-        count = int(np.floor(settings.duration / settings.output * (1 + 1e-12))) + 1
-        times = start + settings.output * np.arange(count)
-        times = np.append(times, end) if end - times[-1] > 1e-9 * settings.output else np.append(times[:-1], end)
-        return Grid(start, end, times)
-    points = settings.points if isinstance(settings.points, int) else DEFAULT_POINTS
-    return Grid(start, end, np.linspace(start, end, points))
 
 
 def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:

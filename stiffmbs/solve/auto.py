@@ -8,7 +8,6 @@ is tried, for as long as it keeps ahead, and best from the start, before explici
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,9 +21,10 @@ from .explicit.adaptive import AdaptiveRun, Leaving
 from .explicit.integration import Integration
 from .fastest_rate import fastest_rate
 from .initial import InitialValues
+from .legs import joined
 from .mechanics import Mechanics
 from .restart import restarted
-from .trajectory import Grid, History, Outcome, Trajectory, Watch, summed
+from .trajectory import Grid, Outcome, Trajectory, Watch
 
 LOOK = 32
 """Explicit steps between two looks at what holds them back."""
@@ -198,33 +198,7 @@ class _Shared:
             told += [f"and so on, {len(self._told)} changes in all"]
         note = "auto chose " + ", then ".join(told if self._legs[0].solver == "bdf" else ["projected dop853", *told])
         return replace(
-            self._legs[0] if len(self._legs) == 1 else _joined(self._legs),
+            self._legs[0] if len(self._legs) == 1 else joined(self._legs),
             note="; ".join([note, *dict.fromkeys(leg.note for leg in self._legs if leg.note)]),
             solver=", ".join(dict.fromkeys(leg.solver for leg in self._legs)),
         )
-
-
-def _joined(legs: Sequence[Trajectory]) -> Trajectory:
-    """Legs as one trajectory; each begins with the row at which the last one ended."""
-    t, q, u = (
-        np.concatenate([getattr(leg, name)[int(k > 0) :] for k, leg in enumerate(legs)]) for name in ("t", "q", "u")
-    )
-    return replace(legs[-1], t=t, q=q, u=u, statistics=_summed(legs), history=_history(legs))
-
-
-def _last_of_each_kind(legs: Sequence[Trajectory]) -> list[Trajectory]:
-    """Every explicit leg, and the last implicit one: its integrator counts from its first start on."""
-    implicit = [leg for leg in legs if leg.solver == "bdf"]
-    return [leg for leg in legs if leg.solver != "bdf"] + implicit[-1:]
-
-
-def _summed(legs: Sequence[Trajectory]) -> dict[str, int | float | str]:
-    """The counters of all legs, and their time."""
-    seconds = summed([{"seconds": leg.statistics["seconds"]} for leg in legs])
-    return {**summed([leg.statistics for leg in _last_of_each_kind(legs)]), **seconds}
-
-
-def _history(legs: Sequence[Trajectory]) -> History:
-    """The steps of all legs; orders where all are known."""
-    t = np.concatenate([leg.history.t for leg in _last_of_each_kind(legs)])
-    return History(np.sort(t), np.empty(0, dtype=int))
