@@ -82,20 +82,21 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
             raise InputError(f"found equation {row + 1} of {J.rows}, which depends on no coordinate of a body")
-        if any(e.depends(entry, e.u) for entry in J[row, :]):
+        if any(e.depends(entry, e.velocities) for entry in J[row, :]):
             raise InputError(
                 f"found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
                 "in velocities"
             )
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
+    force = e.work_by_velocities(zip(lam, V, strict=True))
     turning = e.rate(V)
     terms = {
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
         "gamma": -turning,
-        "G_lam": e.by_coordinates(J.T * lam), "G_mu": e.by_coordinates(C_q.T * mu[: C.rows, :]),
+        "G_lam": e.by_coordinates(force), "G_mu": e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False))),
         "A_q": e.by_coordinates(J * e.a + turning),
         "gamma_u": -e.by_velocities(turning),
-        "reaction": _reaction(kind, e, -J.T * lam),
+        "reaction": _reaction(kind, e, -force),
         "switch": sp.Matrix(symbols.switches),
     }  # fmt: skip
     entries = {name: _entries(matrix) for name, matrix in terms.items()}
@@ -106,9 +107,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     e = symbols.element
-    f = sp.zeros(e.u.rows, 1)
-    for effort, rate in kind.element.powers(e):  # type: ignore[attr-defined]
-        f += e.by_velocities([rate]).T * effort
+    f = e.work_by_velocities(kind.element.powers(e))  # type: ignore[attr-defined]
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
     terms = {
         "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),

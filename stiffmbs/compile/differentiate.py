@@ -10,17 +10,12 @@ from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
-Chain = Mapping[sp.Symbol, Mapping[sp.Symbol, sp.Expr]]
-"""Symbols that stand for functions of others, with their derivatives by these."""
+Way = tuple[sp.Symbol, sp.Expr]
+"""A symbol that changes with a coordinate or velocity, and its derivative by that."""
 
 
 class Derivatives:
     """Derivatives of the expressions of one element; what has been differentiated is remembered.
-
-    Parameters
-    ----------
-    chain : Chain
-        Symbols to be differentiated as functions of others, such as the entries of a rotation matrix.
 
     Attributes
     ----------
@@ -28,21 +23,29 @@ class Derivatives:
         What each name stands for; names in it have been given before.
     """
 
-    def __init__(self, chain: Chain) -> None:
-        self._chain = chain
+    def __init__(self) -> None:
+        self._chain: dict[sp.Symbol, Mapping[sp.Symbol, sp.Expr]] = {}
         self._known: dict[tuple[sp.Expr, sp.Symbol], sp.Expr] = {}
         self._symbols: dict[sp.Expr, frozenset[sp.Symbol]] = {}
         self._variables: dict[sp.Symbol, frozenset[sp.Symbol]] = {}
         self._names: dict[sp.Expr, sp.Symbol] = {}
         self.meanings: dict[sp.Symbol, sp.Expr] = {}
 
+    def define(self, symbol: sp.Symbol, by: Mapping[sp.Symbol, sp.Expr], meaning: sp.Expr | None = None) -> None:
+        """Make a symbol a function of others by its derivatives; what it stands for is said unless kernels know it."""
+        self._chain[symbol] = by
+        if meaning is not None:
+            self.meanings[symbol] = meaning
+
     def named(self, x: sp.Expr) -> sp.Expr:
         """A symbol that stands for an expression, and is differentiated as that; numbers and symbols stay as they are.
 
-        What is named is written once wherever it occurs, in derivatives too.
+        What is named is written once wherever it occurs, in derivatives too; an expression and its opposite have one name.
         """
         if not x.args:
             return x
+        if x.could_extract_minus_sign():
+            return -self.named(-x)
         if x not in self._names:
             symbol = sp.Symbol(f"named{len(self.meanings)}", real=True)
             self._names[x], self.meanings[symbol] = symbol, x
@@ -63,8 +66,10 @@ class Derivatives:
         return self._known[x, v]
 
     def _of_symbol(self, x: sp.Symbol, v: sp.Symbol) -> sp.Expr:
+        if x in self._chain:
+            return self._chain[x].get(v, sp.Integer(0))
         if x not in self.meanings:
-            return self._chain.get(x, {}).get(v, sp.Integer(0))
+            return sp.Integer(0)
         if (x, v) not in self._known:
             self._known[x, v] = self.named(self.partial(self.meanings[x], v))
         return self._known[x, v]

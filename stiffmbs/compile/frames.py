@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from .counted_angle import CountedAngle, counter
-from .differentiate import Derivatives
+from .differentiate import Derivatives, Way
 from .spline import integral
 from .turns import Tilt, Turn, product
 
@@ -34,10 +34,10 @@ class SymbolicElement:
 
     t = sp.Symbol("t", real=True)
 
-    def __init__(self, frames: list[Any], fields: dict[str, object]) -> None:
+    def __init__(self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives) -> None:
         self.frames = frames
         self.angles: list[sp.Expr] = []
-        self.derivatives = Derivatives({symbol: by for frame in frames for symbol, by in frame.chain.items()})
+        self.derivatives = derivatives
         self.__dict__.update(fields)
 
     @property
@@ -52,13 +52,22 @@ class SymbolicElement:
     def a(self) -> sp.Matrix:
         return sp.Matrix([symbol for frame in self.frames for symbol in frame.a])
 
+    @property
+    def velocities(self) -> list[sp.Symbol]:
+        """By what functions of the velocities are differentiated."""
+        return [symbol for frame in self.frames for symbol in frame.velocities]
+
     def rate(self, x: Any) -> Any:
         """Total time derivative of an expression, or of each in a matrix, at constant velocities."""
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
         x = sp.sympify(x)
         partial = self.derivatives.partial
-        moving = (rate * partial(x, symbol) for frame in self.frames for symbol, rate in frame.motion)
+        moving = (
+            rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
+            for frame in self.frames
+            for symbol, rate in frame.motion
+        )
         return sp.Add(*moving) + partial(x, self.t)
 
     def named(self, x: Any) -> Any:
@@ -86,15 +95,36 @@ class SymbolicElement:
 
     def by_coordinates(self, column: Iterable[sp.Expr]) -> sp.Matrix:
         """The matrix d(column)/dq."""
-        ways = [way for frame in self.frames for way in frame.by_coordinate]
-        partial, rows = self.derivatives.partial, list(column)
-        return sp.Matrix(
-            len(rows), len(ways), lambda r, c: sp.Add(*(partial(rows[r], symbol) * much for symbol, much in ways[c]))
-        )
+        return sp.Matrix.vstack(sp.zeros(0, self.q.rows), *(self._row([(1, x)], self._by_coordinate) for x in column))
 
     def by_velocities(self, column: Iterable[sp.Expr]) -> sp.Matrix:
         """The matrix d(column)/du."""
-        return self.by(column, self.u)
+        return sp.Matrix.vstack(sp.zeros(0, self.u.rows), *(self._row([(1, x)], self._by_velocity) for x in column))
+
+    def work_by_coordinates(self, pairs: Iterable[tuple[sp.Expr, sp.Expr]]) -> sp.Matrix:
+        """The column of the sums of efforts times derivatives dx/dq of what they do work on."""
+        return self._row(list(pairs), self._by_coordinate).T
+
+    def work_by_velocities(self, pairs: Iterable[tuple[sp.Expr, sp.Expr]]) -> sp.Matrix:
+        """The generalised force: the sums of efforts times derivatives dv/du of the rates that they have power with."""
+        return self._row(list(pairs), self._by_velocity).T
+
+    @property
+    def _by_coordinate(self) -> list[list[Way]]:
+        return [way for frame in self.frames for way in frame.by_coordinate]
+
+    @property
+    def _by_velocity(self) -> list[list[Way]]:
+        return [way for frame in self.frames for way in frame.by_velocity]
+
+    def _row(self, pairs: list[tuple[sp.Expr, sp.Expr]], ways: list[list[Way]]) -> sp.Matrix:
+        """The sums of efforts times derivatives, by each way; what goes into several of these has a name."""
+
+        def change(symbol: sp.Symbol, much: sp.Expr) -> sp.Expr:
+            whole = sp.Add(*(effort * self.derivatives.partial(x, symbol) for effort, x in pairs))
+            return whole if much == 1 else self.named(whole) * much
+
+        return sp.Matrix([[sp.Add(*(change(*part) for part in way)) for way in ways]])
 
     def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
         """The matrix of derivatives by any symbols."""
@@ -114,8 +144,7 @@ class SymbolicElement:
 
     def in_state(self, expression: sp.Expr) -> bool:
         """Whether an expression depends on coordinates or velocities."""
-        turns = [symbol for frame in self.frames for symbol in frame.turn]
-        return self.depends(expression, [*self.q, *self.u, *turns])
+        return self.depends(expression, [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities])
 
     def depends(self, expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
         """Whether any of some symbols occurs in an expression, or in what its symbols stand for."""
@@ -145,11 +174,11 @@ class ReferredJoint(SymbolicElement):
     def __init__(
         self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
     ) -> None:
-        super().__init__(of.frames, fields)
+        super().__init__(of.frames, fields, of.derivatives)
         self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
         count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
-        self.derivatives, self.angles = of.derivatives, of.angles
+        self.angles = of.angles
 
     @cached_property
     def coordinate(self) -> Any:

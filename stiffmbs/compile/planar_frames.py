@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from .bodies import PLANE
-from .differentiate import Chain
+from .differentiate import Way
 
 
 @dataclass(frozen=True)
@@ -46,18 +46,29 @@ class BodyFrame:
         return PLANE.turn_stride
 
     @property
-    def chain(self) -> Chain:
-        return {}
-
-    @property
     def motion(self) -> list[tuple[sp.Symbol, sp.Expr]]:
         """By what a function of the pose changes in time, and how fast: its rate is the sum of derivative times rate."""
         return list(zip(self.q, self.u, strict=True))
 
     @property
-    def by_coordinate(self) -> list[list[tuple[sp.Symbol, sp.Expr]]]:
+    def by_coordinate(self) -> list[list[Way]]:
         """For each coordinate the symbols that change with it, and how much: dx/dq is the sum of derivative times that."""
         return [[(q, sp.Integer(1))] for q in self.q]
+
+    @property
+    def by_velocity(self) -> list[list[Way]]:
+        """The same for each velocity."""
+        return [[(u, sp.Integer(1))] for u in self.u]
+
+    @property
+    def pose(self) -> tuple[sp.Symbol, ...]:
+        """By what functions of the pose are differentiated."""
+        return self.q
+
+    @property
+    def velocities(self) -> tuple[sp.Symbol, ...]:
+        """By what functions of the velocities are differentiated."""
+        return self.u
 
     @property
     def origin(self) -> sp.Matrix:

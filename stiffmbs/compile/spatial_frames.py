@@ -1,23 +1,26 @@
 """Spatial bodies and markers in SymPy.
 
-A body's rotation matrix A is nine symbols, which kernels read; they are differentiated by small turns theta about the
-body's axes, dA = A [dtheta], so that A' = A [w] and no equation holds products of quaternions.  Derivatives by the
-quaternion p follow from dtheta = E dp with E = 2 conj(p) dp/|p|^2, whose entries are e = 2 p/|p|^2 but for their signs.
-A does not depend on the length of p, nor does anything else.
+A body's rotation matrix A is nine symbols, which kernels read; they are differentiated by small turns phi about the
+ground's axes, dA = [dphi] A, so that no equation holds products of quaternions.  Each vector that is fixed in a body
+has names for its parts in ground axes: its derivatives are its own parts, dv = dphi x v, at no cost whatever the vector
+is.  The rate of phi is the angular velocity A w, whose parts have names as well.  Derivatives by the quaternion p
+follow from dphi = E dp with E = 2 dp conj(p)/|p|^2, whose entries are e = 2 p/|p|^2 but for their signs.  A does not
+depend on the length of p, nor does anything else.
 
 Shabana, Dynamics of Multibody Systems (2013), sec. 2.3, 2.4.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
 from .bodies import SPACE
-from .differentiate import Chain
+from .differentiate import Derivatives, Way
 from .turns import product
 
 TURNS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
@@ -32,6 +35,36 @@ class SpatialBodyFrame:
     """
 
     slot: int
+    derivatives: Derivatives = field(compare=False)
+    _carried: dict[tuple[sp.Expr, ...], sp.Matrix] = field(default_factory=dict, compare=False)
+
+    def __post_init__(self) -> None:
+        for axis in range(3):
+            self._turning(self.rotation[:, axis])
+        p = self.q[3:]
+        for i, e in enumerate(self._e):
+            self.derivatives.define(e, {p[j]: (self._n if i == j else 0) - e * self._e[j] for j in range(4)})
+        self.derivatives.define(self._n, {p[j]: -self._n * self._e[j] for j in range(4)})
+
+    def _turning(self, vector: Iterable[sp.Symbol], meaning: Iterable[sp.Expr | None] = (None,) * 3) -> None:
+        """Make known that a vector turns with the body: by a turn phi it changes by phi x vector."""
+        parts = list(vector)
+        changes: list[dict[sp.Symbol, sp.Expr]] = [{}, {}, {}]
+        for about, first, second in TURNS:
+            changes[first][self.phi[about]] = -parts[second]
+            changes[second][self.phi[about]] = parts[first]
+        for part, change, stands_for in zip(parts, changes, meaning, strict=True):
+            self.derivatives.define(part, change, stands_for)
+
+    def carried(self, vector: Iterable[sp.Expr]) -> sp.Matrix:
+        """A vector that is given in the body's axes, in ground axes: names for its parts."""
+        own = tuple(vector)
+        if own not in self._carried:
+            stem = f"carried{self.slot}_{len(self._carried)}"
+            parts = sp.Matrix([sp.Symbol(f"{stem}_{k}", real=True) for k in range(3)])
+            self._turning(parts, self.rotation * sp.Matrix(own))
+            self._carried[own] = parts
+        return self._carried[own]
 
     @cached_property
     def q(self) -> tuple[sp.Symbol, ...]:
@@ -64,8 +97,9 @@ class SpatialBodyFrame:
         return self._n
 
     @cached_property
-    def _theta(self) -> tuple[sp.Symbol, ...]:
-        return tuple(sp.Symbol(f"theta{k}_{self.slot}", real=True) for k in range(3))
+    def phi(self) -> tuple[sp.Symbol, ...]:
+        """Small turns about the ground's axes."""
+        return tuple(sp.Symbol(f"phi{k}_{self.slot}", real=True) for k in range(3))
 
     @property
     def turn(self) -> tuple[sp.Symbol, ...]:
@@ -81,24 +115,11 @@ class SpatialBodyFrame:
         return {}
 
     @cached_property
-    def chain(self) -> Chain:
-        rotation, p = self.rotation, self.q[3:]
-        chain: dict[sp.Symbol, dict[sp.Symbol, sp.Expr]] = {}
-        for row in range(3):
-            for about, first, second in TURNS:
-                chain.setdefault(rotation[row, first], {})[self._theta[about]] = rotation[row, second]
-                chain.setdefault(rotation[row, second], {})[self._theta[about]] = -rotation[row, first]
-        for i, e in enumerate(self._e):
-            chain[e] = {p[j]: (self._n if i == j else 0) - e * self._e[j] for j in range(4)}
-        chain[self._n] = {p[j]: -self._n * self._e[j] for j in range(4)}
-        return chain
-
-    @cached_property
     def motion(self) -> list[tuple[sp.Symbol, sp.Expr]]:
         """By what a function of the pose changes in time, and how fast: its rate is the sum of derivative times rate."""
         p, w = sp.Matrix(self.q[3:]), sp.Matrix(self.u[3:])
         turning = list(zip(self.q[3:], self.quaternion_rates(p) * w, strict=True))
-        return [*zip(self.q[:3], self.u[:3], strict=True), *zip(self._theta, w, strict=True), *turning]
+        return [*zip(self.q[:3], self.u[:3], strict=True), *zip(self.phi, self.omega, strict=True), *turning]
 
     @staticmethod
     def quaternion_rates(p: sp.Matrix) -> sp.Matrix:
@@ -107,16 +128,35 @@ class SpatialBodyFrame:
         return sp.Matrix([[-p1, -p2, -p3], [p0, -p3, p2], [p3, p0, -p1], [-p2, p1, p0]]) / 2
 
     @cached_property
-    def by_coordinate(self) -> list[list[tuple[sp.Symbol, sp.Expr]]]:
+    def by_coordinate(self) -> list[list[Way]]:
         """For each coordinate the symbols that change with it, and how much: dx/dq is the sum of derivative times that."""
         e0, e1, e2, e3 = self._e
-        E = sp.Matrix([[-e1, e0, e3, -e2], [-e2, -e3, e0, e1], [-e3, e2, -e1, e0]])
+        E = sp.Matrix([[-e1, e0, -e3, e2], [-e2, e3, e0, -e1], [-e3, -e2, e1, e0]])
         straight = [[(r, sp.Integer(1))] for r in self.q[:3]]
         turning = [
-            [*((theta, E[k, j]) for k, theta in enumerate(self._theta)), (p, sp.Integer(1))]
-            for j, p in enumerate(self.q[3:])
+            [*((phi, E[k, j]) for k, phi in enumerate(self.phi)), (p, sp.Integer(1))] for j, p in enumerate(self.q[3:])
         ]
         return straight + turning
+
+    @cached_property
+    def by_velocity(self) -> list[list[Way]]:
+        """The same for each velocity: what moves with the body has the angular velocity in ground axes."""
+        straight = [[(v, sp.Integer(1))] for v in self.u[:3]]
+        turning = [
+            [*((omega, self.rotation[k, j]) for k, omega in enumerate(self.omega)), (w, sp.Integer(1))]
+            for j, w in enumerate(self.u[3:])
+        ]
+        return straight + turning
+
+    @property
+    def pose(self) -> tuple[sp.Symbol, ...]:
+        """By what functions of the pose are differentiated."""
+        return (*self.q, *self.phi)
+
+    @property
+    def velocities(self) -> tuple[sp.Symbol, ...]:
+        """By what functions of the velocities are differentiated."""
+        return (*self.u, *self.omega)
 
     @property
     def origin(self) -> sp.Matrix:
@@ -126,7 +166,7 @@ class SpatialBodyFrame:
     @property
     def omega(self) -> sp.Matrix:
         """The angular velocity in ground axes."""
-        return self.rotation * sp.Matrix(self.u[3:])
+        return self.carried(self.u[3:])
 
     def coordinate(self, name: str) -> sp.Symbol:
         """The coordinate or velocity that a formula calls ``x``, ``vy`` ..."""
@@ -154,10 +194,10 @@ class SpatialFrame:
     @property
     def point(self) -> sp.Matrix:
         """r + A s', m."""
-        return self.body.origin + self.body.rotation * sp.Matrix(self.numbers[:3])
+        return self.body.origin + self.body.carried(self.numbers[:3])
 
     def _axis(self, k: int) -> sp.Matrix:
-        return self.body.rotation * sp.Matrix(self.numbers[3 + k : 12 : 3])
+        return self.body.carried(self.numbers[3 + k : 12 : 3])
 
     @property
     def x(self) -> sp.Matrix:

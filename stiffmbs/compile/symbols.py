@@ -13,6 +13,7 @@ import sympy as sp
 from ..describe.formula import evaluate
 from ..describe.formula_field import TIME
 from . import planar_frames, spatial_frames
+from .differentiate import Derivatives
 from .frames import ReferredJoint, SymbolicElement
 from .kind import OWN, Kind, Shape
 from .measures import measure, own_coordinate
@@ -43,8 +44,13 @@ class Symbols:
 
 def symbols_of(kind: Kind) -> Symbols:
     """Make a kind's symbols and its element."""
-    frame = planar_frames.BodyFrame if kind.dimensions == 2 else spatial_frames.SpatialBodyFrame
-    symbols = Symbols(SymbolicElement([frame(slot) for slot in range(kind.n_bodies)], {}))
+    derivatives, slots = Derivatives(), range(kind.n_bodies)
+    frames = (
+        [planar_frames.BodyFrame(slot) for slot in slots]
+        if kind.dimensions == 2
+        else [spatial_frames.SpatialBodyFrame(slot, derivatives) for slot in slots]
+    )
+    symbols = Symbols(SymbolicElement(frames, {}, derivatives))
     builder = _Builder(kind.dimensions, symbols)
     symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
     return symbols
