@@ -93,7 +93,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     terms = {
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
         "gamma": -turning,
-        "G_lam": e.by_coordinates(force), "G_mu": e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False))),
+        "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "A_q": e.by_coordinates(J * e.a + turning),
         "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(kind, e, -force),
@@ -150,6 +150,11 @@ def _reaction(kind: Kind, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
     """Force and torque about the element's point, of the generalised force on its first body."""
     first = e.frames[0]
     return first.wrench(force[: len(first.u), :], sp.Matrix(kind.element.point(e)))  # type: ignore[attr-defined]
+
+
+def _symmetric(second: sp.Matrix) -> sp.Matrix:
+    """Second derivatives of one function: each off the diagonal written in one way, so that it is computed once."""
+    return sp.Matrix(*second.shape, lambda r, c: second[min(r, c), max(r, c)])
 
 
 def _entries(matrix: sp.Matrix) -> list[Entry]:

@@ -38,6 +38,7 @@ class SymbolicElement:
         self.frames = frames
         self.angles: list[sp.Expr] = []
         self.derivatives = derivatives
+        self._turns: dict[tuple[Any, Any], Turn] = {}
         self.__dict__.update(fields)
 
     @property
@@ -78,10 +79,23 @@ class SymbolicElement:
 
     def turn(self, i: Any, j: Any) -> Turn:
         """How a marker is turned against another one, of another body in space."""
+        if (i, j) not in self._turns:
+            self._turns[i, j] = self._new_turn(i, j)
+        return self._turns[i, j]
+
+    def _new_turn(self, i: Any, j: Any) -> Turn:
+        """Names for the parts of a turn, with the derivatives that `Turn` states instead of those of what they stand for."""
         back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
         inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
-        h, *v = self.named(product(back, self.named(i.quaternion)) * self.named(inverse_length))
-        return Turn(h, sp.Matrix(v))
+        meaning = product(back, self.named(i.quaternion)) * self.named(inverse_length)
+        parts = [sp.Symbol(f"turn{len(self._turns)}_{k}", real=True) for k in range(4)]
+        turn = Turn(parts[0], sp.Matrix(parts[1:]))
+        halves = [turn.rates(self.named(sp.Matrix([axis[k] for axis in j.axes]) / 2)) for k in range(3)]
+        for part, stands_for, changes in zip(parts, meaning, zip(*halves, strict=True), strict=True):
+            by = dict(zip(i.body.phi, changes, strict=True))
+            against = dict(zip(j.body.phi, (-change for change in changes), strict=True))
+            self.derivatives.define(part, by | against, stands_for)
+        return turn
 
     def tilt(self, i: Any, j: Any, axis: int) -> Tilt:
         """How an axis (0, 1, 2 for x, y, z) of a marker is tilted against that of another one in space."""

@@ -41,10 +41,9 @@ class SpatialBodyFrame:
     def __post_init__(self) -> None:
         for axis in range(3):
             self._turning(self.rotation[:, axis])
-        p = self.q[3:]
-        for i, e in enumerate(self._e):
-            self.derivatives.define(e, {p[j]: (self._n if i == j else 0) - e * self._e[j] for j in range(4)})
-        self.derivatives.define(self._n, {p[j]: -self._n * self._e[j] for j in range(4)})
+        for e, p in zip(self._e, self.q[3:], strict=True):
+            self.derivatives.define(e, {p: self._n, self._size: e})
+        self.derivatives.define(self._n, {self._size: self._n})
 
     def _turning(self, vector: Iterable[sp.Symbol], meaning: Iterable[sp.Expr | None] = (None,) * 3) -> None:
         """Make known that a vector turns with the body: by a turn phi it changes by phi x vector."""
@@ -91,6 +90,11 @@ class SpatialBodyFrame:
     def _n(self) -> sp.Symbol:
         return sp.Symbol(f"n_{self.slot}", real=True)
 
+    @cached_property
+    def _size(self) -> sp.Symbol:
+        """The logarithm of n, which changes with p by -e: what is proportional to n is its own derivative by it."""
+        return sp.Symbol(f"size_{self.slot}", real=True)
+
     @property
     def inverse_square(self) -> sp.Symbol:
         """2/|p|^2."""
@@ -134,7 +138,8 @@ class SpatialBodyFrame:
         E = sp.Matrix([[-e1, e0, -e3, e2], [-e2, e3, e0, -e1], [-e3, -e2, e1, e0]])
         straight = [[(r, sp.Integer(1))] for r in self.q[:3]]
         turning = [
-            [*((phi, E[k, j]) for k, phi in enumerate(self.phi)), (p, sp.Integer(1))] for j, p in enumerate(self.q[3:])
+            [*((phi, E[k, j]) for k, phi in enumerate(self.phi)), (self._size, -self._e[j]), (p, sp.Integer(1))]
+            for j, p in enumerate(self.q[3:])
         ]
         return straight + turning
 

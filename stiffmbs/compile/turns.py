@@ -52,11 +52,18 @@ class Turn:
         """The rotation vector: the angle, rad, along the axis of rotation."""
         return Unwound(self.scalar, sp.Integer(0)) * self.vector
 
+    def rates(self, half: sp.Matrix) -> list[sp.Expr]:
+        """h' and v' for half the angular velocity w of the second marker against the first, in the first one's axes.
+
+        h' = -w.v/2 and v' = (h w + w x v)/2; Shuster, A survey of attitude representations, J. Astronautical Sciences 41
+        (1993) 439-517.
+        """
+        return [-half.dot(self.vector), *(self.scalar * half + half.cross(self.vector))]
+
     def torque(self, moments: list[sp.Expr]) -> sp.Matrix:
         """The torque with the power that moments have with the rates of the rotation vector, in the first marker's axes.
 
-        v' = (h w + w x v)/2 and h' = -w.v/2 for the angular velocity w of the second marker against the first, in the
-        first one's axes; Shuster, A survey of attitude representations, J. Astronautical Sciences 41 (1993) 439-517.
+        It follows from `rates`; Shuster, A survey of attitude representations, J. Astronautical Sciences 41 (1993) 439-517.
         """
         h, v, m = self.scalar, self.vector, sp.Matrix(moments)
         c, slope = (Unwound(h, sp.Integer(order)) for order in (0, 1))
