@@ -15,7 +15,7 @@ Pairs = list[tuple[Any, Any]]
 
 def velocity(e: Symbolic, marker: Any, point: Any) -> Any:
     """The velocity of that point of a marker's body which is at a point of space."""
-    return e.rate(marker.point) + marker.omega.cross(point - marker.point)
+    return e.rate(marker.body.origin) + marker.omega.cross(point - marker.body.origin)
 
 
 def force_at(e: Symbolic, force: Any, i: Any, j: Any = None) -> Pairs:
@@ -29,7 +29,7 @@ def torque_on(torque: Any, i: Any, j: Any = None) -> Pairs:
     return list(zip(torque, i.omega if j is None else i.omega - j.omega, strict=True))
 
 
-def along_axes(components: Any, marker: Any) -> Any:
-    """The vector whose components along a marker's axes are given."""
-    x, y, z = components
-    return x * marker.x + y * marker.y + z * marker.z
+def along_axes(components: Any, axes: Any) -> Any:
+    """The vector whose components along three axes, such as a marker's, are given."""
+    (x, y, z), (along_x, along_y, along_z) = components, axes
+    return x * along_x + y * along_y + z * along_z

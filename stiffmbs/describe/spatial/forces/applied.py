@@ -38,7 +38,7 @@ class Applied(Force):
         from sympy import Matrix
 
         marker = e.i if e.axes == "body" else e.frame
-        return Matrix(components) if marker is None else along_axes(components, marker)
+        return Matrix(components) if marker is None else along_axes(components, marker.axes)
 
 
 class AppliedForce(Applied):

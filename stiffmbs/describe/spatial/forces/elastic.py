@@ -11,7 +11,7 @@ from ...element import Force, Symbolic
 from ...forces.matrix import from_diagonal, product
 from ..marker import Marker
 from ..nearest import nearest
-from ..wrench import Pairs, velocity
+from ..wrench import Pairs, along_axes, velocity
 
 if TYPE_CHECKING:
     from ...model_data import ModelData
@@ -140,7 +140,7 @@ class Elastic(Force):
     @classmethod
     def frame(cls, e: Symbolic) -> list[Any]:
         """The unit vectors along which force and way are."""
-        return axes_of(e, e.j)
+        return e.j.axes
 
     @classmethod
     def drift(cls, e: Symbolic) -> Any:
@@ -149,22 +149,20 @@ class Elastic(Force):
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """Three forces on the way of i against j, three torques on its turning along j's axes."""
+        """A force on the way of i against j, a torque on its turning, both in ground axes: arms and axes then multiply sums."""
         v, w = e.named(cls.drift(e)), e.named(e.i.omega - e.j.omega)
-        rates = e.named([*(v.dot(axis) for axis in cls.frame(e)), *(w.dot(axis) for axis in axes_of(e, e.j))])
+        of_force, of_torque = cls.frame(e), e.j.axes
+        rates = e.named([*(v.dot(axis) for axis in of_force), *(w.dot(axis) for axis in of_torque)])
         elastic, viscous = e.named(cls.elastic(e)), product(cls.viscosity(e), rates)
         acting = [*elastic[:3], *cls.turned(e).torque(elastic[3:])]
-        return [(e.named(f - g), rate) for f, g, rate in zip(acting, viscous, rates, strict=True)]
+        along = e.named([f - g for f, g in zip(acting, viscous, strict=True)])
+        force, torque = along_axes(along[:3], of_force), along_axes(along[3:], of_torque)
+        return [*zip(e.named(force), v, strict=True), *zip(e.named(torque), w, strict=True)]
 
     @classmethod
     def limits(cls, e: Symbolic) -> Any:
         """How far the bodies may turn, where moments depend on it."""
         return [cls.turned(e).room] if any(cls.resisted(e)) else []
-
-
-def axes_of(e: Symbolic, marker: Any) -> list[Any]:
-    """The unit vectors along a marker's axes."""
-    return [e.named(axis) for axis in (marker.x, marker.y, marker.z)]
 
 
 def pull_back(stiffness: Any, s: list[Any], preload: Any) -> list[Any]:
