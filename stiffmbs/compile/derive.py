@@ -8,7 +8,9 @@ The reaction is the generalised force on the first body, turned into force and t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import sympy as sp
 
@@ -33,6 +35,23 @@ class Entry:
 
 
 @dataclass(frozen=True)
+class LateEntry:
+    """An entry whose expression is derived when it is first asked for, as is that of a term which hardly any run needs.
+
+    It may turn out to be zero.
+    """
+
+    derived: Callable[[], sp.Expr]
+    row: int
+    column: int
+
+    @property
+    def expression(self) -> sp.Expr:
+        """The entry's expression."""
+        return self.derived()
+
+
+@dataclass(frozen=True)
 class Derived:
     """All terms of a kind, each a list of its non-zero entries in row order.
 
@@ -49,7 +68,7 @@ class Derived:
     n_equations: int
     n_holonomic: int
     symbols: Symbols
-    terms: dict[str, list[Entry]]
+    terms: dict[str, list[Entry] | list[LateEntry]]
 
 
 def derive(kind: Kind) -> Derived:
@@ -94,12 +113,16 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
         "gamma": -turning,
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
-        "A_q": e.by_coordinates(J * e.a + turning),
         "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(kind, e, -force),
         "switch": sp.Matrix(symbols.switches),
     }  # fmt: skip
-    entries = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries: dict[str, list[Entry] | list[LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries["A_q"] = [
+        LateEntry(partial(e.by_coordinate, row, column), r, column)
+        for r, row in enumerate(J * e.a + turning)
+        for column in e.columns_of(row)
+    ]
     for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
     return Derived(V.rows, C.rows, symbols, entries)

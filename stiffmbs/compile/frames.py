@@ -17,6 +17,10 @@ COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
 
 
+Work = tuple[sp.Expr, sp.Expr]
+"""An effort, and what it does work on: a function of the pose, or its rate."""
+
+
 class SymbolicElement:
     """An element with frames for its markers and symbols for its numbers.
 
@@ -109,36 +113,48 @@ class SymbolicElement:
 
     def by_coordinates(self, column: Iterable[sp.Expr]) -> sp.Matrix:
         """The matrix d(column)/dq."""
-        return sp.Matrix.vstack(sp.zeros(0, self.q.rows), *(self._row([(1, x)], self._by_coordinate) for x in column))
+        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_coordinate)
 
     def by_velocities(self, column: Iterable[sp.Expr]) -> sp.Matrix:
         """The matrix d(column)/du."""
-        return sp.Matrix.vstack(sp.zeros(0, self.u.rows), *(self._row([(1, x)], self._by_velocity) for x in column))
+        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_velocity)
 
-    def work_by_coordinates(self, pairs: Iterable[tuple[sp.Expr, sp.Expr]]) -> sp.Matrix:
-        """The column of the sums of efforts times derivatives dx/dq of what they do work on."""
-        return self._row(list(pairs), self._by_coordinate).T
+    def work_by_coordinates(self, pairs: Iterable[Work]) -> sp.Matrix:
+        """The column of the sums of efforts times derivatives by q of what they do work on."""
+        return self._matrix([list(pairs)], self._by_coordinate).T
 
-    def work_by_velocities(self, pairs: Iterable[tuple[sp.Expr, sp.Expr]]) -> sp.Matrix:
-        """The generalised force: the sums of efforts times derivatives dv/du of the rates that they have power with."""
-        return self._row(list(pairs), self._by_velocity).T
+    def work_by_velocities(self, pairs: Iterable[Work]) -> sp.Matrix:
+        """The generalised force: the column of the sums of efforts times derivatives by u of the rates of their work."""
+        return self._matrix([list(pairs)], self._by_velocity).T
 
-    @property
+    def by_coordinate(self, x: sp.Expr, column: int) -> sp.Expr:
+        """The derivative by one coordinate."""
+        return self._change([(sp.Integer(1), x)], self._by_coordinate[column])
+
+    def columns_of(self, x: sp.Expr) -> list[int]:
+        """The coordinates that an expression depends on."""
+        ways = enumerate(self._by_coordinate)
+        return [column for column, way in ways if self.depends(x, (symbol for symbol, _ in way))]
+
+    @cached_property
     def _by_coordinate(self) -> list[list[Way]]:
         return [way for frame in self.frames for way in frame.by_coordinate]
 
-    @property
+    @cached_property
     def _by_velocity(self) -> list[list[Way]]:
         return [way for frame in self.frames for way in frame.by_velocity]
 
-    def _row(self, pairs: list[tuple[sp.Expr, sp.Expr]], ways: list[list[Way]]) -> sp.Matrix:
-        """The sums of efforts times derivatives, by each way; what goes into several of these has a name."""
+    def _matrix(self, rows: Iterable[list[Work]], ways: list[list[Way]]) -> sp.Matrix:
+        entries = [[self._change(row, way) for way in ways] for row in rows]
+        return sp.Matrix(len(entries), len(ways), [entry for row in entries for entry in row])
 
-        def change(symbol: sp.Symbol, much: sp.Expr) -> sp.Expr:
-            whole = sp.Add(*(effort * self.derivatives.partial(x, symbol) for effort, x in pairs))
-            return whole if much == 1 else self.named(whole) * much
-
-        return sp.Matrix([[sp.Add(*(change(*part) for part in way)) for way in ways]])
+    def _change(self, row: list[Work], way: list[Way]) -> sp.Expr:
+        """The sum of efforts times derivatives in one way; what goes into several ways has a name."""
+        partial, changes = self.derivatives.partial, []
+        for symbol, much in way:
+            whole = sp.Add(*(effort * partial(x, symbol) for effort, x in row))
+            changes.append(whole if much == 1 else self.named(whole) * much)
+        return sp.Add(*changes)
 
     def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
         """The matrix of derivatives by any symbols."""
