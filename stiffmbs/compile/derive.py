@@ -8,7 +8,7 @@ The reaction is the generalised force on the first body, turned into force and t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -68,7 +68,7 @@ class Derived:
     n_equations: int
     n_holonomic: int
     symbols: Symbols
-    terms: dict[str, list[Entry] | list[LateEntry]]
+    terms: dict[str, Sequence[Entry | LateEntry]]
 
 
 def derive(kind: Kind) -> Derived:
@@ -117,7 +117,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "reaction": _reaction(kind, e, -force),
         "switch": sp.Matrix(symbols.switches),
     }  # fmt: skip
-    entries: dict[str, list[Entry] | list[LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
     entries["A_q"] = [
         LateEntry(partial(e.by_coordinate, row, column), r, column)
         for r, row in enumerate(J * e.a + turning)
