@@ -179,7 +179,7 @@ def test_a_coupler_of_three_joints_of_three_kinds(tmp_path):
     """2 q1 - 3 q2 + 0.5 q3 = 0 of a hinge, of the slide of a sleeve that also turns freely, and of a guide."""
     text = GEARED + (
         "JOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, CYLINDRICAL, I=31, J=2\nJOINT/3, TRANSLATIONAL, I=41, J=3\n"
-        "COUPLER/1, JOINTS=1,2,3, TYPE=R:T:T, SCALES=2,-3,0.5"
+        "COUPLER/1, JOINTS=1,2,3, TYPE=R:T:T, SCALES=2,-3,0.5\nREQUEST/1, F2=COUPLER(1,1,7,0)"
     )
     relation = joints.coupled((2, joints.twist, *AXES[0]), (-3, joints.slide, *AXES[1]), (0.5, joints.slide, *AXES[2]))
     mechanism = Mechanism(
@@ -191,7 +191,9 @@ def test_a_coupler_of_three_joints_of_three_kinds(tmp_path):
             "COUPLER_1": relation,
         },
     )
-    compare(tmp_path, text, mechanism, {}, BODIES)
+    reactions = {f"JOINT_{k + 1}": AXES[k][0] for k in range(3)} | {"COUPLER_1": AXES[0][0]}
+    solution, history = compare(tmp_path, text, mechanism, reactions, BODIES)
+    near(solution.channels["REQUEST_1.f2"], -history.reaction("COUPLER_1", AXES[0][0])[:, 4], 2e-5)
 
 
 def test_a_coupler_of_two_joints_with_one_scale_and_a_ground_marker_first(tmp_path):
@@ -210,7 +212,8 @@ def test_a_coupler_of_two_joints_with_one_scale_and_a_ground_marker_first(tmp_pa
             "COUPLER_1": relation,
         },
     )
-    compare(tmp_path, text, mechanism, {}, BODIES)
+    reactions = {"JOINT_1": AXES[0][1], "JOINT_2": AXES[1][0], "COUPLER_1": AXES[0][1]}
+    compare(tmp_path, text, mechanism, reactions, BODIES)
 
 
 @pytest.mark.parametrize("contact", [(0.3, 0, 0), (-0.5, 0, 0)], ids=["outside", "inside"])

@@ -39,7 +39,11 @@ def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: M
         measure = f"az({I}, {J})" if sort == ROTATIONAL else f"dz({I}, {J}, {J})"
         terms.append(f"{plain(scale)!r} * {measure}")
         at_start += scale * drawn_displacement(sort, i, j)
-    return {"type": "equation", "zero": " + ".join([*terms, *([repr(plain(-at_start))] if at_start else [])])}
+    ends = {
+        "i": mechanism.place(tied[0].i, tied[0], "I").reference,
+        "j": mechanism.place(tied[0].j, tied[0], "J").reference,
+    }
+    return {"type": "equation", **ends, "zero": " + ".join([*terms, *([repr(plain(-at_start))] if at_start else [])])}
 
 
 def coordinate(joint: Joint, sort: str) -> str:
