@@ -172,7 +172,6 @@ def test_markers_are_turned_by_angles_or_points(marker, x, z):
         ("MARKER/5, PART=2, EULER=90,0,0", r"line 6, MARKER/5: found 'EULER=90', expected one of .*REULER"),
         ("MARKER/5\n, PART=2\n, QP=1,2,3x", r"line 8, MARKER/5: found QP = 1, 2, 3x, expected 3 numbers"),
         ("MARKER/5, PART=2, COLOR=3", r"line 6, MARKER/5: found 'COLOR=3', expected one of PART, POINT_MASS, QP"),
-        ("MARKER/5", r"line 6, MARKER/5: found neither PART nor POINT_MASS"),
         ("MARKER/5, PART=2, QP=0,0,0, QP=1,1,1", r"line 6, MARKER/5: found QP twice"),
         ("MARKER/21, PART=2", r"line 6, MARKER/21: found it a second time \(first in line 5\)"),
         ("MARKER/x, PART=2", r"line 6, MARKER/x: found 'x' after the slash, expected the number"),
@@ -241,3 +240,17 @@ def test_a_first_line_that_can_only_be_a_statement_is_one_with_a_note():
         assert found.units.length in (1e-3, 1e-2) and "line 1 is the title" in found.notes[0]
     for title in ("joint / 3 of them", "UNITS of all sorts", "! PART/2", "gear/box", "part/2b"):
         assert read_dataset(title + body).title == title and not read_dataset(title + body).notes
+
+
+def test_a_marker_that_names_no_part_is_on_the_one_before_it():
+    found = dataset(
+        "MARKER/5\nPOINT_MASS/7, MASS=1, CM=8\nMARKER/8, QP=1,0,0\nPART/3\nMARKER/9\nMARKER/10, PART=1"
+    ).markers
+    assert [(found[k].owner, found[k].on_point_mass) for k in (5, 8, 9, 10)] == [
+        (2, False),
+        (7, True),
+        (3, False),
+        (1, False),
+    ]
+    with pytest.raises(InputError, match="line 2, MARKER/5: found neither PART nor POINT_MASS"):
+        read_dataset("t\nMARKER/5\nPART/1, GROUND\nEND")

@@ -123,14 +123,16 @@ def _rates(found: Arguments, names: tuple[str, str, str], unit: float) -> Vector
     return x, y, z
 
 
-def read_marker(statement: Statement, units: Units) -> Marker:
-    """A marker, fixed or floating, on a part or a point mass."""
+def read_marker(statement: Statement, units: Units, before: Part | None = None) -> Marker:
+    """A marker, fixed or floating, on a part or a point mass: on that which stands before it, unless it names one."""
     names = ("PART", "POINT_MASS", "QP", "REULER", "XP", "ZP", "USEXP", "FLOATING")
     found = Arguments(statement, "MARKER", names)
     owner = found.one_of("PART", "POINT_MASS")
-    if owner is None:
+    if owner is not None:
+        carrier, on_point_mass = found.required(owner), owner == "POINT_MASS"
+    elif before is not None:
+        carrier, on_point_mass = before.ident, before.point
+    else:
         raise found.fault("found neither PART nor POINT_MASS, expected the part that carries the marker")
-    return Marker(
-        found.ident(), statement.line, statement.alias, found.required(owner), owner == "POINT_MASS",
-        read_frame(found, "QP", "XP", "ZP", units.length), "FLOATING" in found,
-    )  # fmt: skip
+    frame = read_frame(found, "QP", "XP", "ZP", units.length)
+    return Marker(found.ident(), statement.line, statement.alias, carrier, on_point_mass, frame, "FLOATING" in found)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from ...errors import InputError
-from .bodies import Marker, Part
+from .bodies import Marker, Part, read_marker
 from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Numbered
 from .elastic import Beam, Elastic, SpringDamper
 from .fault import DatasetFault
@@ -126,9 +126,11 @@ def read_dataset(text: str) -> Dataset:
     for statement in _once("ACCGRAV", named):
         gravity = read_gravity(statement, units)
     data: dict[str, dict[int, Any]] = {}
+    part: Part | None = None
     for name, statement in named:
         if name in READERS:
-            one = READERS[name](statement, units)
+            one = read_marker(statement, units, part) if name == "MARKER" else READERS[name](statement, units)
+            part = one if isinstance(one, Part) else part
             if one.ident in data.setdefault(name, {}):
                 raise DatasetFault(
                     statement.line, one.label, f"found it a second time (first in line {data[name][one.ident].line})"
