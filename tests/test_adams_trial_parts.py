@@ -129,3 +129,73 @@ def test_parts_without_any_mass_between_them_are_refused(tmp_path):
     path.write_text(HEAD + "PART/2, CM=20\nMARKER/20, PART=2\nEND\n")
     with pytest.raises(InputError, match="PART/2: found no part with a MASS"):
         stiffmbs.load_scene(path)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_joints_state_how_a_chain_starts(tmp_path, swapped):
+    """A turning column, a slide on it and a sleeve on that: IC, ICTRAN and ICROT, with I and J either way.
+
+    A fourth part on a hinge without any follows the sleeve.
+    """
+    text = """ACCGRAV/KGRAV=-9.80665
+MARKER/1, PART=1, REULER=0,20D,0
+PART/2, MASS=2, CM=20, IP=0.3,0.2,0.4
+MARKER/20, PART=2, QP=0.1,0.2,0.3
+MARKER/21, PART=2, REULER=0,20D,0
+MARKER/22, PART=2, QP=0.4,0,0.1, REULER=30D,60D,0
+PART/3, MASS=1, CM=30, IP=0.1,0.2,0.15, QG=0.4,0,0.1
+MARKER/30, PART=3, QP=0.2,0.1,0, REULER=10D,20D,30D
+MARKER/31, PART=3, REULER=30D,60D,0
+MARKER/32, PART=3, QP=0.3,0.3,0, REULER=-40D,50D,0
+PART/4, MASS=1.5, CM=40, IP=0.2,0.1,0.15, QG=0.7,0.3,0.1
+MARKER/40, PART=4, QP=0.1,-0.2,0.1
+MARKER/41, PART=4, REULER=-40D,50D,0
+"""
+    pairs = {"REVOLUTE": (21, 1), "TRANSLATIONAL": (31, 22), "CYLINDRICAL": (41, 32)}
+    starts = {"REVOLUTE": "IC=0,90D", "TRANSLATIONAL": "ICTRAN=0,0.6", "CYLINDRICAL": "ICROT=0,-2, ICTRAN=0,0.4"}
+    for number, (kind, pair) in enumerate(pairs.items(), start=1):
+        i, j = pair[::-1] if swapped else pair
+        text += f"JOINT/{number}, {kind}, I={i}, J={j}, {starts[kind]}\n"
+    text += "REQUEST/1, F2=WZ(21,1,1)\\F3=VZ(31,22,22,22)\\F4=WZ(41,32,32)\\F6=VZ(41,32,32,32)"
+    solution = played(tmp_path, text)
+    found = [solution.channels[f"REQUEST_1.{name}"][0] for name in ("f2", "f3", "f4", "f6")]
+    sign = -1 if swapped else 1  # what J does against I is the opposite, in I's axes, which are parallel to J's
+    np.testing.assert_allclose(found, sign * np.array([np.pi / 2, 0.6, -2, 0.4]), atol=1e-10)
+    assert not any("assembly" in note for note in solution.notes)
+
+
+def test_the_rest_of_a_loop_follows_a_joint_that_states_its_velocity(tmp_path):
+    """A parallelogram of which one crank has IC: the coupler goes in a circle without turning."""
+    text = """MARKER/1, PART=1
+MARKER/2, PART=1, QP=1,0,0
+PART/2, MASS=1, CM=20, IP=0.1,0.1,0.1
+MARKER/20, PART=2, QP=0,0.2,0
+MARKER/21, PART=2
+MARKER/22, PART=2, QP=0,0.4,0
+PART/3, MASS=1, CM=30, IP=0.1,0.1,0.1, QG=0,0.4,0
+MARKER/30, PART=3, QP=0.5,0,0
+MARKER/31, PART=3
+MARKER/32, PART=3, QP=1,0,0
+PART/4, MASS=1, CM=40, IP=0.1,0.1,0.1, QG=1,0,0
+MARKER/40, PART=4, QP=0,0.2,0
+MARKER/41, PART=4
+MARKER/42, PART=4, QP=0,0.4,0
+JOINT/1, REVOLUTE, I=21, J=1, IC=0,3
+JOINT/2, REVOLUTE, I=31, J=22
+JOINT/3, SPHERICAL, I=42, J=32
+JOINT/4, REVOLUTE, I=41, J=2"""
+    solution = played(tmp_path, text)
+    start = {name: values[0] for name, values in solution.channels.items()}
+    np.testing.assert_allclose([start["PART_2.wz"], start["PART_3.wz"], start["PART_4.wz"]], [3, 0, 3], atol=1e-9)
+    np.testing.assert_allclose([start["PART_3.vx"], start["PART_3.vy"]], [-1.2, 0], atol=1e-9)
+
+
+def test_a_motion_takes_precedence_over_initial_conditions(tmp_path):
+    text = """MARKER/1, PART=1
+PART/2, MASS=1, CM=20, IP=0.1,0.1,0.1
+MARKER/20, PART=2
+JOINT/1, REVOLUTE, I=20, J=1, IC=30D,5
+MOTION/1, JOINT=1, FUNCTION=2*TIME"""
+    solution = played(tmp_path, text)
+    np.testing.assert_allclose(solution.channels["PART_2.wz"], 2, atol=1e-9)
+    assert any("conditions of JOINT/1 are left out" in note for note in solution.notes)

@@ -17,6 +17,8 @@ JOINT_KINDS = (
 PRIMITIVES = ("ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
 COMPONENTS = ("X", "Y", "Z", "B1", "B2", "B3")
 ROTATIONAL, TRANSLATIONAL = "ROTATIONAL", "TRANSLATIONAL"
+Start = tuple[str, float, float | None]
+"""An initial condition of a joint."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,9 @@ class Joint(Numbered):
         Of a screw, m per turn.
     diameter : float
         Pitch diameter of a pinion, m.
-    start : tuple of (str, float, float)
-        Initial conditions: rotational or translational, displacement and velocity, rad or m, per s.
+    start : tuple of (str, float, float or None)
+        Initial conditions: rotational or translational, displacement and velocity, rad or m, per s; None where no
+        velocity is given.
     """
 
     kind: str
@@ -65,7 +68,7 @@ class Joint(Numbered):
     j: int
     pitch: float = 0.0
     diameter: float = 0.0
-    start: tuple[tuple[str, float, float], ...] = ()
+    start: tuple[Start, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -142,15 +145,15 @@ def read_joint(statement: Statement, units: Units) -> Joint:
 _STARTS = (("ICROT", ROTATIONAL), ("ICTRAN", TRANSLATIONAL), ("IC", ""))
 
 
-def _start(found: Arguments, name: str, sort: str, units: Units) -> tuple[str, float, float] | None:
+def _start(found: Arguments, name: str, sort: str, units: Units) -> Start | None:
     values = found.numbers(name, 1, 2)
     if values is None:
         return None
     if not sort:
         sort = ROTATIONAL if "REVOLUTE" in found else TRANSLATIONAL
     length = units.length if sort == TRANSLATIONAL else 1.0
-    displacement, velocity = (*values, 0.0)[:2]
-    return sort, displacement * length, velocity * length / units.time
+    velocity = values[1] * length / units.time if len(values) > 1 else None
+    return sort, values[0] * length, velocity
 
 
 def read_primitive(statement: Statement, units: Units) -> Joint:

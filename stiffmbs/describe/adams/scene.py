@@ -17,7 +17,8 @@ from .scene_motions import motions
 from .scene_racks import notes as rack_notes
 from .scene_relations import relations
 from .scene_requests import Requests
-from .starts import check_starts
+from .starts import notes as start_notes
+from .starts import set_in_motion
 from .translate import Translation
 
 RUN = {"duration": 5, "output": 0.01}
@@ -32,8 +33,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
     DatasetFault
         When statements contradict each other, or hold what a scene cannot.
     """
-    mechanism = Mechanism(dataset)
-    check_starts(mechanism)
+    mechanism = Mechanism(set_in_motion(Mechanism(dataset)))
     translation = Translation(mechanism)
     requests = Requests(mechanism)
     driven = motions(mechanism, translation)  # these before bodies, which get the markers that formulas need
@@ -60,6 +60,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             *mechanism.notes(),
             *body_notes(mechanism),
             *rack_notes(mechanism),
+            *start_notes(dataset),
             *requests.notes,
         ],
     }
