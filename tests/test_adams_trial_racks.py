@@ -62,7 +62,13 @@ def teeth(pinion, contact):
 
 @pytest.mark.parametrize(
     "drawn, backward, swapped",
-    [(RADIUS, False, False), (RADIUS, True, True), (0.0, False, False), (0.0, True, False), (0.1, False, True)],
+    [
+        pytest.param(RADIUS, False, False, marks=pytest.mark.long),
+        (RADIUS, True, True),
+        (0.0, False, False),
+        (0.0, True, False),
+        (0.1, False, True),
+    ],
     ids=["in place", "in place, z backward", "across the axis", "across the axis, z backward", "too near"],
 )
 def test_a_rack_on_a_turning_carrier(tmp_path, drawn, backward, swapped):
@@ -130,6 +136,51 @@ def test_a_rack_on_a_turning_carrier(tmp_path, drawn, backward, swapped):
     axes = history.ask(lambda view: view.axes(shoe))
     seen = np.hstack([np.einsum("tij,ti->tj", axes, on_rack[:, k : k + 3]) for k in (0, 3)])
     near(table(solution, "REQUEST_2"), seen, 5e-5, np.abs(on_rack).max())
+
+
+@pytest.mark.long
+def test_a_rack_whose_pinion_hangs_by_primitives_is_tied_by_velocities(tmp_path):
+    """ATPOINT and PARALLEL_AXES in place of the hinge: no joint counts the pinion's turns, and the motion is the same."""
+    rails = "JOINT/2, TRANSLATIONAL, I=31, J=2\nJOINT/3, RACKPIN, I=21, J=32, PD=0.3"
+    text = """ACCGRAV/IGRAV=9.80665
+MARKER/1, PART=1
+MARKER/2, PART=1, QP=0.4,-0.15,0.1, REULER=90D,90D,-90D
+PART/2, MASS=1, CM=20, IP=0.02,0.03,0.04
+MARKER/20, PART=2, QP=0.05,0,0
+MARKER/21, PART=2
+PART/3, MASS=2, CM=30, IP=0.1,0.2,0.3
+MARKER/30, PART=3, QP=0.1,-0.15,0
+MARKER/31, PART=3, QP=0.4,-0.15,0.1, REULER=90D,90D,-90D
+MARKER/32, PART=3, QP=0,-0.15,0.2, REULER=90D,90D,-90D
+"""
+    ways = "JOINT/1, REVOLUTE, I=21, J=1\n", "JPRIM/1, ATPOINT, I=21, J=1\nJPRIM/2, PARALLEL, I=21, J=1\n"
+    one, other = (played(tmp_path, text + way + rails) for way in ways)
+    for name in ("PART_2.wz", "PART_3.x", "PART_3.ax", "JOINT_3.fx", "JOINT_3.ty", "JOINT_2.ty"):
+        near(one.channels[name], other.channels[name], 1e-5)
+    np.testing.assert_allclose(one.channels["JOINT_3.ty"], 0.2 * one.channels["JOINT_3.fx"], atol=1e-9)
+
+
+def test_a_driven_rack_keeps_step_over_many_turns(tmp_path):
+    """Displacements are tied, not rates: nothing is lost on the way.  The pinion's bearing feels the teeth."""
+    text = """ACCGRAV/IGRAV=-9.80665
+MARKER/1, PART=1
+MARKER/2, PART=1, QP=0.4,-0.15,0.1, REULER=90D,90D,-90D
+PART/2, MASS=1, CM=21, IP=0.02,0.03,0.04
+MARKER/21, PART=2
+PART/3, MASS=2, CM=30, IP=0.1,0.2,0.3
+MARKER/30, PART=3, QP=0.1,-0.15,0
+MARKER/31, PART=3, QP=0.4,-0.15,0.1, REULER=90D,90D,-90D
+JOINT/1, REVOLUTE, I=21, J=1
+JOINT/2, TRANSLATIONAL, I=31, J=2
+JOINT/3, RACKPIN, I=21, J=31, PD=0.3
+MOTION/1, JOINT=1, FUNCTION=360D*TIME**2"""
+    solution = played(tmp_path, text, 4.0, rtol=1e-5)
+    gain = 0.15 * 4 * np.pi
+    pull = 2 * (gain + 9.80665)
+    np.testing.assert_allclose(solution["PART_3.x"], 0.1 + gain / 2 * solution.time**2, atol=1e-10)
+    np.testing.assert_allclose(solution["JOINT_3.fx"], -pull, atol=1e-8)
+    np.testing.assert_allclose(solution["MOTION_1.tz"], 0.04 * 4 * np.pi + 0.15 * pull, atol=1e-8)
+    np.testing.assert_allclose(solution["JOINT_1.fx"], pull + 9.80665, atol=1e-8)
 
 
 def test_racks_that_are_drawn_elsewhere_are_told(tmp_path):

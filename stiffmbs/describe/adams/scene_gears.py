@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .constraints import ROTATIONAL, Gear, Joint
+from .constraints import ROTATIONAL, Joint, Numbered
 from .mechanism import Mechanism, Place
 from .scene_relations import SORTS, coupled_joint
 from .starts import drawn_displacement
@@ -31,12 +31,21 @@ def gears(mechanism: Mechanism) -> dict[str, Any]:
     DatasetFault
         When a joint does not join the carrier, or does not let the teeth move.
     """
-    return {gear.name: _meshed(gear, mechanism) for gear in mechanism.dataset.gears.values()}
+    return {
+        gear.name: meshed(gear, gear.joints, mechanism.place(gear.contact, gear, "CV"), mechanism)
+        for gear in mechanism.dataset.gears.values()
+    }
 
 
-def _meshed(gear: Gear, mechanism: Mechanism) -> dict[str, Any]:
-    contact = mechanism.place(gear.contact, gear, "CV")
-    one, other = (_Wheel(gear, ident, contact, mechanism) for ident in gear.joints)
+def meshed(user: Numbered, joints: tuple[int, int], contact: Place, mechanism: Mechanism) -> dict[str, Any]:
+    """The equation of the teeth of two parts that meet at a marker of the carrier, reported on the part of the first joint.
+
+    Raises
+    ------
+    DatasetFault
+        As `gears`.
+    """
+    one, other = (_Wheel(user, ident, contact, mechanism) for ident in joints)
     gap = [one.displacement(), times(other.displacement(), -1.0)]
     drawn = one.drawn() - other.drawn()
     return {
@@ -53,11 +62,11 @@ class _Wheel:
     The teeth at r from `own` move by v + w x r, along the contact's z axis by v z + w (r x z), in the axes of `seat`.
     """
 
-    def __init__(self, gear: Gear, ident: int, contact: Place, mechanism: Mechanism) -> None:
-        joint = coupled_joint(gear, ident, mechanism)
+    def __init__(self, user: Numbered, ident: int, contact: Place, mechanism: Mechanism) -> None:
+        joint = coupled_joint(user, ident, mechanism)
         i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
         if contact.body not in (i.body, j.body):
-            raise gear.fault(
+            raise user.fault(
                 f"found the marker CV on {contact.body}, expected it on the carrier, which {joint.label} joins too"
             )
         self.own, self.seat = (i, j) if contact.body == j.body else (j, i)
@@ -66,13 +75,13 @@ class _Wheel:
         self._arm = self.seat.drawn.axes.T @ (contact.drawn.point - self.own.drawn.point)
         self._slight = HELD * float(np.linalg.norm(self._arm))
         self._slides = SORTS.get(joint.kind) != ROTATIONAL
-        self._check(gear, joint)
+        self._check(user, joint)
 
-    def _check(self, gear: Gear, joint: Joint) -> None:
+    def _check(self, user: Numbered, joint: Joint) -> None:
         turning = float(np.cross(self._arm, self._along)[2]) if joint.kind != "TRANSLATIONAL" else 0.0
         sliding = float(self._along[2]) if self._slides else 0.0
         if abs(turning) <= self._slight and abs(sliding) <= HELD:
-            raise gear.fault(
+            raise user.fault(
                 f"found the z axis of the marker CV across the motion that {joint.label} allows there, expected it along the "
                 "motion of the teeth"
             )
