@@ -64,4 +64,8 @@ def __getattr__(name: str) -> Any:
         from .compile.compile_model import compile_model
 
         return compile_model
+    if name == "spatial":
+        from importlib import import_module
+
+        return import_module(".spatial", __name__)
     raise AttributeError(f"module 'stiffmbs' has no attribute '{name}'")

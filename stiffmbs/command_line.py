@@ -32,7 +32,7 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-@main.command()
+@main.command(short_help="Solve a scene.")
 @click.argument("scene")
 @click.option(
     "-o", "--output", "output", type=click.Path(path_type=Path), help="Write every channel: .csv, .npz or .nc."
@@ -121,7 +121,7 @@ def _console() -> Console:
     return Console(width=None if to_a_width else UNBROKEN)
 
 
-@main.command()
+@main.command(short_help="Degrees of freedom, redundancy.")
 @click.argument("scene")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of sentences.")
 @CHANGES
@@ -145,7 +145,7 @@ def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     sys.exit(0 if report.sound else PROBLEMS)
 
 
-@main.command()
+@main.command(short_help="Write a dataset, or a planar scene, anew.")
 @click.argument("scene")
 @click.option(
     "-o", "--output", "output", type=click.Path(path_type=Path), help="The scene file; standard output without."

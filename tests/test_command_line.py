@@ -94,6 +94,28 @@ def test_values_can_be_set(in_folder):
     assert heavy["channels"]["rail.fy"]["first"] == pytest.approx(light["channels"]["rail.fy"]["first"] + 98.1)
 
 
+def test_an_output_spacing_that_is_set_takes_the_place_of_points(in_folder):
+    assert stiffmbs("run", "scene.yaml", "--set", "run.output=0.1", "-o", "out.npz").exit_code == 0
+    with np.load(in_folder / "out.npz") as results:
+        np.testing.assert_allclose(results["time"], [0, 0.1, 0.2])
+    both = stiffmbs("run", "scene.yaml", "--set", "run.output=0.1", "--set", "run.points=3")
+    assert "found both 'output' and 'points'" in both.output
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [
+        (("--set", "bodies.cart.mass=-1"), "scene.yaml, --set bodies.cart.mass: found -1"),
+        (("--set", "run.rtol=x"), "scene.yaml, --set run.rtol: found the unknown name 'x'"),
+        (("--rtol", "1e-20"), "scene.yaml, --set run.rtol: found 1e-20"),
+        (("--set", "parameters.a=2 x"), "scene.yaml, --set parameters.a: found"),
+        (("--set", "joints.rail.j=bar", "--set", "joints.rail.i=bar"), "scene.yaml, line 8, joints.rail: found 'bar'"),
+    ],
+)
+def test_a_fault_in_what_was_set_is_not_looked_for_in_the_file(in_folder, change, place):
+    assert place in stiffmbs("run", "scene.yaml", *change).output
+
+
 def test_solver_tolerance_and_duration_can_be_chosen(in_folder):
     report = json.loads(stiffmbs("run", "scene.yaml", "--json", "--solver", "projected", "--duration", "0.1").output)
     assert (report["solver"]["name"], report["time"]["end"]) == ("projected", 0.1)
@@ -131,7 +153,7 @@ BAD = {
     "duration of zero": ("run.duration=0", "run.duration", "found 0", "greater than 0 s"),
     "unknown solver": ("run.solver=euler", "run.solver", "'euler'", "bdf"),
     "rtol out of range": ("run.rtol=2", "run.rtol", "found 2"),
-    "two grids": ("run.output=0.1", "run", "'points'"),
+    "two grids": ("run={output: 0.1, points: 3}", "run", "'points'"),
     "more output than memory": ("run.points=100000000", "1e+08 output times", "at most 1e+07"),
     "unit meant as a request": ("requests={h: cart.x, twice: 2*h}", "requests", "'h' in '2*h'", "a unit and a request"),
     "no such place": ("bodies.cart.mass.unit=3", "bodies.cart.mass"),

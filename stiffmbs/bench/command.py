@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 WRONG_INPUT = 2
 
 
-@click.command()
+@click.command(short_help="Run time against error, beside yardsticks.")
 @click.argument("names", metavar="[PROBLEM]...", nargs=-1)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each problem.")
 @click.option("--quick", is_flag=True, help="The smallest of each problem, at a few tolerances.")
@@ -71,8 +71,9 @@ def _chosen(names: Iterable[str], quick: bool) -> list[Benchmark]:
     chosen: list[Benchmark] = []
     for name in names or known:
         if name not in known and name not in single:
-            expected = ", ".join([*known, *(other for other in single if other not in known)])
-            _refuse(f"found the problem '{name}', expected one of {expected}")
+            _refuse(
+                f"found the problem '{name}', expected one of {', '.join(known)}, or a problem of one of these such as {next(name for name in single if name not in known)}"
+            )
         family = known.get(name) or (single[name],)
         chosen += family[:1] if quick else family
     return chosen

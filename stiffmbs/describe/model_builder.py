@@ -65,7 +65,7 @@ class ModelBuilder:
         return self.handle_type(name) if isinstance(part, self.body_type) else None
 
     def _of_the_family(self) -> str:
-        return " of stiffmbs.spatial" if self._dimensions() == 3 else ""
+        return " of stiffmbs.spatial" if self._dimensions() == 3 else " of the plane (stiffmbs)"
 
     def _dimensions(self) -> int:
         dimensions: int = self.data_type.model_fields["dimensions"].default

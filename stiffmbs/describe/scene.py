@@ -159,12 +159,33 @@ def made_scene(
     """
     for path, value in changes:
         set_value(found, path, read_yaml(value, f"--set {path}"))
+    _keep_one_grid(found, {path for path, _ in changes})
     try:
         return _validated(found)
     except _Located as error:
-        line = line_of(error.path)
-        where = f"{source}, line {line}, " if line else f"{source}, "
-        raise InputError(where + str(error)) from None
+        raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
+
+
+def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
+    """Let the one of ``run.output`` and ``run.points`` that is changed take the place of the other."""
+    run, grids = found.get("run"), ("output", "points")
+    chosen = [name for name in grids if f"run.{name}" in changed]
+    if isinstance(run, dict) and len(chosen) == 1:
+        for name in grids:
+            if name != chosen[0]:
+                run.pop(name, None)
+
+
+def _place(
+    fault: tuple[Any, ...], changes: Sequence[tuple[str, str]], line_of: Callable[[tuple[Any, ...]], int | None]
+) -> str:
+    """Where a fault is, for a sentence that goes on with its path: in what was changed, or in a line."""
+    for path, _ in changes:
+        keys = tuple(path.split("."))
+        if keys in (fault[: len(keys)], fault[1:] if fault[:1] == ("parameters",) else ()):
+            return "--set "
+    line = line_of(fault)
+    return f"line {line}, " if line else ""
 
 
 class _Located(Exception):

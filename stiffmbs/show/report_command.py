@@ -13,7 +13,7 @@ from ..errors import StiffmbsError
 from .scene_command import STOPPED_EARLY, changes_of, refuse, solve_scene, solving_options
 
 
-@click.command()
+@click.command(short_help="One page on a scene and its run.")
 @click.argument("scene")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Where to write the page: .html.")
 @click.option("--verify/--no-verify", default=True, show_default=True, help="Whether peaks get error bars.")

@@ -11,7 +11,7 @@ from ..errors import StiffmbsError
 SOME_WRONG, WRONG_INPUT = 1, 2
 
 
-@click.command()
+@click.command(short_help="Cases that ask for more than is fair.")
 @click.argument("names", metavar="[CASE]...", nargs=-1)
 @click.option("--quick", is_flag=True, help="Leave out the cases that take long.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each case.")
