@@ -220,3 +220,37 @@ def test_angles_and_variables(both):
     near(table(solution, "REQUEST_13", "f6")[late, 0], history.ask(lambda v: 2 * fourth(v) + tilt(v))[late], 2e-6)
     near(solution.channels["VARIABLE_4"][late], history.ask(fourth)[late], 1e-9)
     holds(both, "REQUEST_13", "f7", lambda v: [np.linalg.norm(rates(v, TIP, SEAT))])
+
+
+ODD = r"""t
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+PART/1, GROUND
+MARKER/1, PART=1, REULER=30D,0,0
+MARKER/9, FLOATING
+PART/2, MASS=1, CM=20, IP=1,1,1
+MARKER/20, QP=1,0,0
+GCON/1, I=20, FUNCTION=DX(20)**2+DZ(20)**2-1
+SFORCE/1, TRANS, ACTIONONLY, I=20, J=1, FUNCTION=3
+GFORCE/1, I=20, JFLOAT=9, RM=20, FX=1\FY=2\FZ=3\TX=4\TY=5\TZ=6
+REQUEST/1, F2=GCON(1,1,2,0)\F3=GCON(1,0,2,0)\F4=SFORCE(1,1,4,0)\F6=DX(20,,1)\F7=VX(20,,1)
+REQUEST/2, F2=GFORCE(1,1,2,20)\F3=GFORCE(1,1,1,0)\F4=GFORCE(1,1,8,20)\F6=GFORCE(1,0,8,20)
+REQUEST/3, FORCE, I=9, J=20, RM=20
+REQUEST/4, DISPLACEMENT, I=9
+"""
+
+
+def test_what_floats_is_where_i_is_and_what_cannot_be_asked_is_left_out(tmp_path):
+    """The reaction at a floating marker is the force turned round; a marker that is left out is ground."""
+    solution = played(tmp_path, "", 0.2, head=ODD)
+    first = {name: values[-1] for name, values in solution.channels.items() if name.startswith("REQUEST")}
+    assert first["REQUEST_1.f4"] == 0 and first["REQUEST_1.f6"] == pytest.approx(np.cos(np.pi / 6) * solution["PART_2.x"][-1]
+        + np.sin(np.pi / 6) * solution["PART_2.y"][-1])  # fmt: skip
+    wanted = [-1, np.sqrt(14), -6, 6]
+    np.testing.assert_allclose([first[f"REQUEST_2.{name}"] for name in ("f2", "f3", "f4", "f6")], wanted, rtol=1e-9)
+    wanted = [np.sqrt(14), -1, -2, -3, np.sqrt(77), -4, -5, -6]
+    np.testing.assert_allclose(
+        [first[f"REQUEST_3.{name}"] for name in ("fm", "fx", "fy", "fz", "tm", "tx", "ty", "tz")], wanted, rtol=1e-9
+    )
+    assert "REQUEST_1.f2" not in first and "REQUEST_4.x" not in first
+    told = " ".join(solution.notes)
+    assert "found the force of GCON/1 on its marker J" in told and "found the floating marker 9" in told

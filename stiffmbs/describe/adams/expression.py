@@ -16,6 +16,8 @@ _TOKEN = re.compile(
     r"|(?P<name>[A-Z_]\w*)|(?P<sign>\*\*|[-+*/(),:^]))",
     re.IGNORECASE,
 )
+OMITTED = "OMITTED_"
+"""What an argument is called that is left out: ``DX(21,,3)``."""
 IF = "IF_"
 """What IF is called in a tree, as Python keeps that word to itself."""
 
@@ -43,12 +45,15 @@ def parse(text: str) -> ast.expr:
 
 def _python_tokens(text: str) -> Iterator[str]:
     """The expression's tokens as Python spells them."""
-    at, rest = 0, text.rstrip()
+    at, rest, before = 0, text.rstrip(), ""
     while at < len(rest):
         token = _TOKEN.match(rest, at)
         if token is None:
             raise ExpressionError(f"found '{rest[at:].strip()[:20]}' in '{text}', expected a function expression")
         at = token.end()
+        if token["sign"] == "," and before in ("(", ","):
+            yield OMITTED
+        before = token["sign"] or ""
         if token["number"]:
             yield _number(token)
         elif token["name"]:

@@ -54,10 +54,13 @@ class Requests:
         assert request.sort is not None and request.i is not None
         if request.sort == "FORCE":
             return self._force(request)
-        i, j, axes = (
-            self._mechanism.place(ident, request, name).reference if ident is not None else ""
-            for ident, name in ((request.i, "I"), (request.j, "J"), (request.axes, "RM"))
-        )
+        idents = (request.i, request.j, request.axes)
+        function = Function(request.sort, ast.Constant(0), request.line, request.label)
+        try:
+            i, j, axes = (self._translation.reference(ident, function) if ident else "" for ident in idents)
+        except DatasetFault as fault:
+            self.notes.append(f"{fault}; the request is left out")
+            return {}
         names = MARKED[request.sort]
         return {
             CALLED.get(name, name.lower()): ast.unparse(

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..quantity import CONSTANTS
-from .expression import IF
+from .expression import IF, OMITTED
 from .function import Function
 from .mechanism import Mechanism
 from .plain import plain
@@ -89,6 +89,8 @@ class Translation:
             return ast.Constant(CONSTANTS["pi"].value)
         if name in NAMES:
             return ast.Constant(NAMES[name])
+        if name == OMITTED:
+            raise function.fault(f"found nothing before a comma of '{function.text}', expected a value")
         raise function.fault(f"found '{name}' in '{function.text}', expected TIME, PI, DTOR, RTOD or a function")
 
     def variable(self, ident: int, function: Function, within: tuple[int, ...]) -> ast.expr:
@@ -201,6 +203,8 @@ def identifier(arguments: Sequence[ast.expr], at: int, function: Function) -> in
     match arguments[at] if at < len(arguments) else None:
         case ast.Constant(int() as value):
             return value
+        case ast.Name(name) if name == OMITTED:
+            return 0
         case None:
             raise function.fault(f"found {len(arguments)} numbers of statements in '{function.text}', expected more")
         case node:

@@ -6,12 +6,12 @@ import ast
 from collections.abc import Callable, Iterator
 
 from .constraints import GeneralConstraint, Numbered
-from .forces import VectorForce
+from .forces import SingleForce, VectorForce
 from .function import Function
 from .scene_forces import TORQUE
 from .scene_joints import markers_of, rod
 from .translate import Translation, identifier
-from .trees import call, measured, name_of, number, over, power, total
+from .trees import call, measured, name_of, number, over, power, times, total
 
 ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")
 ANGLES = ("PSI", "THETA", "PHI")
@@ -87,6 +87,10 @@ class OutputTranslation(Translation):
             raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
         if not 1 <= component <= len(FORCES):
             raise function.fault(f"found the component {component} of {name}, expected 1 to {len(FORCES)}")
+        if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
+            raise function.fault(f"found the force of {found.label} on its marker J, which it does not have")
+        if on_j and isinstance(found, SingleForce) and found.action_only:
+            return number(0.0)
         name = FORCES[component - 1]
         return over(self._component(name, [(found, bool(on_j))], axes, function), self._force_unit(name))
 
@@ -133,11 +137,19 @@ class OutputTranslation(Translation):
             of_axes = [power(self._component(component[0] + axis, acting, axes, function), 2) for axis in "XYZ"]
             return call("sqrt", total(of_axes))
         terms = [
-            call(component.lower(), name_of(element + (".j" if on_j else "")), *([name_of(way)] if way else []))
+            self._term(component, found, element, on_j, way)
             for found, on_j in acting
             for element in self._elements(found, component)
         ]
         return total(terms) if terms else number(0.0)
+
+    @staticmethod
+    def _term(component: str, found: Numbered, element: str, on_j: bool, way: str) -> ast.expr:
+        """What one element does to marker I or J; a floating marker is always where I is."""
+        floats = isinstance(found, VectorForce) and on_j
+        owner = name_of(element + (".j" if on_j and not floats else ""))
+        value = call(component.lower(), owner, *([name_of(way)] if way else []))
+        return times(value, -1.0) if floats and component[1] != "M" else value
 
     @staticmethod
     def _elements(found: Numbered, component: str) -> list[str]:
