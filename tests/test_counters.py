@@ -46,7 +46,7 @@ def test_explicit_steps_count_accelerations():
         "seconds": 0.001,
     }
     assert solver_words(found) == (
-        "projected; 56 steps (1 more were refused); 851 accelerations; started anew at 2 corners of inputs; 1.0 ms"
+        "projected; 56 steps (1 more refused); 851 accelerations; started anew at 2 corners of inputs; 1.0 ms"
     )
 
 

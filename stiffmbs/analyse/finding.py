@@ -34,7 +34,7 @@ class LoopFinding:
     driven : ndarray of bool
         Which of the loop's rows depend on time.
     motion_unique : bool
-        False where friction hangs on reactions that are not unique.
+        False where friction depends on reactions that are not unique.
     """
 
     rank: LoopRank
@@ -51,7 +51,7 @@ class LoopFinding:
 
     @property
     def nearly_dependent(self) -> bool:
-        """Whether equations differ by so little that the motion hangs on rounding."""
+        """Whether equations differ by so little that the motion depends on rounding."""
         return not self.extra_freedoms and self.rank.least < SOUND
 
 

@@ -15,7 +15,7 @@ CHANGES = 1e-6
 """Change of a reaction, in parts of the largest, from which on it is not unique."""
 TORQUES = ("torque", "tx", "ty", "tz")
 SPEED = 1.0
-"""Velocity (arms and rad per second) at which forces that hang on reactions are looked at: friction has none at rest."""
+"""Velocity (arms and rad per second) at which forces that depend on reactions are looked at: friction has none at rest."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) ->
 
 
 def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> bool:
-    """Whether applied forces (friction) hang on reactions that are not unique: then the motion is not unique either."""
+    """Whether applied forces (friction) depend on reactions that are not unique: then the motion is not unique either."""
     equations = found.equations
     state = equations.state
     for pose, space in null_spaces:

@@ -57,7 +57,7 @@ def independent_coordinates(system: System, state: State, t: float) -> Coordinat
 def _candidates(system: System) -> np.ndarray:
     """Rows that may be left out: solved for, with a position form, analytic, without time, in no force of friction.
 
-    Multipliers that forces hang on are needed.
+    Multipliers that forces depend on are needed.
     """
     rows = system.active & system.holonomic
     for group in system.groups:

@@ -16,7 +16,7 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
 
 C constraints, C_q = dC/dq, V the velocity level (C_q u + C_t, and equations that have no position form), J = dV/du,
 f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q, f_u, f_lam derivatives of f (forces
-of friction hang on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
+of friction depend on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
 A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, Z of q' = Z u where that is not u itself and
 Z_q = d(Z u)/dq, counted = angles that count turns and counting = their rates, potential = energy, request =
 what the user asked for, switch = what changes its sign at corners of a force, limit = what is above zero for as long as

@@ -114,7 +114,7 @@ def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
             case _:
                 raise FormulaError(f"found '{ast.unparse(argument)}' in a measure, expected a body or body.marker")
     if len(markers) not in (1, 2, 3):
-        raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected one or two")
+        raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected one to three")
     return tuple(markers) if len(markers) > 1 else (markers[0], MarkerReference(body=GROUND))
 
 

@@ -34,7 +34,7 @@ def solver_words(solver: Mapping[str, Any]) -> str:
 def _steps(solver: Mapping[str, Any]) -> Iterator[str]:
     told = [f"{solver[counter]} more {why}" for counter, why in IN_VAIN.items() if solver.get(counter)]
     if solver.get("rejected") and not told:
-        told = [f"{solver['rejected']} more were refused"]
+        told = [f"{solver['rejected']} more refused"]
     yield f"{solver['steps']} steps" + (f" ({', '.join(told)})" if told else "")
     if "order" in solver:
         yield f"order {solver['order']} at the end"

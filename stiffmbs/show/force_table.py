@@ -13,8 +13,8 @@ from .solution import Solution, channel_ranges
 if TYPE_CHECKING:
     from rich.table import Table
 
-ROUNDING = 1e-12
-"""Part of the largest force below which a force is shown as zero."""
+ROUNDING = 1e-11
+"""Part of the largest force below which a force is shown as zero: what solutions in space leave of forces that vanish."""
 NOT_UNIQUE = "*"
 """Stands behind the range of a reaction that has no unique value."""
 Cell = Mapping[str, float]

@@ -50,6 +50,6 @@ def with_numbers(job: Job, name: str, **numbers: float) -> Job:
     if job.pieces:  # the presolve's mechanisms hold the force in a form of their own
         return prepare(data, job.settings)
     write_numbers(job.mechanics.system, name, changed.as_drawn(data), data)
-    job.mechanics.forget_pivots()  # so that the start does not hang on earlier runs
+    job.mechanics.forget_pivots()  # so that the start does not depend on earlier runs
     start = restarted(job.mechanics, job.grid.start, job.start.q, job.start.u, project=False)
     return replace(job, data=data, start=start)

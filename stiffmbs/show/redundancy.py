@@ -90,7 +90,7 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
         if finding.nearly_dependent and not finding.contradictions:
             yield (
                 f"{listed(joints)} nearly repeat each other (smallest singular value {finding.rank.least:.1g}): the motion "
-                "hangs on the last digits of their geometry, expected either an exact or a clear difference"
+                "depends on the last digits of their geometry, expected either an exact or a clear difference"
             )
         if finding.redundant and CLOSED < finding.rank.start.gap <= AGREES:
             yield (
@@ -98,7 +98,7 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
                 "so much"
             )
         if not finding.motion_unique:
-            yield f"friction hangs on reactions of {listed(joints)} that are not unique, so the motion is not unique either"
+            yield f"friction depends on reactions of {listed(joints)} that are not unique, so the motion is not unique either"
 
 
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:

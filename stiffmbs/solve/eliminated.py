@@ -25,7 +25,7 @@ class Eliminated:
     Attributes
     ----------
     serves : bool
-        Whether the system is of the kind: no force hangs on multipliers, and the factors stay sparse.
+        Whether the system is of the kind: no force depends on multipliers, and the factors stay sparse.
     table : ndarray of int
         Addresses (`stiffmbs.compile.layout.ELIMINATED`), zeros where it does not serve.
     """

@@ -116,7 +116,7 @@ class Mechanics:
         return cast(T, self._kept[name][1])
 
     def forget_pivots(self) -> None:
-        """Have pivots sought anew, so that a run's rounding does not hang on earlier runs."""
+        """Have pivots sought anew, so that a run's rounding does not depend on earlier runs."""
         for system in (self._positions, self._velocities, self._accelerations):
             system.forget_pivots()
 

@@ -23,7 +23,7 @@ ACCELERATIONS = Formulation(
     residual=(Product("u", +1, "f"), Product("u", -1, "f_lam", "lam"), Product("lam", +1, "gamma")),
     matrix=(Block("u", "u", "M"), Block("u", "lam", "f_lam", -1), *_SADDLE),
 )
-"""[M J^T; J 0] [u'; lam] = [f; gamma]; one Newton step of it where friction makes f hang on lam."""
+"""[M J^T; J 0] [u'; lam] = [f; gamma]; one Newton step of it where friction makes f depend on lam."""
 
 POSITION_STEP = Formulation(
     name="position step",

@@ -33,7 +33,7 @@ def perpendicular(a: Any, b: Any) -> Any:
 
 
 def along(i: Any, j: Any, axis: Any) -> Any:
-    """The way from j's point to i's along a unit vector; zero where i's point is in the plane across it."""
+    """How far i's point is from j's along a unit vector; zero where i's point is in the plane across it."""
     return (i.point - j.point).dot(axis)
 
 

@@ -65,7 +65,7 @@ class AppliedForce(Applied):
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        """Minus the force times the way."""
+        """Minus the work of the force from the origin on."""
         in_ground = e.axes == "ground" and e.frame is None
         if e.j is not None or not in_ground or not all(e.is_constant(component) for component in e.force):
             return 0

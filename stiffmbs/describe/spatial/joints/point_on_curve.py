@@ -26,7 +26,7 @@ class PointOnCurve(Curve[Marker]):
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        """y - Y(x) of a slot, rho - R(theta) of a cam, and the way along z."""
+        """y - Y(x) of a slot, rho - R(theta) of a cam, and the distance from the plane."""
         x, y, z = e.named([along(e.i, e.j, axis) for axis in (e.j.x, e.j.y, e.j.z)])
         if e.y is not None:
             return [y - e.y(x), z]

@@ -31,7 +31,9 @@ class Thread(KeptAsDrawn):
     type: Literal["thread"] = "thread"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the thread's")
-    pitch: si.LengthNotZero = Field(description="way along z in a full turn, m; below zero for a left-handed thread")
+    pitch: si.LengthNotZero = Field(
+        description="advance along z in a full turn, m; below zero for a left-handed thread"
+    )
     offset: si.Length | None = Field(None, description="s where the angle is zero, m; as drawn unless given")
 
     @staticmethod
