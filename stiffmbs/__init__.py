@@ -15,7 +15,8 @@ from .describe.marker import GROUND as ground
 from .describe.marker import Marker
 from .describe.model import FORCES, JOINTS
 from .describe.model import Model as DescribedModel
-from .describe.scene import load_scene, read_scene, scene_schema
+from .describe.scene import load_scene, read_scene
+from .describe.schema import scene_schema
 from .describe.settings import RunSettings
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
 

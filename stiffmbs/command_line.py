@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .bench.command import bench
-from .describe.scene import Scene, load_scene, scene_schema
+from .describe.scene import Scene, load_scene
+from .describe.schema import scene_schema
 from .errors import InputError, StiffmbsError
 from .show.cache_command import cache
 from .show.report_command import report

@@ -10,16 +10,12 @@ from pydantic import Field
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
-from .body import Body as PlanarBody
 from .expand import read_parameters, read_tables, repeat_entries, set_value
 from .fields import sentence
 from .figure import Figure
-from .model import FORCES, JOINTS, PlanarData
+from .model import PlanarData
 from .model_data import ModelData
 from .settings import RunSettings
-from .spatial.body import Body as SpatialBody
-from .spatial.model import FORCES as SPATIAL_FORCES
-from .spatial.model import JOINTS as SPATIAL_JOINTS
 from .spatial.model import SpatialData
 from .table import Table
 from .yaml_text import line_of, read_yaml
@@ -233,26 +229,3 @@ def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
     except PydanticError:
         return False
     return True
-
-
-def scene_schema() -> dict[str, Any]:
-    """The JSON schema of scene files, of the plane and of space.
-
-    Returns
-    -------
-    dict
-        For editors, as ``stiffmbs schema`` prints it.
-    """
-    from pydantic.json_schema import models_json_schema
-
-    planar: list[type[Any]] = [PlanarBody, *JOINTS.values(), *FORCES.values()]
-    spatial: list[type[Any]] = [SpatialBody, *SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]
-    scenes: list[type[Any]] = [PlanarScene, SpatialScene]
-    found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial)])
-    loop = {"type": "string", "description": "repeat this entry: 'k in 1..N'; k and {k} are replaced in it"}
-    for part in dict.fromkeys((*planar, *spatial)):
-        name = found[part, "validation"]["$ref"].rpartition("/")[2]
-        schema["$defs"][name]["properties"]["for"] = loop
-    in_plane, in_space = (found[scene, "validation"] for scene in scenes)
-    three = {"properties": {"dimensions": {"const": 3}}, "required": ["dimensions"]}
-    return {"if": three, "then": in_space, "else": in_plane, "$defs": schema["$defs"]}
