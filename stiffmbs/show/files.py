@@ -17,9 +17,8 @@ from .solution import Solution
 
 
 def _write_csv(path: Path, solution: Solution) -> None:
-    marks = [
-        f"{name}.not_unique" for name in solution.not_unique
-    ]  # columns of ones: names of channels stay as they are
+    # Columns of ones tell what is not unique, so that the names of channels stay as they are.
+    marks = [f"{name}.not_unique" for name in solution.not_unique]
     columns = (solution.time, *solution.channels.values())
     with path.open("w", encoding="utf-8") as file:
         print(",".join(["time", *solution.channels, *marks]), file=file)

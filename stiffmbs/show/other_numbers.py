@@ -1,4 +1,4 @@
-"""Many runs of one model with other numbers in a force: nothing is compiled, examined or presolved again."""
+"""Many runs of one model with other numbers in a force, prepared once."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from .run import Job, prepare
 
 
 def with_numbers(job: Job, name: str, **numbers: float) -> Job:
-    """The same job with other numbers in a force.
+    """The same job with other numbers in a force: nothing is compiled, examined or presolved again.
 
-    The compiled system is changed in place, so `job` itself must not be integrated again.  Threads may work at once,
-    each with a job of its own from `prepare`.
+    Only where the presolve has merged bodies or solves mechanisms apart, the model is prepared anew.  The compiled system
+    is changed in place, so `job` itself must not be integrated again.  Threads may work at once, each with a job of its
+    own from `prepare`.
 
     Parameters
     ----------
