@@ -49,7 +49,7 @@ def clear() -> None:
     click.echo(f"removed {removed.entries} entries, {removed.size / 1e6:.2f} MB, from {cache_directory()}")
 
 
-@cache.command()
+@cache.command(short_help="Compile all usual elements and all solvers ahead.")
 def warm() -> None:
     """Compile all kinds of elements in their usual forms and all solvers, so that first runs need not wait."""
     from ..compile.cache_contents import stored

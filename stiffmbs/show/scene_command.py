@@ -29,7 +29,12 @@ def _pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> li
 
 
 CHANGES = click.option(
-    "--set", "changes", multiple=True, callback=_pairs, metavar="PATH=VALUE", help="Change a value of the scene."
+    "--set",
+    "changes",
+    multiple=True,
+    callback=_pairs,
+    metavar="PATH=VALUE",
+    help="Change a value of the scene, such as bodies.cart.mass=12, or a parameter, N=40; any number of times.",
 )
 
 
@@ -37,7 +42,7 @@ def solving_options(command: Command) -> Command:
     """The options ``--rtol``, ``--duration``, ``--solver`` and ``--set`` of a command; see `changes_of`."""
     options = (
         click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
-        click.option("--duration", help="Time to solve, s."),
+        click.option("--duration", help="Time to solve, s, or with a unit."),
         click.option("--solver", help="bdf, projected, kinematic or auto."),
         CHANGES,
     )
