@@ -162,7 +162,8 @@ class Integrator:
                 t = reached.t
                 if t < grid.end:
                     q, u = self.split(reached.y)
-                    self._held.note(t, q, u, self._steps(), reached.fired)
+                    if self._held.any:
+                        self._held.note(t, q, u, self._steps(), reached.fired)
                     start = restarted(self.mechanics, t, q, u)
                     self._tell_jump(t, start.u - u)
                     yield self._at_once(start, t, grid)

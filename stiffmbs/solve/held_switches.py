@@ -42,6 +42,11 @@ class HeldSwitches:
         self.waits, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         self._steps = 0
 
+    @property
+    def any(self) -> bool:
+        """Whether the system has switches."""
+        return bool(len(self.waits))
+
     def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Look at the state from which the integrator is to start.
 
@@ -50,7 +55,7 @@ class HeldSwitches:
         SolverError
             Where a force drives the motion back from both sides of its jump; names the element.
         """
-        if len(self.waits):
+        if self.any:
             self._refuse(t, sliding(self._mechanics, t, q, u))
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
@@ -84,5 +89,5 @@ class HeldSwitches:
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Why the integrator could not go on, where a force that jumps is the reason; empty for other reasons."""
-        found = jumping(self._mechanics, t, q, u) if len(self.waits) else self.waits
+        found = jumping(self._mechanics, t, q, u) if self.any else self.waits
         return self._sentence(int(found[0])) if len(found) else ""

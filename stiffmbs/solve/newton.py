@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,9 +55,9 @@ class Stiffness:
     @property
     def long_step(self) -> float:
         """The step, s, beyond which states within it have to be brought back to the balance of forces; may be infinite."""
-        with np.errstate(divide="ignore"):
-            by_position = np.sqrt(np.divide(AMPLIFIED, self.of_positions))
-            return float(min(by_position, np.divide(AMPLIFIED, self.of_velocities)))
+        by_position = math.sqrt(AMPLIFIED / self.of_positions) if self.of_positions > 0 else math.inf
+        by_velocity = AMPLIFIED / self.of_velocities if self.of_velocities > 0 else math.inf
+        return min(by_position, by_velocity)
 
 
 def stiffness_at(mechanics: Mechanics, t: float) -> Stiffness:

@@ -118,8 +118,9 @@ class OrderWatch:
         least = self._size((weights @ rows[few]) / np.abs(weights).sum() / scale)
         if least > NEGLIGIBLE:
             return least
-        base, _ = np.linalg.qr(np.polynomial.chebyshev.chebvander(x, DEGREE))
-        return max(self._size(row) for row in (rows - base @ (base.T @ rows)) / scale)
+        base, _ = np.linalg.qr(np.power.outer(x, np.arange(DEGREE + 1)))
+        errors = (rows - base @ (base.T @ rows)) / scale
+        return float(np.sqrt((errors**2).mean(axis=1).max()))
 
     @staticmethod
     def _size(errors: np.ndarray) -> float:

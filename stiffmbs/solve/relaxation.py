@@ -26,6 +26,8 @@ def relax(mechanics: Mechanics, settings: RunSettings, t: float) -> None:
     would let their joints creep far beyond the tolerance.
     """
     state, system = mechanics.state, mechanics.system
+    if not system.n_c:
+        return
     state.evaluate("motion", t)
     factor = min(max(settings.rtol / 1e-8, TIGHTEST), LOOSEST)
     scales = []

@@ -15,15 +15,19 @@ from stiffmbs.compile.native.evaluate import add_entries, add_products, evaluate
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 
 OK = 0
-FACTORED, CURRENT, ENOUGH, LONG = range(4)
+FACTORED, CURRENT, ENOUGH, LONG, AGE, MEASURED, RATE = range(7)
 """Marks: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, and the step, s,
-beyond which states within it are brought back."""
+beyond which states within it are brought back; states brought back with these factors, that number when a rate of convergence was measured (0: it was
+not), and that rate."""
 APART = 2.0
 """Factor between cj of the factors and IDA's beyond which they are made anew: accelerations would change too much, or too little."""
 MOST = 8
 """Corrections."""
 SLOWEST = 0.3
 """A correction that is a larger part of the one before asks for new factors, or ends the iteration in vain."""
+
+TRUSTED = 10.0
+"""States for which a measured rate serves."""
 
 balance_view = view_of("Balance", BALANCE)
 
@@ -49,6 +53,8 @@ def _factored(b, s, e, t):
     if call_int(b.setup, (b.solver, b.matrix)) != OK:
         return False
     b.mark[FACTORED] = cj
+    b.mark[AGE] = 0.0
+    b.mark[MEASURED] = 0.0
     return True
 
 
@@ -69,9 +75,23 @@ def _corrected(b, s, e, t):
 
 
 @compiled
+def _foreseen(b):
+    """The rate for the first correction: that which a recent state has measured with these factors, grown as bodies turn on."""
+    b.mark[AGE] += 1.0
+    known = b.mark[MEASURED] > 0.0 and b.mark[AGE] - b.mark[MEASURED] <= TRUSTED
+    return b.mark[RATE] * b.mark[AGE] / b.mark[MEASURED] if known else 1.0
+
+
+@compiled
+def _note_rate(b, rate):
+    b.mark[RATE] = rate
+    b.mark[MEASURED] = b.mark[AGE]
+
+
+@compiled
 def _settled(b, s, e, t):
     """Correct until what is left, by the rate at which corrections shrink, makes no force that counts."""
-    rate = 1.0
+    rate = _foreseen(b)
     before = 0.0
     for k in range(MOST):
         size = _corrected(b, s, e, t)
@@ -79,6 +99,7 @@ def _settled(b, s, e, t):
             rate = size / before
             if not rate < SLOWEST:
                 return size <= b.mark[ENOUGH]
+            _note_rate(b, rate)
         if rate * size <= b.mark[ENOUGH]:
             return True
         before = size

@@ -30,7 +30,8 @@ class Balance:
 
     def __init__(self, n: int) -> None:
         self._n = n
-        self.mark = np.array([0.0, 0.0, 0.0, np.inf])
+        self.mark = np.zeros(7)
+        self.mark[LONG] = np.inf
         self.table = np.zeros(len(BALANCE), dtype=np.int64)
         self._kept: tuple[object, ...] = ()
 
