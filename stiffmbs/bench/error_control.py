@@ -38,7 +38,6 @@ CONTROLS = {
     ),
     "huge, by stiffness": ErrorControl(margin=1.0, renewal=0.25, doubtful=False),
     "IDA's test": ErrorControl(margin=0.3, doubtful=False),
-    "doubtful": ErrorControl(),
     "present": None,
 }
 """Multipliers by a huge weight, or by IDASetSuppressAlg with a weight in Newton's test; how far Newton's iteration is taken,

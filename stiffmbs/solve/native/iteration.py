@@ -1,11 +1,19 @@
 """When Newton's iteration in a step has converged: IDA's test, but for rates that were measured long ago.
 
-What the last correction leaves is its size times rate / (1 - rate), with the rate at which corrections shrink.  IDA
+What a correction leaves is its size times rate / (1 - rate), with the rate at which corrections shrink.  IDA
 measures it where an iteration matrix is new, and the iteration converges quadratically, and takes it for good until
 cj changes; so in long stretches of equal steps one correction with an ever older matrix passes, whatever it leaves.
-The error estimates become noise, order and steps sink.  Here a new matrix' rate is not believed in the next step, and one measured
-later grows with the matrix' age, as the distance from where it was made does.  A matrix that has become slow, or with
-which the iteration cannot get there in the corrections that are left, is made anew.
+The error estimates become noise, order and steps sink.
+
+Here the rate is foreseen from its two causes.  With cj the matrix changes: IDA scales corrections by 2 / (1 + r), r being cj over that of
+the matrix, which for an equation u' = lambda u leaves |1 - 2 / (1 + r) (r - z) / (1 - z)| with z = lambda / cj; where nothing grows,
+Re z <= 0, that is at most |r - 1| / (r + 1).  And bodies turn away from where the matrix was made:
+this part is taken to grow with the time since then, as fast as it did when a rate was last measured, also under earlier matrices.  A rate that was
+measured where the matrix was new does not count.  A matrix that has become slow, or with which the iteration cannot get there in
+the corrections that are left, is made anew.
+
+How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.newton`).  An error left in a
+position makes an acceleration, and that a velocity within the step; so shorter steps bear more, in proportion to cj.
 """
 
 from __future__ import annotations
@@ -17,11 +25,12 @@ from stiffmbs.solve.native.calls import call_address, call_int, int32
 SETTLED, GO_ON, GIVE_UP = 0, 901, 902
 """SUN_SUCCESS, SUN_NLS_CONTINUE and SUN_NLS_CONV_RECVR of sundials_nonlinearsolver.h; after the last, the solver has a matrix that is
 not new made anew, and IDA tries a smaller step where it is."""
-CJ, AT_CJ, FIRST, RATE = range(4)
-"""Marks: cj, that for which the rate was measured, size of the first correction, rate."""
-DONE, AGE, MEASURED, SLOW = range(4)
-"""Counts: corrections before this one, steps since the matrix was made, that number when the rate was measured (0: it was
-not), whether the matrix is to be made anew."""
+CJ, AT_CJ, FIRST, BY_CJ, GROWTH, SPAN = range(6)
+"""Marks: cj, that of the matrix, size of the first correction, the part of the rate by the change of cj, what the rest grows by
+in a time (below 0: not known), and the time since the matrix was made, by the sum of 1/cj, which a step is but for a factor of 1 to 2.3."""
+DONE, AGE, SINCE, SLOW = range(4)
+"""Counts: corrections before this one, steps since the matrix was made, steps since a rate was measured, whether the matrix is
+to be made anew."""
 MADE = -1
 """The age that a matrix is given when it is made; the step's first correction makes it 0."""
 LAST = 3
@@ -34,6 +43,12 @@ DIVERGING = 0.9
 """The rate from which the iteration is given up, as IDA has it."""
 SLOWEST = 0.1
 """The rate beyond which a matrix is made anew (0.1 is better than 0.2 and 0.3 in the plane, and as good in space)."""
+TRUSTED = 20
+"""Steps after which a rate is measured anew (with no end to it a bushing of 1e8 N/m takes a third longer)."""
+LEAST = 0.1
+"""Part of a measured rate that is put down to the matrix' age at the least."""
+LOOSEST, LONG_STEPS = 0.03, 200.0
+"""Part of the tolerance that short steps may leave at the most; cj, 1/s, up to which steps are long."""
 
 iteration_view = view_of("Iteration", ITERATION)
 
@@ -57,13 +72,25 @@ def _left(rate, size):
 
 
 @compiled
+def _foreseen(c):
+    """The rate, from those measured before; 1 where it has to be measured."""
+    c.count[SINCE] += 1
+    age = c.count[AGE]
+    if age == 0:
+        c.mark[AT_CJ] = c.mark[CJ]
+        c.mark[SPAN] = 0.0
+    c.mark[SPAN] += 1.0 / c.mark[CJ]
+    c.mark[BY_CJ] = abs(c.mark[CJ] - c.mark[AT_CJ]) / (c.mark[CJ] + c.mark[AT_CJ])
+    known = c.mark[GROWTH] >= 0.0 and (c.count[SINCE] <= TRUSTED or age == 0)
+    return c.mark[BY_CJ] + c.mark[GROWTH] * c.mark[SPAN] if known else 1.0
+
+
+@compiled
 def _first(c, size, enough):
-    """After the first correction, the rate is what is foreseen from an earlier one at the same cj."""
+    """After the first correction, the rate is what is foreseen."""
     c.count[AGE] += 1
     age = c.count[AGE]
-    call_int(c.cj_of, (c.memory, shifted(c.mark, CJ)))
-    if age == 0 or c.mark[CJ] != c.mark[AT_CJ]:
-        c.count[MEASURED] = 0
+    rate = _foreseen(c)
     c.mark[FIRST] = size
     if size <= NOTHING * enough:
         return SETTLED
@@ -71,7 +98,6 @@ def _first(c, size, enough):
     c.count[SLOW] = 0
     if slow:
         return GIVE_UP
-    rate = c.mark[RATE] * age / c.count[MEASURED] if c.count[MEASURED] > 0 else 1.0
     return SETTLED if _left(rate, size) <= enough else GO_ON
 
 
@@ -83,9 +109,9 @@ def _later(c, size, enough):
     rate = (size / c.mark[FIRST]) ** (1.0 / done)
     if not rate <= DIVERGING:
         return GIVE_UP
-    c.mark[RATE] = rate
-    c.mark[AT_CJ] = c.mark[CJ]
-    c.count[MEASURED] = age
+    if age > 0:
+        c.mark[GROWTH] = max(rate - c.mark[BY_CJ], LEAST * rate) / c.mark[SPAN]
+        c.count[SINCE] = 0
     c.count[SLOW] = 1 if rate > SLOWEST else 0
     left = _left(rate, size)
     if left <= enough:
@@ -94,8 +120,11 @@ def _later(c, size, enough):
 
 
 def converged(solver, total, correction, enough, weights, table):
-    """SUNNonlinSolConvTestFn: whether what the iteration leaves is at most `enough`, in units of the tolerance."""
+    """SUNNonlinSolConvTestFn: whether what the iteration leaves is at most `enough`, in units of the tolerance, or what short steps bear."""
     c = iteration_view(table)
     size = _size(c, correction, weights)
     call_int(c.iteration_of, (solver, shifted(c.count, DONE)))
-    return int32(_first(c, size, enough) if c.count[DONE] == 0 else _later(c, size, enough))
+    if c.count[DONE] == 0:
+        call_int(c.cj_of, (c.memory, shifted(c.mark, CJ)))
+    bearable = max(enough, min(LOOSEST, enough * c.mark[CJ] / LONG_STEPS))
+    return int32(_first(c, size, bearable) if c.count[DONE] == 0 else _later(c, size, bearable))

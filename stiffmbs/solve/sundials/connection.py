@@ -50,6 +50,8 @@ class Connection:
         Memory of the vectors of the solution, its derivative, and of what is interpolated or asked for.
     mark, count : ndarrays
         What the loop leaves behind.
+    balance : Balance
+    iteration : Iteration
     n_switches : int
     sides, waits : ndarrays, shape (n_switches,)
         As in `stiffmbs.solve.native.watched`.
@@ -71,7 +73,7 @@ class Connection:
         self.history = StepLog()
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self.balance, self._iteration = Balance(n), Iteration(n)
+        self.balance, self.iteration = Balance(n), Iteration(n)
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
         self.n_switches = equations.system.n_values("switch")
@@ -101,7 +103,7 @@ class Connection:
                 "step_of": address("IDAGetLastStep"),
                 "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS), "samples": self.samples,
                 "balance_mark": self.balance.mark, "balance": self.balance.table,
-                "iteration": self._iteration.count,
+                "iteration": self.iteration.count,
             },
         )  # fmt: skip
 
@@ -160,9 +162,9 @@ class Connection:
 
     def doubt_rates(self) -> None:
         """Have Newton's iteration judged by a convergence rate that worsens with the age of the iteration matrix."""
-        solver = self._iteration.solver(self._session, self.memory, self.y_vector)
+        solver = self.iteration.solver(self._session, self.memory, self.y_vector)
         self.ask("IDASetNonlinearSolver", solver)
-        self._iteration.take_over(self._session, solver)
+        self.iteration.take_over(self._session, solver)
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and keep the history of the call; returns IDA's last flag."""

@@ -185,6 +185,7 @@ class NativeIda:
         self._ida.count[[TINY, SINCE]] = 0
         self._ida.samples[:] = np.nan
         self._ida.sides[:] = 0.0
+        self._ida.iteration.begin()
         self.history.begin(t)
         self._begun, self._flag = True, 0
 

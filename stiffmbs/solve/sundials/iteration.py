@@ -11,6 +11,8 @@ from .session import Session
 CONVERGED = Routine(
     "stiffmbs.solve.native.iteration", "converged", "int32(int64, int64, int64, float64, int64, int64*)"
 )
+GROWTH = 4
+"""A mark, as in `stiffmbs.solve.native.iteration`."""
 
 
 class Iteration:
@@ -30,7 +32,7 @@ class Iteration:
     def __init__(self, n: int) -> None:
         self._n = n
         self.count = np.zeros(4, dtype=np.int64)
-        self._mark = np.zeros(4)
+        self._mark = np.zeros(6)
 
     def solver(self, session: Session, memory: int, y_vector: int) -> int:
         """The solver; IDA, whose memory is given, gives it its own test when it is attached: `take_over` comes after that."""
@@ -45,6 +47,10 @@ class Iteration:
             },
         )  # fmt: skip
         return session.keep(made, libraries.SUNNonlinSolFree, "a nonlinear solver")
+
+    def begin(self) -> None:
+        """Forget the rates that were measured, as the integrator starts, or starts anew."""
+        self._mark[GROWTH] = -1.0
 
     def take_over(self, session: Session, solver: int) -> None:
         """Put the test in place."""
