@@ -15,10 +15,10 @@ from stiffmbs.compile.native.evaluate import add_entries, add_products, evaluate
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 
 OK = 0
-FACTORED, CURRENT, ENOUGH, LONG, AGE, MEASURED, RATE = range(7)
-"""Marks: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, and the step, s,
-beyond which states within it are brought back; states brought back with these factors, that number when a rate of convergence was measured (0: it was
-not), and that rate."""
+FACTORED, CURRENT, ENOUGH, LONG, MADE, GROWTH, SINCE = range(7)
+"""Marks: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
+beyond which states within it are brought back; the time at which the factors were made, what the rate of convergence grows by in a second
+from there (below 0: not known), and states brought back since that was measured."""
 APART = 2.0
 """Factor between cj of the factors and IDA's beyond which they are made anew: accelerations would change too much, or too little."""
 MOST = 8
@@ -28,6 +28,8 @@ SLOWEST = 0.3
 
 TRUSTED = 10.0
 """States for which a measured rate serves."""
+WORSE = 3.0
+"""Times the measured rate that is reckoned with: it hangs on the direction of what is left."""
 
 balance_view = view_of("Balance", BALANCE)
 
@@ -53,8 +55,8 @@ def _factored(b, s, e, t):
     if call_int(b.setup, (b.solver, b.matrix)) != OK:
         return False
     b.mark[FACTORED] = cj
-    b.mark[AGE] = 0.0
-    b.mark[MEASURED] = 0.0
+    b.mark[MADE] = t
+    b.mark[GROWTH] = -1.0
     return True
 
 
@@ -75,23 +77,25 @@ def _corrected(b, s, e, t):
 
 
 @compiled
-def _foreseen(b):
-    """The rate for the first correction: that which a recent state has measured with these factors, grown as bodies turn on."""
-    b.mark[AGE] += 1.0
-    known = b.mark[MEASURED] > 0.0 and b.mark[AGE] - b.mark[MEASURED] <= TRUSTED
-    return b.mark[RATE] * b.mark[AGE] / b.mark[MEASURED] if known else 1.0
+def _foreseen(b, t):
+    """The rate for the first correction: as bodies turn away from where the factors were made; 1 where it has to be measured."""
+    b.mark[SINCE] += 1.0
+    known = b.mark[GROWTH] >= 0.0 and b.mark[SINCE] <= TRUSTED
+    return WORSE * b.mark[GROWTH] * (t - b.mark[MADE]) if known else 1.0
 
 
 @compiled
-def _note_rate(b, rate):
-    b.mark[RATE] = rate
-    b.mark[MEASURED] = b.mark[AGE]
+def _note_rate(b, t, rate):
+    """Where the factors are new, the iteration converges quadratically, which says nothing of later states."""
+    if t > b.mark[MADE]:
+        b.mark[GROWTH] = rate / (t - b.mark[MADE])
+        b.mark[SINCE] = 0.0
 
 
 @compiled
 def _settled(b, s, e, t):
     """Correct until what is left, by the rate at which corrections shrink, makes no force that counts."""
-    rate = _foreseen(b)
+    rate = _foreseen(b, t)
     before = 0.0
     for k in range(MOST):
         size = _corrected(b, s, e, t)
@@ -99,7 +103,7 @@ def _settled(b, s, e, t):
             rate = size / before
             if not rate < SLOWEST:
                 return size <= b.mark[ENOUGH]
-            _note_rate(b, rate)
+            _note_rate(b, t, rate)
         if rate * size <= b.mark[ENOUGH]:
             return True
         before = size
