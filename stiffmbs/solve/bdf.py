@@ -88,6 +88,12 @@ def _just_after(t: float) -> float:
     return t + 4 * np.finfo(float).eps * abs(t)
 
 
+def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:
+    """Those of increasing times that lie after one and not after another."""
+    first, end = np.searchsorted(times, (after, until), side="right")
+    return times[first:end]
+
+
 def _natural(mechanics: Mechanics, settings: RunSettings) -> Equations:
     """The equations with their unknowns in the natural order."""
     return Equations(FORMULATIONS[settings.formulation](settings), mechanics.system, mechanics.coordinates)
@@ -166,7 +172,7 @@ class Integrator:
                         self._held.note(t, q, u, self._steps(), reached.fired)
                     start = restarted(self.mechanics, t, q, u)
                     self._tell_jump(t, start.u - u)
-                    yield self._at_once(start, t, grid)
+                    yield from self._at_once(start, t, grid)
                     self._events += t < stop
                     self._corners += t >= stop
 
@@ -180,6 +186,8 @@ class Integrator:
 
     def _tell_jump(self, t: float, change: np.ndarray) -> None:
         """Note a change of velocities at a corner that no error of the integrator explains: a drive jumped."""
+        if not change.any():
+            return
         k = int(np.argmax(np.abs(change)))
         if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self.mechanics.state.u)))):
             system = self.mechanics.system
@@ -192,13 +200,14 @@ class Integrator:
         """Integrate from t to `stop` or to the first event."""
         if grid.times is None:
             return self.engine.by_steps(stop)
-        return self.engine.to_times(grid.times[(grid.times > _just_after(t)) & (grid.times <= stop)], stop)
+        return self.engine.to_times(_within(grid.times, _just_after(t), stop), stop)
 
-    def _at_once(self, start: InitialValues, t: float, grid: Grid) -> Reached:
+    def _at_once(self, start: InitialValues, t: float, grid: Grid) -> Iterator[Reached]:
         """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs."""
-        state = self.equations.coordinates.state(start.q, start.u)
-        times = np.empty(0) if grid.times is None else grid.times[(grid.times > t) & (grid.times <= _just_after(t))]
-        return Reached(times, np.tile(state, (len(times), 1)), t, state)
+        times = np.empty(0) if grid.times is None else _within(grid.times, t, _just_after(t))
+        if len(times):
+            state = self.equations.coordinates.state(start.q, start.u)
+            yield Reached(times, np.tile(state, (len(times), 1)), t, state)
 
     def _begin(self, start: InitialValues, t: float) -> None:
         equations, at = self.equations, self.equations.at

@@ -28,7 +28,7 @@ def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, proj
     """
     state = mechanics.state
     state.q[:], state.u[:] = q, u
-    if project:
+    if project and mechanics.system.n_c:
         _go_on(mechanics.assemble(t), t)
         _go_on(mechanics.correct_velocities(t), t)
     state.count_anew(t)
