@@ -75,7 +75,7 @@ class _Shared:
         self._unknowns = n = cost.unknowns(mechanics)
         self._explicit_step = cost.of_explicit_step(mechanics)
         self._implicit_step = cost.of_implicit_step(n)
-        self._trial = cost.of_implicit_start(n) + FAIR_TRIAL * self._implicit_step
+        self._trial = cost.of_implicit_start(n) + FAIR_TRIAL * self._implicit_step  # what one costs at the most
         self._implicit: bdf.Integrator | None = None
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
@@ -178,9 +178,12 @@ class _Shared:
         taken, way = effort.steps - self._before.steps, reached.t - self._pace.t
         if taken < FAIR_TRIAL:
             return True
-        spent = effort.cost - self._before.cost
+        spent, explicit = effort.cost - self._before.cost, way * self._explicit_cost
         self._pace, self._before = _Pace(reached.t), effort
-        return spent < BEHIND * way * self._explicit_cost
+        pays = spent < BEHIND * explicit
+        if not pays:
+            self._trial = cost.of_implicit_start(self._unknowns) + spent - explicit  # as seen: the way is not lost
+        return pays
 
     def _effort(self) -> _Effort:
         """The implicit integrator's, but for the small steps after each of its starts at corners and events."""
