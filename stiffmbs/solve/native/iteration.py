@@ -5,15 +5,16 @@ measures it where an iteration matrix is new, and the iteration converges quadra
 cj changes; so in long stretches of equal steps one correction with an ever older matrix passes, whatever it leaves.
 The error estimates become noise, order and steps sink.
 
-Here the rate is foreseen from its two causes.  With cj the matrix changes: IDA scales corrections by 2 / (1 + r), r being cj over that of
-the matrix, which for an equation u' = lambda u leaves |1 - 2 / (1 + r) (r - z) / (1 - z)| with z = lambda / cj; where nothing grows,
-Re z <= 0, that is at most |r - 1| / (r + 1).  And bodies turn away from where the matrix was made:
-this part is taken to grow with the time since then, as fast as it did when a rate was last measured, also under earlier matrices.  A rate that was
-measured where the matrix was new does not count.  A matrix that has become slow, or with which the iteration cannot get there in
-the corrections that are left, is made anew.
+Here the rate is foreseen from its two causes. With cj the matrix changes: IDA scales corrections by 2 / (1 + r), r
+being cj over that of the matrix, which for an equation u' = lambda u leaves |1 - 2 / (1 + r) (r - z) / (1 - z)| with
+z = lambda / cj; where nothing grows, Re z <= 0, that is at most |r - 1| / (r + 1). And bodies turn away from where
+the matrix was made: this part is taken to grow with the time since then, as fast as it did when a rate was last
+measured, also under earlier matrices. A rate that was measured where the matrix was new does not count. A matrix that
+has become slow, or with which the iteration cannot get there in the corrections that are left, is made anew.
 
-How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.newton`).  An error left in a
-position makes an acceleration, and that a velocity within the step; so shorter steps bear more, in proportion to cj.
+How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.newton`). An
+error left in a position makes an acceleration, and that a velocity within the step; so shorter steps bear more, in
+proportion to cj.
 """
 
 from __future__ import annotations
