@@ -14,6 +14,32 @@ SAME = 1e-9
 """How far an initial displacement may be from the drawn one to be the same, m or rad."""
 
 
+class _WithoutInstants(ast.NodeTransformer):
+    """IF without its middle value, in place of which it has the one that follows in time.
+
+    That value holds for an instant alone.  As a motion it would be one without velocity there, where the motion goes on.
+    """
+
+    def visit_Call(self, node: ast.Call) -> ast.Call:
+        self.generic_visit(node)
+        match node:
+            case ast.Call(ast.Name("branch"), [x, below, _, above]):
+                return ast.Call(node.func, [x, below, below if _falls(x) else above, above], [])
+        return node
+
+
+def _falls(condition: ast.expr) -> bool:
+    """Whether an expression of time becomes less with it all along: ``0.5 - t``."""
+    import sympy as sp
+
+    t = sp.Symbol("t", real=True)
+    try:
+        slope = sp.diff(sp.sympify(ast.unparse(condition), locals={"t": t}), t)
+    except (sp.SympifyError, TypeError, AttributeError):
+        return False
+    return bool(slope.is_negative)
+
+
 class Law:
     """A motion's function.
 
@@ -56,7 +82,8 @@ class Law:
         return {"position": ast.unparse(total(terms))}
 
     def _formula(self) -> str:
-        return self._translation.formula(self._motion.function, self._unit)
+        formula = parse(self._translation.formula(self._motion.function, self._unit))
+        return ast.unparse(_WithoutInstants().visit(formula))
 
     def _integrated(self) -> str:
         """The function integrated from 0 to t, once or twice.
