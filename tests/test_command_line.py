@@ -116,6 +116,12 @@ def test_a_fault_in_what_was_set_is_not_looked_for_in_the_file(in_folder, change
     assert place in stiffmbs("run", "scene.yaml", *change).output
 
 
+def test_one_of_a_repeated_entry_cannot_be_set_alone(examples):
+    result = stiffmbs("check", examples / "chain.yaml", "--set", "bodies.link3.mass=5")
+    assert result.exit_code == 2
+    assert "bodies.link3: found a name that a repeated entry makes too" in result.output
+
+
 def test_solver_tolerance_and_duration_can_be_chosen(in_folder):
     report = json.loads(stiffmbs("run", "scene.yaml", "--json", "--solver", "projected", "--duration", "0.1").output)
     assert (report["solver"]["name"], report["time"]["end"]) == ("projected", 0.1)

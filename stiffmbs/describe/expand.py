@@ -119,10 +119,12 @@ def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity
         return entries
     expanded: dict[Any, Any] = {}
     for name, entry in entries.items():
-        if not (isinstance(entry, dict) and "for" in entry):
-            expanded[name] = _filled(f"{section}.{name}", entry, parameters)
-            continue
         where = f"{section}.{name}"
+        if not (isinstance(entry, dict) and "for" in entry):
+            if name in expanded:
+                raise InputError(f"{where}: found a name that a repeated entry makes too, expected another")
+            expanded[name] = _filled(where, entry, parameters)
+            continue
         pattern = {key: value for key, value in entry.items() if key != "for"}
         variable, first, last = _loop(where, entry["for"], parameters)
         for k in range(first, last + 1):
