@@ -108,12 +108,18 @@ def test_an_output_spacing_that_is_set_takes_the_place_of_points(in_folder):
         (("--set", "bodies.cart.mass=-1"), "scene.yaml, --set bodies.cart.mass: found -1"),
         (("--set", "run.rtol=x"), "scene.yaml, --set run.rtol: found the unknown name 'x'"),
         (("--rtol", "1e-20"), "scene.yaml, --set run.rtol: found 1e-20"),
-        (("--set", "parameters.a=2 x"), "scene.yaml, --set parameters.a: found"),
+        (("--set", "parameters={a: 2 x}"), "scene.yaml, --set parameters.a: found"),
+        (("--set", "parameters.l=2"), "--set parameters.l: found no such parameter, expected one of none"),
         (("--set", "joints.rail.j=bar", "--set", "joints.rail.i=bar"), "scene.yaml, line 8, joints.rail: found 'bar'"),
     ],
 )
 def test_a_fault_in_what_was_set_is_not_looked_for_in_the_file(in_folder, change, place):
     assert place in stiffmbs("run", "scene.yaml", *change).output
+
+
+def test_a_parameter_may_be_added_with_what_uses_it(in_folder):
+    result = stiffmbs("run", "scene.yaml", "--json", "--set", "parameters.m=20 kg", "--set", "bodies.cart.mass=2*m")
+    assert json.loads(result.output)["channels"]["rail.fy"]["first"] > 40 * 9.81
 
 
 def test_one_of_a_repeated_entry_cannot_be_set_alone(examples):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError as PydanticError
@@ -53,6 +53,25 @@ def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
         place[int(last)] = value
     else:
         raise InputError(f"--set {path}: found no such place in the scene")
+
+
+def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, str]]) -> None:
+    """Refuse to add a parameter that no other change uses: misspelt, it would change nothing and nobody would know.
+
+    Raises
+    ------
+    InputError
+        Names the parameter and those of the scene.
+    """
+    known = scene.get("parameters") or {}
+    for path, _ in changes:
+        section, _, name = path.partition(".")
+        alone = rf"(?<![\w.]){re.escape(name)}(?![\w.])"
+        used = any(re.search(alone, text) for other, text in changes if other != path)
+        if section == "parameters" and name and name not in known and not used:
+            raise InputError(
+                f"--set {path}: found no such parameter, expected one of {', '.join(map(str, known)) or 'none'}"
+            )
 
 
 def read_parameters(found: Any) -> dict[str, Quantity]:

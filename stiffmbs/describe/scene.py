@@ -10,7 +10,7 @@ from pydantic import Field
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
-from .expand import read_parameters, read_tables, repeat_entries, set_value
+from .expand import read_parameters, read_tables, refuse_unused_parameters, repeat_entries, set_value
 from .fields import sentence
 from .figure import Figure
 from .model import PlanarData
@@ -153,6 +153,7 @@ def made_scene(
     InputError
         When it is no valid scene.
     """
+    refuse_unused_parameters(found, changes)
     for path, value in changes:
         set_value(found, path, read_yaml(value, f"--set {path}"))
     _keep_one_grid(found, {path for path, _ in changes})
