@@ -202,3 +202,26 @@ def test_a_drive_that_jumps_in_velocity_is_told():
     solution = stiffmbs.run(model, duration=1.0, points=11)
     np.testing.assert_allclose(solution["sled.x"], np.abs(solution.time - 0.5), atol=1e-6)
     assert any("t = 0.5" in note and "sled.vx by 2" in note for note in solution.notes)
+
+
+@pytest.mark.parametrize(
+    "law, wanted",
+    [
+        ("0.2 + min(2*t, 1)", lambda t: 0.2 + np.minimum(2 * t, 1)),
+        ("0.2 + max(0.5 - t, 0)", lambda t: 0.2 + np.maximum(0.5 - t, 0)),
+        ("0.2 + branch(t - 0.5, t^2, 0.25, t - 0.25)", lambda t: 0.2 + np.where(t < 0.5, t**2, t - 0.25)),
+    ],
+)
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_a_drive_goes_on_behind_its_corner_as_its_formula_does_there(law, wanted, solver):
+    """At the corner itself min(2*t, 1) still rises; what it does next is told by the instant behind."""
+    model = Model()
+    model.add("wheel", Body(mass=1, inertia=INERTIA, angle=wanted(0.0)))
+    model.add("pin", Revolute(i="wheel", j="ground"))
+    model.add("motor", Drive(joint="pin", position=law))
+    solution = stiffmbs.run(model, duration=1.5, output=0.01, solver=solver)
+    assert solution.outcome.name == "DONE"
+    np.testing.assert_allclose(solution["wheel.angle"], wanted(solution.time), atol=1e-9)
+    late = solution.time > 0.501
+    slope = (wanted(solution.time + 1e-6) - wanted(solution.time - 1e-6)) / 2e-6
+    np.testing.assert_allclose(solution["wheel.omega"][late], slope[late], atol=1e-6)

@@ -165,16 +165,18 @@ class Integrator:
                     yield reached if not reached.failure else self._explained(reached)
                 if reached.failure:
                     return
-                t = reached.t
+                before = t = reached.t
                 if t < grid.end:
                     q, u = self.split(reached.y)
                     if self._held.any:
                         self._held.note(t, q, u, self._steps(), reached.fired)
+                    if t >= stop:  # min(2*t, 1) still rises at its corner: what follows is told behind it
+                        t = _just_after(t)
                     start = restarted(self.mechanics, t, q, u)
-                    self._tell_jump(t, start.u - u)
-                    yield from self._at_once(start, t, grid)
-                    self._events += t < stop
-                    self._corners += t >= stop
+                    self._tell_jump(before, start.u - u)
+                    yield from self._at_once(start, before, t, grid)
+                    self._events += before < stop
+                    self._corners += before >= stop
 
     def _steps(self) -> int:
         return int(self.engine.statistics()["steps"])
@@ -202,9 +204,12 @@ class Integrator:
             return self.engine.by_steps(stop)
         return self.engine.to_times(_within(grid.times, _just_after(t), stop), stop)
 
-    def _at_once(self, start: InitialValues, t: float, grid: Grid) -> Iterator[Reached]:
-        """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs."""
-        times = np.empty(0) if grid.times is None else _within(grid.times, t, _just_after(t))
+    def _at_once(self, start: InitialValues, before: float, t: float, grid: Grid) -> Iterator[Reached]:
+        """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs.
+
+        Those up to `before` have been given.
+        """
+        times = np.empty(0) if grid.times is None else _within(grid.times, before, _just_after(t))
         if len(times):
             state = self.equations.coordinates.state(start.q, start.u)
             yield Reached(times, np.tile(state, (len(times), 1)), t, state)
