@@ -139,7 +139,7 @@ class Equations:
         columns = [
             np.concatenate([lines[k] for part in parts.values() for lines in part] or [np.empty(0)]) for k in range(4)
         ]
-        self._r_row, self._r_source, self._r_operand = (np.ascontiguousarray(c, dtype=np.int64) for c in columns[:3])
+        self._r_row, self._r_source, self._r_operand = (np.ascontiguousarray(c, dtype=np.int32) for c in columns[:3])
         self._r_factor = np.ascontiguousarray(columns[3], dtype=float)
 
     def _compile_matrix(self) -> None:
@@ -158,7 +158,7 @@ class Equations:
         order = np.argsort(place, kind="stable")
         new = np.diff(place[order], prepend=-1) > 0
         self.pattern = (place[order][new] % self.n, place[order][new] // self.n)
-        self._slot, self._source = np.empty(len(place), dtype=np.int64), source.astype(np.int64)
+        self._slot, self._source = np.empty(len(place), dtype=np.int32), source.astype(np.int32)
         self._slot[order] = np.cumsum(new) - 1
         self._constant, self._cj = constant.astype(float), cj.astype(float)
 
@@ -203,7 +203,7 @@ class Equations:
         slots : ndarray of int, optional
             Where each slot of the pattern stands in the solver's matrix; its own order by default.
         """
-        slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int64)
+        slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int32)
         n_slots = len(self.pattern[0]) if slots is None else int(slots.max()) + 1
         sets = list(TERM_SETS)
         values = {

@@ -32,8 +32,8 @@ CALL = ("kernel", "count", "index", "number", "place")
 
 EQUATIONS: Layout = {
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
-    "r_row": INTS, "r_source": INTS, "r_operand": INTS, "r_factor": FLOATS,
-    "n_slots": INT, "n_entries": INT, "m_slot": INTS, "m_source": INTS, "m_constant": FLOATS, "m_cj": FLOATS,
+    "r_row": INDICES, "r_source": INDICES, "r_operand": INDICES, "r_factor": FLOATS,
+    "n_slots": INT, "n_entries": INT, "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
     "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
