@@ -25,6 +25,7 @@ from stiffmbs.solve.sundials.fixed_order import FixedOrder
 from stiffmbs.solve.sundials.ida import NativeIda
 from stiffmbs.solve.sundials.matrices import Banded, Dense, Sparse
 from stiffmbs.solve.sundials.ordering import narrowed
+from stiffmbs.solve.sundials.paired_columns import PairedColumns
 from stiffmbs.solve.sundials.status import Status
 
 
@@ -118,11 +119,11 @@ def test_the_steps_are_those_of_scikit_sundae(name, end, request):
     np.testing.assert_allclose(rows[-1], at_end, rtol=1e-12, atol=1e-12)  # multipliers too
 
 
-def in_fixed_order(equations):
-    return FixedOrder(equations.n, *equations.pattern, elimination_order(equations))
+def in_fixed_order(equations, kind=FixedOrder):
+    return kind(equations.n, *equations.pattern, elimination_order(equations))
 
 
-@pytest.mark.parametrize("kind", ["banded", "SuperLU_MT", "fixed order"])
+@pytest.mark.parametrize("kind", ["banded", "SuperLU_MT", "fixed order", "fixed order, columns in pairs"])
 def test_all_matrices_give_the_same_motion(chain, kind):
     equations = chain.equations
     n, pattern = equations.n, equations.pattern
@@ -130,6 +131,7 @@ def test_all_matrices_give_the_same_motion(chain, kind):
         "banded": Banded(n, *pattern),
         "SuperLU_MT": Sparse(n, *pattern),
         "fixed order": in_fixed_order(equations),
+        "fixed order, columns in pairs": in_fixed_order(equations, PairedColumns),
     }
     assert matrix[kind].sentence().startswith(kind)
     times = np.array([0.2, 0.4])
@@ -171,9 +173,10 @@ def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
     assert isinstance(chosen(chain.equations)[1], FixedOrder)
 
 
-def test_pivots_are_sought_anew_where_they_have_become_small(chain):
+@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns])
+def test_pivots_are_sought_anew_where_they_have_become_small(chain, kind):
     """The order found far from the start, where the matrix is another one, serves all the same."""
-    ida = chain.native(matrix=in_fixed_order(chain.equations))
+    ida = chain.native(matrix=in_fixed_order(chain.equations, kind))
     for scale in (1e-6, 1e6):  # cj is the inverse of the step: from 1e6 to 1 and back
         ida.begin(0.0, chain.y, chain.yp, first_step=1e-6 * scale)
         _, status = ida.advance(np.array([0.1]), 0.1, np.empty((1, chain.equations.n)))

@@ -56,6 +56,13 @@ FIXED_ORDER: Layout = {
 solver of SUNDIALS whose place it takes: number of unknowns, pivots, last flag.  Its long lists are of 32-bit numbers: a long
 chain's solutions wait for memory."""
 
+PAIRED_COLUMNS: Layout = {
+    "n": INT, "pivots": INT, "last_flag": INT, "array_of": INT, "factors": INTS, "found": INTS, "slot": INDICES, "weight": FLOATS,
+    "lu": FLOATS, "row": INDICES, "column": INDICES, "place": INDICES, "update_start": INTS, "update": INDICES,
+    "item_start": INTS, "item_end": INTS, "side": INTS, "mark": INTS, "x": FLOATS,
+}  # fmt: skip
+"""The same with its columns in pairs (`stiffmbs.solve.native.paired_columns`)."""
+
 MECHANICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INTS,

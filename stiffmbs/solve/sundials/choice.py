@@ -11,6 +11,7 @@ from .libraries import Unavailable, ida_libraries
 from .matrices import Banded, Dense, Matrix, Sparse
 from .operations import replaceable
 from .ordering import narrowed
+from .paired_columns import PairedColumns
 
 SOLUTIONS = 8
 """Solutions with one factorisation (measured: 7 to 20)."""
@@ -21,6 +22,8 @@ BANDED = (0.15, 0.5, 0.45)
 FIXED = (1.2, 1.5, 0.5, 1.0)
 """ns for an update along a fixed order, for an entry of the factors that is cleared and scaled, for one in a solution, and for
 an unknown in a solution.  All figures are measured on the examples, 10 to 1000 unknowns."""
+PAIRED = (0.25, 3.0, 0.75, 1.0)
+"""The same where columns are taken in pairs: their loops cost as much as some ten updates."""
 SUPERLU = (0.5, 0.75, 600.0, 8.0)
 """The same of SuperLU_MT, which works in dense blocks where there are any, and starts anew with every factorisation."""
 WORTH_A_BAND = 50
@@ -42,9 +45,9 @@ def banded_cost(n: int, lower: int, upper: int) -> float:
     return n * (update * lower * (lower + upper) + (entry + SOLUTIONS * solution) * height)
 
 
-def fixed_cost(n: int, order: EliminationOrder) -> float:
-    """The same for elimination along a fixed order."""
-    update, entry, solution, unknown = FIXED
+def fixed_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float, float]) -> float:
+    """The same for elimination along a fixed order, entry by entry or by pairs of columns."""
+    update, entry, solution, unknown = costs
     entries, updates = FILLED * order.fill, UPDATED * order.updates
     return update * updates + (entry + SOLUTIONS * solution) * entries + SOLUTIONS * unknown * n
 
@@ -73,7 +76,8 @@ def chosen(equations: Equations) -> tuple[Equations, Matrix]:
     order = elimination_order(equations)
     offers: list[tuple[float, Equations, Matrix]] = [(dense_cost(n), equations, Dense(n, *pattern))]
     if replaceable(ida_libraries()):
-        offers.append((fixed_cost(n, order), equations, FixedOrder(n, *pattern, order)))
+        offers.append((fixed_cost(n, order, FIXED), equations, FixedOrder(n, *pattern, order)))
+        offers.append((fixed_cost(n, order, PAIRED), equations, PairedColumns(n, *pattern, order)))
     offers.append((superlu_cost(n, order), equations, Sparse(n, *pattern)))
     half = int(np.bincount(pattern[0]).max()) // 2
     if n >= WORTH_A_BAND and banded_cost(n, half, half) < min(cost for cost, *_ in offers):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ...compile.layout import FACTORS, FIXED_ORDER, packed
+from ...compile.layout import FACTORS, FIXED_ORDER, Layout, packed
 from ...compile.routines import Routine
 from ..elimination_order import EliminationOrder
 from .libraries import Libraries, ida_libraries
@@ -33,6 +33,10 @@ class FixedOrder:
         Of the columns, and how much is filled.
     """
 
+    setup: ClassVar[Routine] = SETUP
+    solve: ClassVar[Routine] = SOLVE
+    layout: ClassVar[Layout] = FIXED_ORDER
+
     n: int
     rows: np.ndarray
     columns: np.ndarray
@@ -51,8 +55,8 @@ class FixedOrder:
         solver = session.keep(s.SUNLinSol_Band(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
         factors = self._factors()
         solver_arrays = self._solver(s.address("N_VGetArrayPointer"), packed(FACTORS, factors))
-        content = packed(FIXED_ORDER, solver_arrays)
-        functions = {"SUNLinSolSetup_Band": SETUP.address(), "SUNLinSolSolve_Band": SOLVE.address()}
+        content = packed(self.layout, solver_arrays)
+        functions = {"SUNLinSolSetup_Band": self.setup.address(), "SUNLinSolSolve_Band": self.solve.address()}
         take_place(session, solver, self.n, functions, content)
         return Assembled(
             matrix, solver, factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64),

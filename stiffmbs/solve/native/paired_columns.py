@@ -1,0 +1,244 @@
+"""Sparse LU along a fixed order of pivots, by columns that are taken in pairs: a linear solver for IDA.
+
+Neighbouring columns have most of their rows in common where bodies have many unknowns that all depend on each other,
+as in space.  An item is a row with its entries in both columns, side by side; where there is one entry, a zero stands
+for the other.  A column of the matrix is reduced by all pairs before it, `x[row] -= lu[item] * x[k] + lu[item + 1] *
+x[k + 1]`, for which half as much is looked up as for single entries, and what is written anew stays near the processor.
+The short inner loops are worth that from some ten rows on; columns that are shorter are better factored by
+`stiffmbs.solve.native.fixed_order`.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.layout import PAIRED_COLUMNS
+from stiffmbs.compile.native.access import compiled, factors_view, floats, ints, shifted, view_of
+from stiffmbs.compile.native.factors import DONE, equilibrate, factor, scale
+from stiffmbs.solve.native.calls import call_address, int32
+from stiffmbs.solve.native.fixed_order import CONTENT, LARGEST, OK, RECOVERABLE
+
+READY, N_LOWER, N_ITEMS = range(3)
+FIRST, SECOND = 0, 1
+"""Which side of its items a column has; one alone has the first."""
+WORTH_A_PAIR = 0.8
+"""Items of a pair of columns, in parts of its entries, above which they are better taken one by one."""
+
+paired_view = view_of("PairedColumns", PAIRED_COLUMNS)
+
+
+@compiled
+def _sorted(f):
+    """Put the rows above each pivot in the order of their pivots, in which they can be eliminated."""
+    for j in range(f.n):
+        for p in range(f.u_start[j] + 1, f.u_start[j + 1] - 1):
+            row = f.u_row[p]
+            at = p
+            while at > f.u_start[j] and f.u_row[at - 1] > row:
+                f.u_row[at] = f.u_row[at - 1]
+                at -= 1
+            f.u_row[at] = row
+
+
+@compiled
+def _numbered(s, rows, begin, end, column, item):
+    """Items of a column for those of its rows that have none; the number of the next one."""
+    for p in range(begin, end):
+        row = rows[p]
+        if s.mark[row] < 0:
+            s.mark[row] = item
+            s.row[item], s.column[item] = row, column
+            item += 1
+    return item
+
+
+@compiled
+def _items(s, rows, begin, end, next_begin, next_end, column, between, item):
+    """Items of two columns, whose rows are given, or of one; the number of the next, or -1 where few rows are common.
+
+    The first of the items is that of the row between both triangles: others are computed from what it changes.
+    """
+    for p in range(begin, end):
+        s.mark[rows[p]] = -1
+    for p in range(next_begin, next_end):
+        s.mark[rows[p]] = -1
+    after = item
+    for p in range(begin, end):
+        if rows[p] == between:
+            after = _numbered(s, rows, p, p + 1, column, after)
+    for p in range(next_begin, next_end):
+        if rows[p] == between:
+            after = _numbered(s, rows, p, p + 1, column, after)
+    after = _numbered(s, rows, begin, end, column, after)
+    after = _numbered(s, rows, next_begin, next_end, column, after)
+    entries = end - begin + next_end - next_begin
+    return -1 if next_begin < next_end and after - item > WORTH_A_PAIR * entries else after
+
+
+@compiled
+def _placed(s, rows, begin, end, first_place, side):
+    """Note where in the factors a column's entries stand: on the first or second side of their items."""
+    for p in range(begin, end):
+        s.place[first_place + p - begin] = 2 * s.mark[rows[p]] + side
+
+
+@compiled
+def _lower_items(s, f):
+    """Items of the columns below the pivots, from the first pair to the last; their number."""
+    n = f.n
+    item = 0
+    j = 0
+    while j < n:
+        begin, end = f.l_start[j] + 1, f.l_start[j + 1]
+        next_end = f.l_start[j + 2] if j + 1 < n else end
+        after = _items(s, f.l_row, begin, end, min(end + 1, next_end), next_end, j, j + 1, item)
+        width = 2 if after >= 0 and j + 1 < n else 1
+        if after < 0:
+            after = _items(s, f.l_row, begin, end, end, end, j, j + 1, item)
+        for side in range(width):
+            column = j + side
+            s.item_start[column], s.item_end[column] = item, after
+            s.side[column] = SECOND if side else FIRST
+            _placed(s, f.l_row, f.l_start[column] + 1, f.l_start[column + 1], f.l_start[column] - column, side)
+        item = after
+        j += width
+    return item
+
+
+@compiled
+def _upper_items(s, f, item):
+    """Items of the columns above the pivots, from the last pair to the first, behind those below; the number of all."""
+    n_lower = f.l_start[f.n] - f.n
+    j = f.n - 1
+    while j >= 0:
+        begin, end = f.u_start[j], f.u_start[j + 1] - 1
+        first = j - 1 if j > 0 else 0
+        after = -1
+        if j > 0:
+            after = _items(s, f.u_row, f.u_start[first], begin - 1, begin, end, first, first, item)
+        width = 2 if after >= 0 else 1
+        if after < 0:
+            after = _items(s, f.u_row, begin, end, end, end, j, j, item)
+        for side in range(width):
+            column = j + 1 - width + side
+            at = f.u_start[column]
+            _placed(s, f.u_row, at, f.u_start[column + 1] - 1, n_lower + at - column, side)
+        item = after
+        j -= width
+    return item
+
+
+@compiled
+def _listed(s, f):
+    """Write down what the elimination along the pivots in `f` does."""
+    _sorted(f)
+    s.found[N_LOWER] = _lower_items(s, f)
+    s.found[N_ITEMS] = _upper_items(s, f, s.found[N_LOWER])
+    for p in range(2 * s.found[N_ITEMS]):
+        s.lu[p] = 0.0
+    count = 0
+    for j in range(f.n):
+        s.update_start[j] = count
+        last = -1
+        for p in range(f.u_start[j], f.u_start[j + 1] - 1):
+            k = f.u_row[p] - (s.side[f.u_row[p]] == SECOND)
+            if k != last and s.item_end[k] > s.item_start[k]:
+                s.update[count] = k
+                count += 1
+            last = k
+        column = f.order[j]
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            s.slot[p] = f.pivot[f.a_row[p]]
+            s.weight[p] = f.scale[f.a_row[p]] * f.scale[column]
+    s.update_start[f.n] = count
+
+
+@compiled
+def _reduced(s, x, j):
+    """Take what the columns before it eliminate out of a column x of the matrix."""
+    lu = s.lu
+    for r in range(s.update_start[j], s.update_start[j + 1]):
+        k = s.update[r]
+        item = s.item_start[k]
+        first = x[k]
+        second = x[k + 1] if k + 1 < j else 0.0
+        x[s.row[item]] -= lu[2 * item] * first + lu[2 * item + 1] * second
+        second = x[k + 1] if k + 1 < j else 0.0  # which the first item may have changed
+        for below in range(item + 1, s.item_end[k]):
+            x[s.row[below]] -= lu[2 * below] * first + lu[2 * below + 1] * second
+
+
+@compiled
+def _eliminated(s, f):
+    """Factors of the matrix in `f` by the list; False where a pivot is too small."""
+    n = f.n
+    lu, x = s.lu, f.work
+    above = f.l_start[n] - n
+    diagonal = 2 * s.found[N_ITEMS]
+    largest = 0.0
+    for j in range(n):
+        column = f.order[j]
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            x[s.slot[p]] += s.weight[p] * f.a[p]
+        _reduced(s, x, j)
+        inverse = 1.0 / x[j]
+        lu[diagonal + j] = inverse
+        x[j] = 0.0
+        for p in range(f.u_start[j], f.u_start[j + 1] - 1):
+            row = f.u_row[p]
+            lu[s.place[above + p - j]] = x[row] * lu[diagonal + row]
+            x[row] = 0.0
+        for p in range(f.l_start[j] + 1, f.l_start[j + 1]):
+            row = f.l_row[p]
+            value = x[row] * inverse
+            lu[s.place[p - j - 1]] = value
+            largest = max(largest, abs(value))
+            x[row] = 0.0
+        if not (largest < LARGEST and abs(inverse) < float("inf")):
+            return False
+    return True
+
+
+def setup(solver, matrix):
+    """SUNLinSolSetup: factors along the known order, else along a new one."""
+    s = paired_view(ints(solver[CONTENT]))
+    f = factors_view(s.factors)
+    if s.found[READY] and _eliminated(s, f):
+        return int32(OK)
+    s.found[READY] = 0
+    for p in range(f.a_start[f.n]):
+        s.weight[p] = f.a[p]
+    equilibrate(f)
+    scale(f)
+    outcome = factor(f)
+    for p in range(f.a_start[f.n]):
+        f.a[p] = s.weight[p]
+    if outcome != DONE:
+        return int32(RECOVERABLE)
+    _listed(s, f)
+    s.found[READY] = 1
+    return int32(OK if _eliminated(s, f) else RECOVERABLE)
+
+
+def solve(solver, matrix, x, b, tolerance):
+    """SUNLinSolSolve: x = A^-1 b."""
+    s = paired_view(ints(solver[CONTENT]))
+    f = factors_view(s.factors)
+    into, of = floats(call_address(s.array_of, x)), floats(call_address(s.array_of, b))
+    n = f.n
+    lu = s.lu
+    y = s.x
+    n_lower = s.found[N_LOWER]
+    n_items = s.found[N_ITEMS]
+    for k in range(n):
+        y[f.pivot[k]] = f.scale[k] * of[k]
+    for item in range(n_lower):
+        k = s.column[item]
+        y[s.row[item]] -= lu[2 * item] * y[k] + lu[2 * item + 1] * y[k + 1]
+    inverse = shifted(lu, 2 * n_items)
+    for k in range(n):
+        y[k] *= inverse[k]
+    for item in range(n_lower, n_items):
+        k = s.column[item]
+        y[s.row[item]] -= lu[2 * item] * y[k] + lu[2 * item + 1] * y[k + 1]
+    for k in range(n):
+        into[f.order[k]] = f.scale[f.order[k]] * y[k]
+    return int32(OK)
