@@ -119,13 +119,20 @@ def test_welded_bodies_and_independent_mechanisms(solver, scheme):
 
 
 def test_differences_shrink_with_the_tolerance():
-    scene = read_scene(WELDED)
+    """As errors of order 5 do, by rtol^(5/6): 2000 times over four powers of ten.
+
+    `lonely` stands to one side of its spring's anchor.  Above it, it falls through: a spring of no length has a force that
+    jumps from one direction to the other, and how well steps meet the jump is luck (3 to 30 times a power of ten).
+    """
+    scene = read_scene(WELDED, [("bodies.lonely.position", "[1, 3]")])
     gaps = []
     for rtol in (1e-5, 1e-7, 1e-9):
         with_it, without = both(scene, solver="bdf", rtol=rtol)
-        gaps.append(max(np.max(np.abs(with_it[name] - without[name])) for name in ("bar.angle", "lonely.y", "cart.x")))
-    assert gaps[0] < 1e-3
-    assert gaps[2] < 0.1 * gaps[0]
+        gaps.append([np.max(np.abs(with_it[name] - without[name])) for name in ("bar.angle", "lonely.y", "cart.x")])
+    assert max(gaps[0]) < 1e-3
+    for looser, tighter in itertools.pairwise(np.array(gaps)):
+        assert np.all(tighter < looser / 10)
+    assert np.all(np.array(gaps[2]) < np.array(gaps[0]) / 500)
 
 
 def test_the_report_line_by_line():
