@@ -5,8 +5,11 @@ import pytest
 
 import stiffmbs
 from stiffmbs import spatial
+from stiffmbs.bench.error_bars import PROBLEMS
+from stiffmbs.bench.evenness import evenness
 from stiffmbs.describe.spatial.orientation import matrix
 from stiffmbs.solve import bdf
+from stiffmbs.solve.error_control import CHOSEN, ErrorControl
 
 from .spatial_closed_forms import matrices
 
@@ -196,3 +199,14 @@ def test_corners_in_time_and_state_are_met_in_space(engine, monkeypatch):
     motion, forces = off(found, exact)
     assert motion < 1e-6
     assert forces < 1e-5
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["heavy_top", "governor"])
+def test_errors_fall_evenly_with_the_tolerance(name):
+    """By rtol^(5/6), as order 5 has it, also in even motions, whose steps hardly change."""
+    found, idas = (evenness(PROBLEMS[name], control) for control in (CHOSEN[3], ErrorControl(margin=0.15)))
+    assert found.slope == pytest.approx(5 / 6, abs=0.1)
+    assert found.scatter < 1.5 < idas.scatter
+    assert found.risen <= 4 < idas.risen
+    assert found.steps < idas.steps

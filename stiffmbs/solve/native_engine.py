@@ -48,7 +48,8 @@ class NativeEngine:
         reported = equations.independent
         self._ida = NativeIda(
             equations, state, matrix, *control.tolerances(equations, settings), max_step=settings.max_step,
-            suppressed=control.untested(equations), reported=reported, doubtful=control.doubtful,
+            suppressed=control.untested(equations), reported=reported, growth=control.growth,
+            doubtful=control.doubtful,
             renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,
         )  # fmt: skip
         self._width, self._equations, self._matrix = len(reported), equations, matrix

@@ -55,6 +55,8 @@ class NativeIda:
         Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
     renewal : float, optional
         Relative change of cj from which the iteration matrix is made anew (IDASetDeltaCjLSetup); 0.25 by default.
+    growth : float, optional
+        Factor by which a step must be allowed to grow before it is changed (IDASetEtaFixedStepBounds); 2 by default.
     doubtful : bool
         Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix
         (`stiffmbs.solve.native.iteration`); IDA's own test trusts it until cj changes.
@@ -94,6 +96,7 @@ class NativeIda:
         suppressed: np.ndarray | None = None,
         newton: float | None = None,
         renewal: float | None = None,
+        growth: float | None = None,
         doubtful: bool = False,
         reported: np.ndarray | None = None,
     ) -> None:
@@ -118,6 +121,8 @@ class NativeIda:
             ida.ask("IDASetNonlinConvCoef", newton)
         if renewal is not None:
             ida.ask("IDASetDeltaCjLSetup", renewal)
+        if growth is not None:
+            ida.ask("IDASetEtaFixedStepBounds", 1.0, growth)
         if doubtful:
             ida.doubt_rates()
 
