@@ -7,7 +7,6 @@ from . import adams_random
 from .adams_trials import moves_alike, near, played, table
 
 TIMES = np.linspace(0, 0.5, 26)
-MANY = range(1, 41)
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +20,8 @@ def play(tmp_path_factory):
     return both
 
 
-@pytest.mark.parametrize("seed", [6, *(pytest.param(seed, marks=pytest.mark.long) for seed in MANY)])
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(40))
 def test_motion_reactions_and_requests(play, seed):
     trial, solution, history = play(seed)
     for k in range(len(trial.bodies)):

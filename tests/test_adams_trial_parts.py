@@ -131,6 +131,7 @@ def test_parts_without_any_mass_between_them_are_refused(tmp_path):
         stiffmbs.load_scene(path)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("swapped", [False, True])
 def test_joints_state_how_a_chain_starts(tmp_path, swapped):
     """A turning column, a slide on it and a sleeve on that: IC, ICTRAN and ICROT, with I and J either way.

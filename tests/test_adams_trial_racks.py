@@ -60,10 +60,11 @@ def teeth(pinion, contact):
     return equation
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "drawn, backward, swapped",
     [
-        pytest.param(RADIUS, False, False, marks=pytest.mark.long),
+        (RADIUS, False, False),
         (RADIUS, True, True),
         (0.0, False, False),
         (0.0, True, False),
@@ -160,6 +161,7 @@ MARKER/32, PART=3, QP=0,-0.15,0.2, REULER=90D,90D,-90D
     np.testing.assert_allclose(one.channels["JOINT_3.ty"], 0.2 * one.channels["JOINT_3.fx"], atol=1e-9)
 
 
+@pytest.mark.long
 def test_a_driven_rack_keeps_step_over_many_turns(tmp_path):
     """Displacements are tied, not rates: nothing is lost on the way.  The pinion's bearing feels the teeth."""
     text = """ACCGRAV/IGRAV=-9.80665

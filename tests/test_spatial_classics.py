@@ -20,6 +20,7 @@ def forces(solution, element, names="fx fy fz"):
     return np.stack([solution[f"{element}.{name}"] for name in names.split()])
 
 
+@pytest.mark.long
 def test_a_ball_on_a_turntable_goes_round_at_two_sevenths_of_its_rate():
     """Without slipping a solid ball moves in a circle, anywhere on the table: v' = 2/7 Omega x v (Earnshaw, 1844)."""
     radius, rate = 0.1, 2.0
@@ -105,6 +106,7 @@ def test_a_stewart_platform_heaves_and_twists_as_its_legs_say(solver):
         np.testing.assert_allclose(np.cross(arm + np.outer(height + lift, [0, 0, 1]) - foot, push), 0, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_differential_of_bevel_gears_shares_a_torque():
     """Both shafts turn by the carrier's rate on the average; two equations of motion in their rates."""
     solution = stiffmbs.run(
@@ -204,6 +206,7 @@ def test_bennetts_linkage_keeps_its_energy():
     assert solution["constraint.position"].max() < 1e-9
 
 
+@pytest.mark.long
 def test_andrews_mechanism_with_bodies_of_space(examples):
     """IFToMM A03: as in the plane, with nine equations too many, and forces across the hinges that stay the same."""
     plane = yaml.safe_load((examples / "andrews.yaml").read_text())
