@@ -12,14 +12,16 @@ from ...compile.routines import Routine
 from .fixed_order import ROOM_FOR_PIVOTING, FixedOrder
 
 _MODULE = "stiffmbs.solve.native.paired_columns"
+SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
+SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
 
 
 @dataclass(frozen=True)
 class PairedColumns(FixedOrder):
     """Sparse LU whose pivots are sought once, for long columns (`stiffmbs.solve.native.paired_columns`)."""
 
-    setup: ClassVar[Routine] = Routine(_MODULE, "setup", "int32(int64*, int64)")
-    solve: ClassVar[Routine] = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
+    setup: ClassVar[Routine] = SETUP
+    solve: ClassVar[Routine] = SOLVE
     layout: ClassVar[Layout] = PAIRED_COLUMNS
 
     def sentence(self) -> str:

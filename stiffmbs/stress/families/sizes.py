@@ -62,7 +62,8 @@ def chain(count: int) -> Model:
 
 def _chain_energy(solution: Solution) -> float:
     """Change of the energy in parts of the greatest kinetic energy."""
-    return solution.energy_drift() / float(np.max(solution["energy.kinetic"]))
+    kinetic = float(np.max(solution["energy.kinetic"]))
+    return solution.energy_drift() / kinetic if kinetic else np.inf
 
 
 CASES = (
