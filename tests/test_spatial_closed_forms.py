@@ -140,7 +140,7 @@ def test_governor_keeps_its_energy_without_damping_and_loses_it_with():
 def test_governor_in_balance_does_not_move():
     """The heights of balance follow from the rates; then the whole motion stays there."""
     governor, momentum = Governor(), 40.0
-    rest = fsolve(lambda x: governor.rates(np.array([0, *x, 0, 0]), momentum)[3:], [0.5, 0.5], xtol=1e-14)
+    rest = fsolve(lambda x: governor.rates(np.array([0, *x, 0, 0]), momentum)[3:], [0.5, 0.5], xtol=1e-12)
     t = np.linspace(0, 1, 3)
     _, angle, height, *_ = governor.motion(t, *rest, momentum / governor.turning(rest[0]))
     np.testing.assert_allclose([angle, height], np.tile(rest, (3, 1)).T, atol=1e-9)

@@ -30,6 +30,8 @@ from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 MOST_JUMPS = 3
 """Jumps of velocities that are told one by one."""
+INDISTINCT = 4 * float(np.finfo(float).eps)
+"""Part of a time within which IDA takes another one for the same."""
 WORTH_TELLING = 1e-2
 """Change of a velocity at a corner, in parts of the largest, that is told."""
 
@@ -85,7 +87,7 @@ def integrated(
 
 def _just_after(t: float) -> float:
     """The last instant that IDA cannot tell from t: it refuses to start towards one that is nearer than two roundings."""
-    return t + 4 * np.finfo(float).eps * abs(t)
+    return t + INDISTINCT * abs(t)
 
 
 def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:
