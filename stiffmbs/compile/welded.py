@@ -84,6 +84,8 @@ def weld(model: ModelData, held: Container[str]) -> Welded | None:
     Welded or None
         None where there is nothing to merge.
     """
+    if not any(joint.kind == Fixed.kind for joint in model.joints.values()):
+        return None
     joints = [name for name in _candidates(model) if name in held]
     groups = _Groups(model)
     used = [name for name in joints if groups.join(name)]
