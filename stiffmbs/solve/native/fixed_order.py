@@ -98,6 +98,19 @@ def _eliminated(s, f):
     return True
 
 
+@compiled
+def factored_anew(f, kept):
+    """Seek pivots for the matrix in `f`, which is scaled for that and kept meanwhile."""
+    for p in range(f.a_start[f.n]):
+        kept[p] = f.a[p]
+    equilibrate(f)
+    scale(f)
+    outcome = factor(f)
+    for p in range(f.a_start[f.n]):
+        f.a[p] = kept[p]
+    return outcome
+
+
 def setup(solver, matrix):
     """SUNLinSolSetup: factors along the known order, else along a new one."""
     s = fixed_order_view(ints(solver[CONTENT]))
@@ -105,14 +118,7 @@ def setup(solver, matrix):
     if s.found[READY] and _eliminated(s, f):
         return int32(OK)
     s.found[READY] = 0
-    for p in range(f.a_start[f.n]):
-        s.weight[p] = f.a[p]
-    equilibrate(f)
-    scale(f)
-    outcome = factor(f)
-    for p in range(f.a_start[f.n]):
-        f.a[p] = s.weight[p]
-    if outcome != DONE:
+    if factored_anew(f, s.weight) != DONE:
         return int32(RECOVERABLE)
     if not _listed(s, f):
         return int32(FAILED)

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 from stiffmbs.compile.layout import PAIRED_COLUMNS
 from stiffmbs.compile.native.access import compiled, factors_view, floats, ints, shifted, view_of
-from stiffmbs.compile.native.factors import DONE, equilibrate, factor, scale
+from stiffmbs.compile.native.factors import DONE
 from stiffmbs.solve.native.calls import call_address, int32
-from stiffmbs.solve.native.fixed_order import CONTENT, LARGEST, OK, RECOVERABLE
+from stiffmbs.solve.native.fixed_order import CONTENT, LARGEST, OK, RECOVERABLE, factored_anew
 
 READY, N_LOWER, N_ITEMS = range(3)
 FIRST, SECOND = 0, 1
@@ -204,14 +204,7 @@ def setup(solver, matrix):
     if s.found[READY] and _eliminated(s, f):
         return int32(OK)
     s.found[READY] = 0
-    for p in range(f.a_start[f.n]):
-        s.weight[p] = f.a[p]
-    equilibrate(f)
-    scale(f)
-    outcome = factor(f)
-    for p in range(f.a_start[f.n]):
-        f.a[p] = s.weight[p]
-    if outcome != DONE:
+    if factored_anew(f, s.weight) != DONE:
         return int32(RECOVERABLE)
     _listed(s, f)
     s.found[READY] = 1
