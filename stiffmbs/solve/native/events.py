@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled
+from stiffmbs.compile.native.access import compiled, shifted
 from stiffmbs.compile.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state
+from stiffmbs.solve.native.within_step import (
+    DIFFERENCE,
+    first_event,
+    keep_row,
+    noted,
+    noted_rates,
+    suspicious,
+    watch_view,
+)
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: in parts of the step, and of the time."""
@@ -30,9 +39,36 @@ def _changed(x, values):
 
 
 @compiled
-def note_sides(x, s, y, t):
-    """Remember the values of all switches at the start of a step."""
-    copied(x.sides, _values(x, s, y, t), x.n_switches)
+def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
+    """Values and rates of all event functions at a state; rates are taken over a time `ahead`, which may be negative."""
+    w = watch_view(x.watch)
+    noted(value, _values(x, s, y, t), w.n)
+    for i in range(x.n):
+        x.difference[i] = y[i] + ahead * rates[i]
+    noted_rates(rate, value, _values(x, s, x.difference, t + ahead), ahead, w.n)
+
+
+@compiled
+def _event_within(x, c, s, m):
+    """The time from the step's start to an event that begins and ends within it; 0 for none, or a negative status."""
+    w = watch_view(x.watch)
+    h = x.span[0]
+    if not h > ROUNDINGS * abs(x.t[0]):
+        return 0.0
+    small = DIFFERENCE * h
+    _note_event_functions(x, s, x.y_before, x.k, x.t_before[0], small, w.value_before, w.rate_before)
+    _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t[0], -small, w.value_after, w.rate_after)
+    if not suspicious(w, h, x.y_before, x.y):
+        return 0.0
+    status = prepare(x, c, s, m)
+    if status < 0:
+        return float(status)
+    for node in range(w.n_nodes):
+        interpolated(x, c, w.node[node], x.y_stage)
+        load_state(s, x.y_stage)
+        keep_row(w, s, node)
+    event = first_event(w, s, x.t_before[0], h)
+    return event * h if ROUNDINGS * abs(x.t[0]) < event * h < h else 0.0
 
 
 @compiled
@@ -69,7 +105,11 @@ def end_at_event(x, c, s, m):
     steps that end where the guess says.  0 or a negative status.
     """
     if not _changed(x, _values(x, s, x.y, x.t[0])):
-        note_sides(x, s, x.y, x.t[0])
+        within = _event_within(x, c, s, m)
+        if within != 0.0:
+            x.at_event[0] = 1
+            return int(within) if within < 0.0 else _retaken(x, c, s, m, within)
+        copied(x.sides, _values(x, s, x.y, x.t[0]), x.n_switches)
         return 0
     high = x.span[0]
     behind = max(BEHIND * high, ROUNDINGS * abs(x.t[0]))

@@ -138,7 +138,7 @@ def advance(end, steps, held, own_steps, explicit):
         if x.at_event[0]:
             return AT_EVENT
         status = _step(x, c, s, m, end)
-        if status >= 0 and x.n_switches:
+        if status >= 0 and x.n_events:
             status = end_at_event(x, c, s, m)
         if status < 0:
             return status
