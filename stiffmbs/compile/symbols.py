@@ -26,6 +26,10 @@ NARROW: dict[type[sp.Basic], str] = {
 """Functions whose features are narrow where their argument is steep, and the zones that they have."""
 
 
+STEEP, LEAST_SQUARE = 10, 1e-200
+"""Whole powers from this one on are taken for exp(n log |x|), as that of a sine is narrow; the square of the least |x|."""
+
+
 @dataclass(frozen=True)
 class Law:
     """A table or function with zones (`stiffmbs.compile.law_zones`) that a formula calls with something of the state.
@@ -80,8 +84,12 @@ class Symbols:
         for part in sp.preorder_traversal(expression):
             if type(part) in NARROW:
                 self.note_law(part.args[0], NARROW[type(part)])
-            elif isinstance(part, sp.Pow) and part.exp.is_number and part.exp.is_negative:
+            elif isinstance(part, sp.tan):
+                self.note_law(sp.cos(part.args[0]), "reciprocal")
+            elif isinstance(part, sp.Pow) and part.exp.is_Number and part.exp < 0:
                 self.note_law(part.base, "reciprocal")
+            elif isinstance(part, sp.Pow) and part.exp.is_Number and part.exp >= STEEP:
+                self.note_law(part.exp * sp.log(part.base**2 + sp.Float(LEAST_SQUARE)) / 2, "exp")
 
 
 def symbols_of(kind: Kind) -> Symbols:

@@ -100,7 +100,7 @@ class Integration:
         return self._arrays["y"][self._n_q :]
 
     def begin(self, start: InitialValues) -> int:
-        """Go on from consistent values at the time reached; the first switch that has changed since the last step, or -1."""
+        """Go on from consistent values at the time reached; the first switch of the event that was met there, or -1."""
         self.q[:], self.u[:] = start.q, start.u
         rates = self._mechanics.position_rates(start.q, start.u)
         self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
@@ -109,10 +109,10 @@ class Integration:
         state, sides = self._mechanics.state, self._arrays["sides"]
         state.q[:], state.u[:] = start.q, start.u
         state.evaluate("switch", self.t)
-        found = state.values["switch"][: len(sides)]
-        changed = np.flatnonzero(np.sign(found) != np.sign(sides))
-        sides[:] = found
-        return int(changed[0]) if len(changed) else -1
+        sides[:] = state.values["switch"][: len(sides)]
+        met = np.flatnonzero(self._watch.found[: len(sides)])
+        self._watch.begin()
+        return int(met[0]) if len(met) else -1
 
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""

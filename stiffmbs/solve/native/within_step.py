@@ -24,8 +24,9 @@ MARGIN = 0.1
 """Part of the range of a function's bounds that is added to them on both sides."""
 LOOKED_AT = 0.4142135623730951
 """Place within a part of a step where a cubic is compared with the function: no round fraction of a period."""
-FITS = 0.02
-"""Part of the range of the bounds by which the function may differ from the cubic there."""
+FITS, ROUNDING = 0.02, 1e-9
+"""Part of the range of its values by which the function may differ from the cubic there, and what rounding takes of values and
+rates."""
 LEAST_PART, MOST_PARTS = 1e-5, 20_000
 DIFFERENCE = 1e-5
 """Part of a step over which rates are taken."""
@@ -180,8 +181,9 @@ def _described(w, part):
         start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
         if not _reaches(w, k, start, start_rate, end, end_rate):
             continue
-        low, high = _bound(start, start_rate, end, end_rate, -1), _bound(start, start_rate, end, end_rate, 1)
-        if not abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT)) <= FITS * (high - low):
+        seen = max(start, end, w.m[k]) - min(start, end, w.m[k])
+        rounding = ROUNDING * (abs(start) + abs(end) + abs(start_rate) + abs(end_rate))
+        if not abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT)) <= FITS * seen + rounding:
             return False
     return True
 
