@@ -42,9 +42,7 @@ def moved(scene: Scene, duration: float, points: int, step: float, change: float
     start = scene.start + change * np.cos(1.0 + np.arange(scene.start.size)).reshape(scene.start.shape)
     between = max(1, int(np.ceil(duration / (points - 1) / step)))
     h = duration / (points - 1) / between
-    found: np.ndarray = _integrated(
-        start, scene.mass, scene.inertia, scene.gravity, scene.forces, points, between, h
-    )
+    found: np.ndarray = _integrated(start, scene.mass, scene.inertia, scene.gravity, scene.forces, points, between, h)
     return found
 
 

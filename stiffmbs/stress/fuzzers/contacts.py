@@ -14,7 +14,9 @@ from ...solve.trajectory import Outcome as Ending
 from ..case import Outcome, Verdict, measured
 from ..tiny_steps import ARCH, CIRCLES, GATE, GAUSSIAN, LAW, LINE, LORENTZ, STOP, TENT, WINDOW, Scene, moved
 
-WHAT = "free bodies under contacts, stops and bumps of laws over distance, against Runge-Kutta steps of two microseconds"
+WHAT = (
+    "free bodies under contacts, stops and bumps of laws over distance, against Runge-Kutta steps of two microseconds"
+)
 STEP, CHANGE = 2e-6, 1e-9
 WITHIN, SENSITIVE, CHAOTIC = 1e-3, 1e3, 0.05
 """Error that is right beside the motion's size; tolerances by which a start may differ from it; sensitivity that says nothing."""
