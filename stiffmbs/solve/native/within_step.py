@@ -116,10 +116,10 @@ def _reaches(w, k, start, start_rate, end, end_rate):
 @compiled
 def _turned(w, q_before, q_after, most):
     """Whether a body has turned by more than an angle."""
+    turned = 0.0
     for k in range(w.n_angles):
-        if abs(q_after[w.angle[k]] - q_before[w.angle[k]]) > most:
-            return True
-    return False
+        turned = max(turned, abs(q_after[w.angle[k]] - q_before[w.angle[k]]))
+    return turned > most
 
 
 @compiled
