@@ -41,6 +41,10 @@ class KindRecord:
         For each term the (row, column) of its entries in the element's own block.
     sources : dict
         For each usual term set the source of its kernel; absent where the kind contributes nothing.
+    variation : list
+        For each entry of C_q its summands: factors, columns and whether bounded (`stiffmbs.compile.variation.Summand`).
+    removable : list of bool
+        For each equation with a position form whether it may be left out where its derivatives are constant.
     """
 
     n_equations: int
@@ -49,6 +53,8 @@ class KindRecord:
     n_counters: int
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
+    variation: list[list[tuple[list[list[int]], list[int], bool]]]
+    removable: list[bool]
 
 
 @cache
@@ -107,6 +113,8 @@ def _derived(kind: Kind) -> KindRecord:
     return KindRecord(
         derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
         len(derived.symbols.element.angles), patterns, sources,
+        [[(list(map(list, part.factors)), list(part.columns), part.bounded) for part in parts] for parts in derived.variation],
+        derived.removable,
     )  # fmt: skip
 
 

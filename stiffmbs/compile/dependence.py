@@ -1,0 +1,133 @@
+"""The entries of C_q of a whole system, and the coordinates that each depends on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from .group import Group
+from .kind import Kind
+from .record import record_of
+from .relations import SAME
+from .system import System
+from .terms import TERM_SETS
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """The entries of C_q that are not zero at every pose; those of the ground are left out.
+
+    Attributes
+    ----------
+    row, column : ndarrays of int, shape (n,)
+    value : ndarray, shape (n,)
+        At the pose looked at.
+    entry, on : ndarrays of int, shape (k,)
+        Pairs of an entry and a coordinate that it depends on; some more than once.
+    """
+
+    row: np.ndarray
+    column: np.ndarray
+    value: np.ndarray
+    entry: np.ndarray
+    on: np.ndarray
+
+    def varies(self, moves: np.ndarray) -> np.ndarray:
+        """Which entries change, where some coordinates move (shape (n_q,)) and the others stand still."""
+        changing = np.zeros(len(self.row), dtype=bool)
+        changing[self.entry[moves[self.on]]] = True
+        return changing
+
+
+def dependence(system: System, values: np.ndarray) -> Dependence:
+    """What the entries of C_q depend on, by the symbols of their kinds.
+
+    A summand of an entry is left out where its numbers are zero; where it is bounded, also where they are rounding beside
+    the largest entry of its row, as the arm of a pin is that is meant to be in the centre of mass.
+
+    Parameters
+    ----------
+    system : System
+    values : ndarray
+        Of the set ``position`` at a pose.
+    """
+    term = system.term("position", "C_q")
+    rounding = np.zeros(system.n_c)
+    np.fmax.at(rounding, term.row, SAME * np.abs(values[term.source]))
+    joints = [(g, group) for g, group in enumerate(system.groups) if group.record.variation]
+    found = [_of_group(system, g, group, values, rounding) for g, group in joints]
+    first = np.cumsum([0, *(len(part.row) for part in found)])
+    nothing = np.empty(0, dtype=np.int64)
+    row, column, value, on = (
+        np.concatenate([nothing, *(getattr(part, name) for part in found)]) for name in ("row", "column", "value", "on")
+    )
+    entry = np.concatenate([nothing, *(before + part.entry for before, part in zip(first[:-1], found, strict=True))])
+    return Dependence(row, column, value, entry, on)
+
+
+@dataclass(frozen=True)
+class _Summands:
+    """The summands of all entries of a kind, one after the other.
+
+    Attributes
+    ----------
+    products : list of list of list of int
+        Each product of numbers that occurs, by its factors.
+    product, entry : ndarrays of int, shape (n,)
+        Of each summand.
+    bounded : ndarray of bool, shape (n,)
+    of, on : ndarrays of int
+        Pairs of a summand and a coordinate of the element that it depends on.
+    """
+
+    products: list[list[list[int]]]
+    product: np.ndarray
+    entry: np.ndarray
+    bounded: np.ndarray
+    of: np.ndarray
+    on: np.ndarray
+
+
+@cache
+def _summands(kind: Kind) -> _Summands:
+    listed = [(k, *summand) for k, summands in enumerate(record_of(kind).variation) for summand in summands]
+    products: list[list[list[int]]] = []
+    for _, factors, _, _ in listed:
+        if factors not in products:
+            products.append(factors)
+    pairs = [(s, column) for s, (_, _, columns, _) in enumerate(listed) for column in columns]
+    of, on = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+    return _Summands(
+        products, np.array([products.index(factors) for _, factors, _, _ in listed], dtype=np.int64),
+        np.array([k for k, _, _, _ in listed], dtype=np.int64),
+        np.array([bounded for _, _, _, bounded in listed], dtype=bool), of, on,
+    )  # fmt: skip
+
+
+def _of_group(system: System, g: int, group: Group, values: np.ndarray, rounding: np.ndarray) -> Dependence:
+    width, of_kind = group.entries("C_q"), _summands(group.kind)
+    first = int(system.places["position"][g, 1 + TERM_SETS["position"].index("C_q")])
+    source, row, column = (part.reshape(group.count, width) for part in group.placed("C_q", first))
+    least = np.where(of_kind.bounded, rounding[row[:, of_kind.entry]], 0.0)
+    counts = (_sizes(group, of_kind)[:, of_kind.product] > least) & (column < system.n_q)[:, of_kind.entry]
+    present = np.zeros((group.count, width), dtype=bool)
+    element, summand = np.nonzero(counts)
+    present[element, of_kind.entry[summand]] = True
+    number = np.cumsum(present.ravel()).reshape(present.shape) - 1
+    element, pair = np.nonzero(counts[:, of_kind.of])
+    entry = number[element, of_kind.entry[of_kind.of[pair]]]
+    on = group.coordinates(of_kind.on)[element, pair]
+    inside = on < system.n_q
+    return Dependence(row[present], column[present], values[source[present]], entry[inside], on[inside])
+
+
+def _sizes(group: Group, of_kind: _Summands) -> np.ndarray:
+    """The magnitudes of the products of numbers, shape (elements, products); those of vectors are sums of their numbers'."""
+    first = group.index[:, 2 * group.kind.n_bodies]
+    sizes = np.ones((group.count, len(of_kind.products)))
+    for k, factors in enumerate(of_kind.products):
+        for numbers in factors:
+            sizes[:, k] *= np.abs(group.numbers[first[:, None] + np.array(numbers)]).sum(axis=1)
+    return sizes
