@@ -68,6 +68,8 @@ class Derived:
         For each entry of C_q what it depends on.
     removable : list of bool
         For each equation with a position form whether it may be left out where these are constant.
+    timed : list of bool
+        For each equation whether time is in it.
     """
 
     n_equations: int
@@ -76,6 +78,7 @@ class Derived:
     terms: dict[str, Sequence[Entry | LateEntry]]
     variation: list[list[Summand]] = field(default_factory=list)
     removable: list[bool] = field(default_factory=list)
+    timed: list[bool] = field(default_factory=list)
 
 
 def derive(kind: Kind) -> Derived:
@@ -136,6 +139,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     return Derived(
         V.rows, C.rows, symbols, entries, [variation.summands(entry.expression) for entry in entries["C_q"]],
         [variation.removable(C[r], [entry.column for entry in entries["C_q"] if entry.row == r]) for r in range(C.rows)],
+        [e.depends(equation, [e.t]) for equation in (*C, *rates)],
     )  # fmt: skip
 
 

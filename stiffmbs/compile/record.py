@@ -45,6 +45,8 @@ class KindRecord:
         For each entry of C_q its summands: factors, columns and whether bounded (`stiffmbs.compile.variation.Summand`).
     removable : list of bool
         For each equation with a position form whether it may be left out where its derivatives are constant.
+    timed : list of bool
+        For each equation whether time is in it.
     """
 
     n_equations: int
@@ -55,6 +57,7 @@ class KindRecord:
     sources: dict[str, str]
     variation: list[list[tuple[list[list[int]], list[int], bool]]]
     removable: list[bool]
+    timed: list[bool]
 
 
 @cache
@@ -114,7 +117,7 @@ def _derived(kind: Kind) -> KindRecord:
         derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
         len(derived.symbols.element.angles), patterns, sources,
         [[(list(map(list, part.factors)), list(part.columns), part.bounded) for part in parts] for parts in derived.variation],
-        derived.removable,
+        derived.removable, derived.timed,
     )  # fmt: skip
 
 

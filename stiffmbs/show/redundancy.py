@@ -5,13 +5,34 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..analyse.contradictions import Contradiction
+from ..analyse.departures import Departure
 from ..analyse.finding import LoopFinding
 from ..analyse.loop_equations import AGREES, CLOSED
 from ..analyse.overconstraint import Overconstraint, listed, overconstraints
 from ..analyse.redundancy import Redundancy
+from ..analyse.unproven import unproven
 from ..compile.system import System
 from ..errors import AssemblyError
 from .undetermined import channel_words, directed_words
+
+STOPS_WHERE = "stops where formulas or tables no longer hold the same"
+
+
+def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
+    """Whether equations are known to be redundant near the start alone."""
+    rows = {redundancy.system.equations[row] for row in unproven(redundancy)}
+    return not rows.isdisjoint(case.redundant)
+
+
+def departure_sentence(found: Departure, redundancy: Redundancy) -> str:
+    """That an equation left out does not hold."""
+    system, others = redundancy.system, unproven(redundancy)[found.row]
+    joint, equation = system.equations[found.row]
+    names = listed(list(dict.fromkeys(system.equations[row][0] for row in others)) or [joint])
+    return (
+        f"stopped at t = {found.t:.6g} s: joint '{joint}' (equation {equation}) was left out, as near the start it holds the same "
+        f"as {names}; it does not hold there, so that the joints lock or contradict each other"
+    )
 
 
 def refuse_contradictions(redundancy: Redundancy) -> None:
@@ -26,9 +47,17 @@ def refuse_contradictions(redundancy: Redundancy) -> None:
         raise AssemblyError(sentence)
 
 
-def overconstraint_sentences(case: Overconstraint) -> Iterator[str]:
-    """An overconstraint in sentences: reason, what gives way, what is not unique, remedy."""
-    yield f"{case.reason}; a run leaves out {_given_way(case)}, which does not change the motion"
+def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> Iterator[str]:
+    """An overconstraint in sentences: reason, what gives way, what is not unique, remedy.
+
+    Parameters
+    ----------
+    case : Overconstraint
+    near_start : bool
+        Whether it is known near the start alone, as formulas or tables take part.
+    """
+    what_then = f"and {STOPS_WHERE}" if near_start else "which does not change the motion"
+    yield f"{case.reason}; a run leaves out {_given_way(case)}, {what_then}"
     if case.undetermined:
         shared = ["what they carry together is unique"] if case.shared else []
         directed = "; ".join([*directed_words(case.undetermined), *shared])
@@ -104,7 +133,8 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:
     """What a run tells: the equations that it leaves out, and the channels without a unique value."""
     for case in overconstraints(redundancy):
-        yield f"{case.reason}; left out: {_given_way(case)}"
+        where = f"; the run {STOPS_WHERE}" if known_near_start(case, redundancy) else ""
+        yield f"{case.reason}; left out: {_given_way(case)}{where}"
     if redundancy.undetermined:
         words = channel_words(redundancy.undetermined)
         yield f"rigid bodies do not determine {words}: one of many possible values is shown"

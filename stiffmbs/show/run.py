@@ -153,7 +153,7 @@ def run(
 
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    trajectory = job.integrate(watch)
+    trajectory = _until_departure(job, job.integrate(watch))
     project = near_constraints(job.settings)
     rows, left_out = reported(job.mechanics, trajectory, project)
     if not len(rows.t):
@@ -168,6 +168,25 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
         history=trajectory.history, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
+    )  # fmt: skip
+
+
+def _until_departure(job: Job, trajectory: Trajectory) -> Trajectory:
+    """A trajectory up to where equations left out do not hold any more, if they are known to be redundant near the start alone."""
+    if not job.redundancy.redundant:
+        return trajectory
+    from ..analyse.departures import departure
+    from ..analyse.unproven import unproven
+    from .redundancy import departure_sentence
+
+    rows = tuple(row for row in unproven(job.redundancy) if job.mechanics.system.holonomic[row])
+    found = departure(job.mechanics, rows, trajectory) if rows else None
+    if found is None:
+        return trajectory
+    last = found.output + 1
+    return replace(
+        trajectory, t=trajectory.t[:last], q=trajectory.q[:last], u=trajectory.u[:last], outcome=Outcome.STOPPED,
+        message=departure_sentence(found, job.redundancy),
     )  # fmt: skip
 
 

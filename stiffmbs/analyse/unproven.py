@@ -1,0 +1,55 @@
+"""Redundant equations that are known to be so near the start alone, as formulas or tables are in them.
+
+That equations depend on each other is found by numbers at a few poses.  For joints of points, lines and angles this says
+the same of all poses, as their equations are analytic.  A formula may be flat over a wide range and not elsewhere.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.group import Group
+from ..compile.system import System
+from ..describe.element import Element
+from ..describe.formula_field import Formula
+from ..describe.table import Table
+from .redundancy import Redundancy
+
+
+def unproven(redundancy: Redundancy) -> dict[int, tuple[int, ...]]:
+    """The redundant equations that hold the same as others by formulas or tables: by their rows those of the others."""
+    if not redundancy.redundant:
+        return {}
+    by_functions = _by_functions(redundancy.system)
+    found = {}
+    for finding in redundancy.findings:
+        rows = finding.rank.equations.loop.rows
+        for part in finding.redundant:
+            row, others = int(rows[part.row]), rows[list(part.others)]
+            if by_functions[row] or by_functions[others].any():
+                found[row] = tuple(others.tolist())
+    return found
+
+
+def _by_functions(system: System) -> np.ndarray:
+    """The rows in which formulas or tables of the pose or of time stand, but for linear ones of the pose."""
+    rows = np.zeros(system.n_c, dtype=bool)
+    for group in system.groups:
+        if group.record.n_equations and _has_functions(group.elements[0]):  # those of one kind have the same formulas
+            last = group.first_row + group.count * group.record.n_equations
+            rows[group.first_row : last] = np.tile(_curved(group), group.count)
+    return rows
+
+
+def _has_functions(element: Element) -> bool:
+    return any(True for sort in (Formula, Table) for _ in element.parts(sort))
+
+
+def _curved(group: Group) -> np.ndarray:
+    """Which equations of one element change their derivatives by more than sines and cosines, or know time or corners."""
+    record = group.record
+    curved = np.ones(record.n_equations, dtype=bool)
+    curved[: record.n_holonomic] = ~np.array(record.removable, dtype=bool)
+    for (row, _), summands in zip(record.patterns["C_q"], record.variation, strict=True):
+        curved[row] |= any(columns and not bounded for _, columns, bounded in summands)
+    return curved
