@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.dependence import curved
 from ..compile.group import Group
 from ..compile.system import System
 from ..describe.element import Element
@@ -37,7 +38,7 @@ def _by_functions(system: System) -> np.ndarray:
     for group in system.groups:
         if group.record.n_equations and _has_functions(group.elements[0]):  # those of one kind have the same formulas
             last = group.first_row + group.count * group.record.n_equations
-            rows[group.first_row : last] = np.tile(_curved(group), group.count)
+            rows[group.first_row : last] = (curved(system, group) | _timed_or_cornered(group)).ravel()
     return rows
 
 
@@ -45,11 +46,8 @@ def _has_functions(element: Element) -> bool:
     return any(True for sort in (Formula, Table) for _ in element.parts(sort))
 
 
-def _curved(group: Group) -> np.ndarray:
-    """Which equations of one element change their derivatives by more than sines and cosines, or know time or corners."""
-    record = group.record
-    curved = np.ones(record.n_equations, dtype=bool)
-    curved[: record.n_holonomic] = ~np.array(record.removable, dtype=bool)
-    for (row, _), summands in zip(record.patterns["C_q"], record.variation, strict=True):
-        curved[row] |= any(columns and not bounded for _, columns, bounded in summands)
-    return curved
+def _timed_or_cornered(group: Group) -> np.ndarray:
+    """Which equations of one element know time or corners, or velocities alone."""
+    found = np.ones(group.record.n_equations, dtype=bool)
+    found[: group.record.n_holonomic] = ~np.array(group.record.removable, dtype=bool)
+    return found

@@ -67,6 +67,19 @@ def dependence(system: System, values: np.ndarray) -> Dependence:
     return Dependence(row, column, value, entry, on)
 
 
+def curved(system: System, group: Group) -> np.ndarray:
+    """Which equations have derivatives that change by more than sines and cosines, shape (elements, equations)."""
+    of_kind = _summands(group.kind)
+    row, column = np.array(group.record.patterns["C_q"], dtype=np.int64).reshape(-1, 2).T
+    entry = of_kind.entry[of_kind.of]
+    changes = (_sizes(group, of_kind)[:, of_kind.product] > 0.0)[:, of_kind.of] & ~of_kind.bounded[of_kind.of]
+    changes &= (group.coordinates(column[entry]) < system.n_q) & (group.coordinates(of_kind.on) < system.n_q)
+    element, pair = np.nonzero(changes)
+    found = np.zeros((group.count, group.record.n_equations), dtype=bool)
+    found[element, row[entry[pair]]] = True
+    return found
+
+
 @dataclass(frozen=True)
 class _Summands:
     """The summands of all entries of a kind, one after the other.
