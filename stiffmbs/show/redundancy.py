@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..analyse.contradictions import Contradiction
-from ..analyse.departures import Departure
 from ..analyse.finding import LoopFinding
 from ..analyse.loop_equations import AGREES, CLOSED
 from ..analyse.overconstraint import Overconstraint, listed, overconstraints
@@ -22,17 +21,6 @@ def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
     """Whether equations are known to be redundant near the start alone."""
     rows = {redundancy.system.equations[row] for row in unproven(redundancy)}
     return not rows.isdisjoint(case.redundant)
-
-
-def departure_sentence(found: Departure, redundancy: Redundancy) -> str:
-    """That an equation left out does not hold."""
-    system, others = redundancy.system, unproven(redundancy)[found.row]
-    joint, equation = system.equations[found.row]
-    names = listed(list(dict.fromkeys(system.equations[row][0] for row in others)) or [joint])
-    return (
-        f"stopped at t = {found.t:.6g} s: joint '{joint}' (equation {equation}) was left out, as near the start it holds the same "
-        f"as {names}; it does not hold there, so that the joints lock or contradict each other"
-    )
 
 
 def refuse_contradictions(redundancy: Redundancy) -> None:

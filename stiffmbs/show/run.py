@@ -153,7 +153,7 @@ def run(
 
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    trajectory = _until_departure(job, job.integrate(watch))
+    trajectory = _sound_part(job, job.integrate(watch))
     project = near_constraints(job.settings)
     rows, left_out = reported(job.mechanics, trajectory, project)
     if not len(rows.t):
@@ -171,22 +171,20 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     )  # fmt: skip
 
 
-def _until_departure(job: Job, trajectory: Trajectory) -> Trajectory:
-    """A trajectory up to where equations left out do not hold any more, if they are known to be redundant near the start alone."""
-    if not job.redundancy.redundant:
+def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
+    """A trajectory up to where a mechanism locks, for equations that were left out, or for prescribed velocities."""
+    system = job.mechanics.system
+    if not job.redundancy.redundant and system.holonomic.all():
         return trajectory
-    from ..analyse.departures import departure
-    from ..analyse.unproven import unproven
-    from .redundancy import departure_sentence
+    from .locked import locked
 
-    rows = tuple(row for row in unproven(job.redundancy) if job.mechanics.system.holonomic[row])
-    found = departure(job.mechanics, rows, trajectory) if rows else None
+    found = locked(job.mechanics, job.redundancy, trajectory)
     if found is None:
         return trajectory
-    last = found.output + 1
+    outputs, sentence = found
     return replace(
-        trajectory, t=trajectory.t[:last], q=trajectory.q[:last], u=trajectory.u[:last], outcome=Outcome.STOPPED,
-        message=departure_sentence(found, job.redundancy),
+        trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
+        message=sentence,
     )  # fmt: skip
 
 
