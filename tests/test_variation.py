@@ -120,3 +120,32 @@ def test_what_is_redundant_all_the_way_is_left_out():
         'type: point_on_curve, i: b, j: ground, y: "0.3*exp(-((x - 5.03)/0.1)^2)"',
     )
     assert stiffmbs.run(read_scene(twice), points=1001).outcome is Outcome.DONE
+
+
+def test_a_body_in_a_formula_that_is_flat_at_the_start_is_not_called_free():
+    """The sled pushes the other one from 5 m on."""
+    scene = read_scene(SLED.replace("FORMULA", "c.x - 1 - tanh(20*(b.x - 5))").replace("point_on_line", "prismatic"))
+    assert not any("by itself" in message for message in stiffmbs.check(scene).messages)
+
+
+LOCKING = """
+bodies:
+  crank: {mass: 1, inertia: 0.1, angle: 45 deg, markers: {end: {point: [0.5, 0]}}}
+  slider: {mass: 1, inertia: 0.1, position: [1.2071067811865475, 0]}
+joints:
+  pin: {type: revolute, i: crank, j: ground}
+  guide: {type: prismatic, i: slider, j: ground}
+  rod: {type: distance, i: crank.end, j: slider, length: sqrt(0.855553390593)}
+  motor: {type: drive, joint: guide, velocity: 1}
+run: {duration: 1 s, points: 101}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "auto"])
+def test_a_drive_that_a_mechanism_locks_against_ends_the_run(solver):
+    """The slider reaches its dead centre, crank and rod in one line, at 0.5 m + L."""
+    reach = 0.5 + np.sqrt(0.855553390593) - 1.2071067811865475
+    solution = stiffmbs.run(read_scene(LOCKING), solver=solver)
+    assert solution.outcome is Outcome.STOPPED
+    assert reach - 0.02 < solution.time[-1] <= reach
+    assert "joint 'motor'" in solution.message and "locks" in solution.message

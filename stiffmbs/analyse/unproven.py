@@ -21,18 +21,18 @@ def unproven(redundancy: Redundancy) -> dict[int, tuple[int, ...]]:
     """The redundant equations that hold the same as others by formulas or tables: by their rows those of the others."""
     if not redundancy.redundant:
         return {}
-    by_functions = _by_functions(redundancy.system)
+    of_functions = by_functions(redundancy.system)
     found = {}
     for finding in redundancy.findings:
         rows = finding.rank.equations.loop.rows
         for part in finding.redundant:
             row, others = int(rows[part.row]), rows[list(part.others)]
-            if by_functions[row] or by_functions[others].any():
+            if of_functions[row] or of_functions[others].any():
                 found[row] = tuple(others.tolist())
     return found
 
 
-def _by_functions(system: System) -> np.ndarray:
+def by_functions(system: System) -> np.ndarray:
     """The rows in which formulas or tables of the pose or of time stand, but for linear ones of the pose."""
     rows = np.zeros(system.n_c, dtype=bool)
     for group in system.groups:
