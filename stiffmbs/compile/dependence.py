@@ -86,8 +86,10 @@ class _Summands:
 
     Attributes
     ----------
-    products : list of list of list of int
-        Each product of numbers that occurs, by its factors.
+    numbers : ndarray of int
+        Of all products that occur, one after the other; of one without factors the number -1.
+    factors, products : ndarrays of int
+        Where in `numbers` each factor, a sum of numbers, begins, and where in these each product.
     product, entry : ndarrays of int, shape (n,)
         Of each summand.
     bounded : ndarray of bool, shape (n,)
@@ -95,7 +97,9 @@ class _Summands:
         Pairs of a summand and a coordinate of the element that it depends on.
     """
 
-    products: list[list[list[int]]]
+    numbers: np.ndarray
+    factors: np.ndarray
+    products: np.ndarray
     product: np.ndarray
     entry: np.ndarray
     bounded: np.ndarray
@@ -106,17 +110,21 @@ class _Summands:
 @cache
 def _summands(kind: Kind) -> _Summands:
     listed = [(k, *summand) for k, summands in enumerate(record_of(kind).variation) for summand in summands]
-    products: list[list[list[int]]] = []
-    for _, factors, _, _ in listed:
-        if factors not in products:
-            products.append(factors)
+    products = list(dict.fromkeys(tuple(map(tuple, factors)) or ((-1,),) for _, factors, _, _ in listed))
+    place = {product: k for k, product in enumerate(products)}
     pairs = [(s, column) for s, (_, _, columns, _) in enumerate(listed) for column in columns]
     of, on = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     return _Summands(
-        products, np.array([products.index(factors) for _, factors, _, _ in listed], dtype=np.int64),
+        np.array([number for product in products for factor in product for number in factor], dtype=np.int64),
+        _starts([len(factor) for product in products for factor in product]), _starts([len(product) for product in products]),
+        np.array([place[tuple(map(tuple, factors)) or ((-1,),)] for _, factors, _, _ in listed], dtype=np.int64),
         np.array([k for k, _, _, _ in listed], dtype=np.int64),
         np.array([bounded for _, _, _, bounded in listed], dtype=bool), of, on,
     )  # fmt: skip
+
+
+def _starts(lengths: list[int]) -> np.ndarray:
+    return np.cumsum([0, *lengths[:-1]]) if lengths else np.empty(0, dtype=np.int64)
 
 
 def _of_group(system: System, g: int, group: Group, values: np.ndarray, rounding: np.ndarray) -> Dependence:
@@ -138,9 +146,10 @@ def _of_group(system: System, g: int, group: Group, values: np.ndarray, rounding
 
 def _sizes(group: Group, of_kind: _Summands) -> np.ndarray:
     """The magnitudes of the products of numbers, shape (elements, products); those of vectors are sums of their numbers'."""
-    first = group.index[:, 2 * group.kind.n_bodies]
-    sizes = np.ones((group.count, len(of_kind.products)))
-    for k, factors in enumerate(of_kind.products):
-        for numbers in factors:
-            sizes[:, k] *= np.abs(group.numbers[first[:, None] + np.array(numbers)]).sum(axis=1)
-    return sizes
+    if not len(of_kind.products):
+        return np.empty((group.count, 0))
+    first = group.index[:, 2 * group.kind.n_bodies, None]
+    sizes = np.where(of_kind.numbers < 0, 1.0, np.abs(group.numbers[first + np.maximum(of_kind.numbers, 0)]))
+    factors = np.add.reduceat(sizes, of_kind.factors, axis=1)
+    products: np.ndarray = np.multiply.reduceat(factors, of_kind.products, axis=1)
+    return products
