@@ -17,7 +17,7 @@ from scipy.special import expit
 
 from ...describe.scene import Scene, read_scene
 from ...show.solution import Solution
-from ..case import Case
+from ..case import Case, Outcome
 from ..simulation import simulation
 
 GRAVITY = 9.81
@@ -174,8 +174,36 @@ def _astray(solution: Solution, mechanism: Mechanism, law: Law) -> float:
 def _case(mechanism: Mechanism, law: Law, solver: str) -> Case:
     return simulation(
         f"{mechanism.name}, {law.name}, {solver}", "way against energy by quadrature", partial(_scene, mechanism, law),
-        partial(_astray, mechanism=mechanism, law=law), 1e-4, duration=1.0, points=101, rtol=1e-8, **SOLVERS[solver],
+        partial(_astray, mechanism=mechanism, law=law), 1e-4, quick="dimensions: 3" not in mechanism.text,
+        duration=1.0, points=101, rtol=1e-8, **SOLVERS[solver],
     )  # fmt: skip
 
 
-CASES = tuple(_case(mechanism, law, solver) for mechanism, law in PAIRS for solver in SOLVERS)
+RAILS = """
+bodies: {b: {mass: 1, inertia: 1, velocity: [10, 0]}}
+joints:
+  rail: {type: point_on_line, i: b, j: ground}
+  bumpy: {type: point_on_curve, i: b, j: ground, y: "0.3*exp(-((x - 5.03)/0.1)^2)"}
+"""
+DRIVES = """
+bodies: {b: {mass: 1, inertia: 1}}
+joints:
+  rail: {type: prismatic, i: b, j: ground}
+  still: {type: drive, joint: rail, position: 0*t}
+  pulse: {type: drive, joint: rail, position: "exp(-((t - 0.73)/0.5 ms)^2)"}
+"""
+
+
+def _told(name: str, what: str, text: str, joint: str, speed: float) -> Case:
+    """A case in which two joints hold the same at the start and contradict each other later."""
+    return simulation(
+        name, what, partial(read_scene, text), lambda solution: float(np.max(np.abs(solution["b.x"] - speed * solution.t))), 1e-9,
+        names=(f"joint '{joint}'", "does not hold"), expected=Outcome.TOLD, duration=1.0, points=11,
+    )  # fmt: skip
+
+
+CASES = (
+    *(_case(mechanism, law, solver) for mechanism, law in PAIRS for solver in SOLVERS),
+    _told("a straight rail and one with a bump", "told where the second one rises; way before", RAILS, "bumpy", SPEED),
+    _told("two drives, one with a pulse of 1 ms", "told where they part; way before", DRIVES, "pulse", 0.0),
+)
