@@ -9,6 +9,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..solve.mechanics import Mechanics
+from .unproven import by_functions
 
 FREE = 1e-8
 """Singular value, in parts of the largest, of a motion that no joint hinders."""
@@ -48,6 +49,8 @@ def own_freedoms(mechanics: Mechanics, t: float) -> list[OwnFreedom]:
     """
     system, state = mechanics.system, mechanics.state
     between = dict(_between_others(system))
+    for body in _held_by_functions(system):  # a formula that is flat here may hold the body elsewhere
+        between.pop(body, None)
     found = _free(mechanics, between, t)
     if not found:
         return []
@@ -73,6 +76,12 @@ def _between_others(system: System) -> Iterator[tuple[int, tuple[str, ...]]]:
     for body, joints in around.items():
         if len(set[int]().union(*joints.values())) > 1:
             yield body, tuple(joints)
+
+
+def _held_by_functions(system: System) -> set[int]:
+    """The bodies in constraints with formulas or tables."""
+    J = system.term("motion", "J")
+    return set((J.column[by_functions(system)[J.row]] // system.of_body.n_u).tolist())
 
 
 def _free(mechanics: Mechanics, bodies: dict[int, tuple[str, ...]], t: float) -> dict[int, str]:

@@ -9,7 +9,7 @@ The reaction is the generalised force on the first body, turned into force and t
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import sympy as sp
@@ -20,6 +20,7 @@ from ..errors import InputError
 from .frames import SymbolicElement
 from .kind import Kind
 from .symbols import Symbols, symbols_of
+from .variation import Summand, Variation
 
 
 @dataclass(frozen=True)
@@ -63,12 +64,21 @@ class Derived:
         What the expressions are written in.
     terms : dict
         By the names of `stiffmbs.compile.terms.TERM_AXES`.
+    variation : list of list of Summand
+        For each entry of C_q what it depends on.
+    removable : list of bool
+        For each equation with a position form whether it may be left out where these are constant.
+    timed : list of bool
+        For each equation whether time is in it.
     """
 
     n_equations: int
     n_holonomic: int
     symbols: Symbols
     terms: dict[str, Sequence[Entry | LateEntry]]
+    variation: list[list[Summand]] = field(default_factory=list)
+    removable: list[bool] = field(default_factory=list)
+    timed: list[bool] = field(default_factory=list)
 
 
 def derive(kind: Kind) -> Derived:
@@ -126,7 +136,12 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     ]
     for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
-    return Derived(V.rows, C.rows, symbols, entries)
+    variation = Variation(symbols)
+    return Derived(
+        V.rows, C.rows, symbols, entries, [variation.summands(entry.expression) for entry in entries["C_q"]],
+        [variation.removable(C[r], [entry.column for entry in entries["C_q"] if entry.row == r]) for r in range(C.rows)],
+        [e.depends(equation, [e.t]) for equation in (*C, *rates)],
+    )  # fmt: skip
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:

@@ -44,6 +44,12 @@ class KindRecord:
         For each term the (row, column) of its entries in the element's own block.
     sources : dict
         For each usual term set the source of its kernel; absent where the kind contributes nothing.
+    variation : list
+        For each entry of C_q its summands: factors, columns and whether bounded (`stiffmbs.compile.variation.Summand`).
+    removable : list of bool
+        For each equation with a position form whether it may be left out where its derivatives are constant.
+    timed : list of bool
+        For each equation whether time is in it.
     """
 
     n_equations: int
@@ -53,6 +59,9 @@ class KindRecord:
     laws: list[tuple[str, int]]
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
+    variation: list[list[tuple[list[list[int]], list[int], bool]]]
+    removable: list[bool]
+    timed: list[bool]
 
 
 @cache
@@ -111,6 +120,8 @@ def _derived(kind: Kind) -> KindRecord:
     return KindRecord(
         derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
         len(derived.symbols.element.angles), [law.of for law in derived.symbols.laws], patterns, sources,
+        [[(list(map(list, part.factors)), list(part.columns), part.bounded) for part in parts] for parts in derived.variation],
+        derived.removable, derived.timed,
     )  # fmt: skip
 
 

@@ -17,7 +17,13 @@ from ..errors import AssemblyError, SolverError
 from ..solve.initial import initial_values
 from ..solve.pieces import Piece
 from .presolve import presolve_sentences, unknowns
-from .redundancy import contradiction_sentences, overconstraint_sentences, pose_sentences, singular_sentence
+from .redundancy import (
+    contradiction_sentences,
+    known_near_start,
+    overconstraint_sentences,
+    pose_sentences,
+    singular_sentence,
+)
 from .run import Examined, examined, presolved
 
 
@@ -121,7 +127,15 @@ def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, 
     redundancy, system = found.redundancy, found.redundancy.system
     cases = tuple(overconstraints(redundancy))
     against = tuple(contradiction_sentences(redundancy))
-    held_twice = [] if against else [sentence for case in cases for sentence in overconstraint_sentences(case)]
+    held_twice = (
+        []
+        if against
+        else [
+            sentence
+            for case in cases
+            for sentence in overconstraint_sentences(case, known_near_start(case, redundancy))
+        ]
+    )
     problems = [*against, *held_twice]
     problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
     mechanics, pieces, free = found.mechanics(), tuple[Piece, ...](), list[OwnFreedom]()

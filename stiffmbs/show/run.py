@@ -153,7 +153,7 @@ def run(
 
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    trajectory = job.integrate(watch)
+    trajectory = _sound_part(job, job.integrate(watch))
     project = near_constraints(job.settings)
     rows, left_out = reported(job.mechanics, trajectory, project)
     if not len(rows.t):
@@ -168,6 +168,23 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
         history=trajectory.history, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
+    )  # fmt: skip
+
+
+def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
+    """A trajectory up to where a mechanism locks, for equations that were left out, or for prescribed velocities."""
+    system = job.mechanics.system
+    if not job.redundancy.redundant and system.holonomic.all():
+        return trajectory
+    from .locked import locked
+
+    found = locked(job.mechanics, job.redundancy, trajectory)
+    if found is None:
+        return trajectory
+    outputs, sentence = found
+    return replace(
+        trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
+        message=sentence,
     )  # fmt: skip
 
 
