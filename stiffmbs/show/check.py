@@ -14,11 +14,15 @@ from ..describe.model_data import ModelData
 from ..describe.scene import notes_of
 from ..describe.settings import RunSettings
 from ..errors import AssemblyError, SolverError
-from ..solve.initial import initial_values
+from ..solve.initial import InitialValues, initial_values
+from ..solve.moves import Move
 from ..solve.pieces import Piece
 from .presolve import presolve_sentences, unknowns
 from .redundancy import contradiction_sentences, overconstraint_sentences, pose_sentences, singular_sentence
 from .run import Examined, examined, presolved
+
+MOST_MOVES = 50
+"""Bodies that are named of those which assembly moves; `Report.moved` has all."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,8 @@ class Report:
         Of the formulation SI2: of all bodies and equations, and of what is solved for.
     presolve : tuple of str
         What is left out of the solution because it follows from the rest, a sentence each.
+    moved : tuple of Move
+        What assembly changes of the bodies as described.
     messages : tuple of str
         All else that there is to say, a sentence each.
     sound : bool
@@ -64,6 +70,7 @@ class Report:
     extra_freedoms: int
     unknowns: tuple[int, int]
     presolve: tuple[str, ...]
+    moved: tuple[Move, ...]
     messages: tuple[str, ...]
     sound: bool
 
@@ -83,6 +90,11 @@ class Report:
             "redundant": [{"joint": joint, "equation": equation} for joint, equation in self.redundant],
             "not_unique": list(self.not_unique),
             "unknowns": {"before": self.unknowns[0], "after": self.unknowns[1]},
+            "moved": [
+                {"body": move.body, "shift": list(move.shift), "turn": move.turn}
+                for move in self.moved
+                if move.distance or move.turn
+            ],
             "messages": [*self.messages, *(f"presolve: {sentence}" for sentence in self.presolve)],
         }
 
@@ -125,11 +137,13 @@ def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, 
     problems = [*against, *held_twice]
     problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
     mechanics, pieces, free = found.mechanics(), tuple[Piece, ...](), list[OwnFreedom]()
+    start: InitialValues | None = None
     if not against:
         try:
             start = initial_values(mechanics, found.grid.start)
             free = own_freedoms(mechanics, found.grid.start)
             pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+            problems += [start.sentence(MOST_MOVES)] if start.moved_far else []
         except (AssemblyError, SolverError) as error:
             problems += [] if redundancy.extra_freedoms else [str(error)]
     return Report(
@@ -137,8 +151,15 @@ def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, 
         rank=redundancy.rank, redundant=redundancy.redundant, not_unique=redundancy.not_unique, overconstraints=cases,
         contradictions=against, extra_freedoms=redundancy.extra_freedoms,
         unknowns=unknowns(system, pieces, mechanics), presolve=tuple(presolve_sentences(system, pieces, mechanics)),
-        messages=(*problems, *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
+        moved=start.moved if start else (),
+        messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
     )  # fmt: skip
+
+
+def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
+    """What assembly changes, where it is no problem."""
+    if start and start.moved and not start.moved_far:
+        yield start.sentence(MOST_MOVES)
 
 
 def _freedom_sentences(found: Examined, system: System, free: Sequence[OwnFreedom]) -> Iterator[str]:
