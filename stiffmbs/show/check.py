@@ -20,6 +20,7 @@ from ..solve.pieces import Piece
 from .presolve import presolve_sentences, unknowns
 from .redundancy import contradiction_sentences, overconstraint_sentences, pose_sentences, singular_sentence
 from .run import Examined, examined, presolved
+from .unconnected import unconnected_sentence
 
 MOST_MOVES = 50
 """Bodies that are named of those which assembly moves; `Report.moved` has all."""
@@ -90,11 +91,6 @@ class Report:
             "redundant": [{"joint": joint, "equation": equation} for joint, equation in self.redundant],
             "not_unique": list(self.not_unique),
             "unknowns": {"before": self.unknowns[0], "after": self.unknowns[1]},
-            "moved": [
-                {"body": move.body, "shift": list(move.shift), "turn": move.turn}
-                for move in self.moved
-                if move.distance or move.turn
-            ],
             "messages": [*self.messages, *(f"presolve: {sentence}" for sentence in self.presolve)],
         }
 
@@ -166,13 +162,13 @@ def _freedom_sentences(found: Examined, system: System, free: Sequence[OwnFreedo
     if found.redundancy.degrees_of_freedom == 0:
         yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
     for freedom in free:
-        yield f"{freedom.body} can {freedom.motion} by itself between {listed(freedom.joints)}, which moves no other body"
-    touched = {
-        body
-        for group in system.groups if group.kind.element.kind
-        for body in group.bodies.ravel()
-    }  # fmt: skip
-    alone = [name for k, name in enumerate(system.bodies) if k not in touched]
-    if alone:
-        what = "is" if len(alone) == 1 else "are"
-        yield f"{listed(alone)} {what} connected to nothing: no joint and no force but weight acts there"
+        yield _own_freedom_sentence(freedom)
+    yield from unconnected_sentence(system)
+
+
+def _own_freedom_sentence(freedom: OwnFreedom) -> str:
+    body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
+    if not freedom.held_by:
+        return f"{body} can {motion} by itself between {between}, which moves no other body"
+    hold = "holds" if len(freedom.held_by) == 1 else "hold"
+    return f"joints alone would let {body} {motion} by itself between {between}: {listed(freedom.held_by)} {hold} it"
