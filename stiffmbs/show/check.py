@@ -139,7 +139,7 @@ def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, 
             start = initial_values(mechanics, found.grid.start)
             free = own_freedoms(mechanics, found.grid.start)
             pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
-            problems += [start.sentence(MOST_MOVES)] if start.moved_far else []
+            problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
         except (AssemblyError, SolverError) as error:
             problems += [] if redundancy.extra_freedoms else [str(error)]
     return Report(
@@ -154,8 +154,8 @@ def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, 
 
 def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
     """What assembly changes, where it is no problem."""
-    if start and start.moved and not start.moved_far:
-        yield start.sentence(MOST_MOVES)
+    if start and not start.moved_far and (sentence := start.position_sentence(MOST_MOVES)):
+        yield sentence
 
 
 def _freedom_sentences(found: Examined, system: System, free: Sequence[OwnFreedom]) -> Iterator[str]:

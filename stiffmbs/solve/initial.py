@@ -38,10 +38,16 @@ class InitialValues:
     moved: tuple[Move, ...]
     size: float = 1.0
 
-    def sentence(self, most: int = MOST_TOLD) -> str:
+    def sentence(self) -> str:
         """What was changed, in words: the largest moves of bodies, and of their velocities; empty where nothing was."""
-        levels = [words(self.moved, self.size, most) for words in (position_words, velocity_words)]
-        told = " and ".join(filter(None, levels))
+        levels = [words(self.moved, self.size, MOST_TOLD) for words in (position_words, velocity_words)]
+        return self._changed(" and ".join(filter(None, levels)))
+
+    def position_sentence(self, most: int) -> str:
+        """The bodies that were moved, in words, up to so many by name; empty where none was."""
+        return self._changed(position_words(self.moved, self.size, most))
+
+    def _changed(self, told: str) -> str:
         return f"to satisfy the joints at the start, assembly changed {told}{self._too_far()}" if told else ""
 
     @property
