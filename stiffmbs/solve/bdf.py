@@ -36,6 +36,9 @@ INDISTINCT = 4 * float(np.finfo(float).eps)
 WORTH_TELLING = 1e-2
 """Change of a velocity at a corner, in parts of the largest, that is told."""
 
+SHORT = 8
+"""Stretches of a run before its counters are looked at: reading them costs as much as some steps."""
+
 
 def solve(
     mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch,
@@ -69,11 +72,12 @@ def integrated(
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
-        for reached in integrator.run(start, grid):
+        for stretch, reached in enumerate(integrator.run(start, grid)):
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
             watch(reached.t)
             integrator.reached = reached
-            if failure := _failure(integrator, reached):
+            failure = _failure(integrator, reached) if reached.failure or stretch > SHORT else ""
+            if failure:
                 outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {failure}"
                 break
             if pays and not pays(reached):
