@@ -110,13 +110,5 @@ def test_bodies_meant_to_be_free_are_not_told():
 @pytest.mark.parametrize("formula", ["-2*stone.x", "dx(stone, bar)", "sin(stone.angle)"])
 def test_a_formula_that_reads_a_body_connects_it(formula):
     model = forgotten("stone")
-    model.add(
-        "pull", stiffmbs.FORCES["torque"](i="bar", torque=formula) if hasattr(stiffmbs, "FORCES") else _torque(formula)
-    )
+    model.add("pull", FORCES["torque"](i="bar", torque=formula))
     assert told(model) == []
-
-
-def _torque(formula):
-    from stiffmbs.describe.model import FORCES
-
-    return FORCES["torque"](i="bar", torque=formula)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -73,7 +74,8 @@ def _advised(model: ModelBuilder, case: Overconstraint, stiffness: np.ndarray) -
     in_space = isinstance(model, spatial.Model)
     other = type(model)(model.name, gravity=model.gravity)
     other.bodies = model.bodies
-    for name, joint in model.joints.items():
+    joints: dict[str, Any] = model.joints
+    for name, joint in joints.items():
         if name not in case.elastic:
             other.add(name, joint)
             continue
