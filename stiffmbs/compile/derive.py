@@ -17,6 +17,7 @@ import sympy as sp
 from ..describe.element import Force, Joint
 from ..describe.request import Request
 from ..errors import InputError
+from .counted_angle import counting_rate
 from .frames import SymbolicElement
 from .kind import Kind
 from .symbols import Symbols, symbols_of
@@ -178,7 +179,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
     first = e.q.rows
-    angles, rates = sp.Matrix(e.angles), sp.Matrix([e.rate(angle) for angle in e.angles])
+    angles, rates = sp.Matrix(e.angles), sp.Matrix([counting_rate(angle, e) for angle in e.angles])
     terms = {"counted": angles, "counting": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
     return {
         name: [Entry(entry.expression, first + entry.row, entry.column) for entry in _entries(matrix)]

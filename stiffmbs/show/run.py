@@ -29,6 +29,7 @@ from .gaps import reported
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
 from .solution import Solution
+from .unconnected import unconnected_sentence
 
 
 @dataclass(frozen=True)
@@ -203,6 +204,7 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
         from .redundancy import note_sentences
 
         yield from note_sentences(job.redundancy)
+    yield from unconnected_sentence(job.mechanics.system)
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:
