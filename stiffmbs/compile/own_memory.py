@@ -11,6 +11,9 @@ import numpy as np
 
 from .layout import DTYPES, INT, Layout, packed
 
+RELEASE = ctypes.pythonapi.PyMem_RawFree
+"""Frees what `stiffmbs.compile.native.memory` has asked for."""
+
 
 def packed_with_memory(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     """As `stiffmbs.compile.layout.packed`; the arrays of compiled code's own are freed when nothing refers to the table.
@@ -26,5 +29,5 @@ def packed_with_memory(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
 
 def _free(words: np.ndarray, columns: list[int]) -> None:
     for column in columns:
-        ctypes.pythonapi.PyMem_RawFree(ctypes.c_void_p(int(words[column])))
+        RELEASE(ctypes.c_void_p(int(words[column])))
         words[column] = 0
