@@ -156,7 +156,7 @@ def _served(c, times, count, y_out, yp_out):
 
 
 def advance(count, times, stop, most, y_out, yp_out, ida):
-    """At most `most` steps towards `stop`, serving output times on the way; returns IDA's last flag.
+    """At most `most` steps, and as many as there is room for, towards `stop`, serving output times on the way; returns IDA's last flag.
 
     The first step's size follows from the distance to the first output time, as in IDA's own mode for them.
     """
@@ -164,7 +164,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     c.count[SERVED] = 0
     c.count[RECORDED] = 0
     flag = _served(c, times, count, y_out, yp_out)
-    for _ in range(most):
+    for _ in range(min(most, c.history_room)):
         if flag != OK:
             break
         flag = _stepped(c, times[c.count[SERVED]] if c.count[SERVED] < count else stop)
@@ -180,7 +180,7 @@ def steps(room, stop, t_out, y_out, ida):
     c.count[SERVED] = 0
     c.count[RECORDED] = 0
     flag = int32(OK)
-    while flag == OK and c.count[SERVED] < room:
+    while flag == OK and c.count[SERVED] < min(room, c.history_room):
         flag = _stepped(c, stop)
         if flag >= 0:
             k = c.count[SERVED]
