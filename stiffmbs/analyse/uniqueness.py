@@ -67,6 +67,8 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
     """Whether applied forces (friction) depend on reactions that are not unique: then the motion is not unique either."""
     equations = found.equations
     state = equations.state
+    if not len(state.system.term("acceleration", "f_lam").source):
+        return False
     for pose, space in null_spaces:
         _place(equations, pose)
         rng = np.random.default_rng(1)
