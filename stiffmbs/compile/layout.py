@@ -121,11 +121,11 @@ NATIVE_IDA: Layout = {
     "n_switches": INT, "sides": FLOATS, "waits": INTS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
-    "mark": FLOATS, "count": INTS, "history_room": INT, "history": FLOATS, "samples": FLOATS, "balance_mark": FLOATS, "balance": INTS,
+    "mark": FLOATS, "count": INTS, "history": FLOATS, "samples": FLOATS, "balance_mark": FLOATS, "balance": INTS,
     "iteration": INTS,
 }  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
-of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, the steps of which one call can keep a record, and what is reported."""
+of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported."""
 
 BALANCE: Layout = {
     "mark": FLOATS, "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,

@@ -23,6 +23,8 @@ last sample, place of the next one."""
 SAMPLES, STEPS_APART = 16, 4
 """The last states are kept as samples, one each few steps: the time and what is reported."""
 HISTORY_WIDTH = 3
+MOST_STEPS = 2048
+"""Steps of any one call, and rows of the history (`stiffmbs.solve.sundials.connection`)."""
 STALLED = -101
 MOST_TINY, TINY_STEP = 100, 2e-14
 """IDA would go on forever with steps below the precision of time: this many below this part of t are the end."""
@@ -164,7 +166,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     c.count[SERVED] = 0
     c.count[RECORDED] = 0
     flag = _served(c, times, count, y_out, yp_out)
-    for _ in range(min(most, c.history_room)):
+    for _ in range(min(most, MOST_STEPS)):
         if flag != OK:
             break
         flag = _stepped(c, times[c.count[SERVED]] if c.count[SERVED] < count else stop)
@@ -180,7 +182,7 @@ def steps(room, stop, t_out, y_out, ida):
     c.count[SERVED] = 0
     c.count[RECORDED] = 0
     flag = int32(OK)
-    while flag == OK and c.count[SERVED] < min(room, c.history_room):
+    while flag == OK and c.count[SERVED] < min(room, MOST_STEPS):
         flag = _stepped(c, stop)
         if flag >= 0:
             k = c.count[SERVED]

@@ -101,7 +101,7 @@ class Connection:
                 "solve": address("IDASolve"), "interpolate": address("IDAGetDky"),
                 "time_of": address("IDAGetCurrentTime"), "order_of": address("IDAGetLastOrder"),
                 "step_of": address("IDAGetLastStep"),
-                "mark": self.mark, "count": self.count, "history_room": MOST_STEPS, "history": self.history.room(MOST_STEPS), "samples": self.samples,
+                "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS), "samples": self.samples,
                 "balance_mark": self.balance.mark, "balance": self.balance.table,
                 "iteration": self.iteration.count,
             },
