@@ -6,6 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs import Body, Marker, Model, Revolute
 from stiffmbs.analyse import entries as entries_module
+from stiffmbs.analyse import small_singular
 from stiffmbs.analyse.entries import Entries
 
 
@@ -77,3 +78,22 @@ def test_a_large_ladder_is_examined_as_a_small_one(monkeypatch):
     by_sparse = stiffmbs.check(ladder(50))
     monkeypatch.setattr(entries_module, "DENSE_UP_TO", 10**9)
     assert stiffmbs.check(ladder(50)) == by_sparse
+
+
+@pytest.mark.parametrize("redundant", [0, 1, 5])
+def test_small_singular_values_alone_are_those_of_the_whole(monkeypatch, redundant):
+    """The same null vectors, and the same least value above zero, with the others not computed."""
+    rng = np.random.default_rng(redundant)
+    A = np.vstack([np.eye(80, 100) + np.where(rng.random((80, 100)) < 0.03, 0.3, 0.0), np.zeros((redundant, 100))])
+    for k in range(redundant):
+        A[80 + k] = A[2 * k] - A[2 * k + 1]
+    A[79] = A[78] + 1e-6 * A[79]
+    row, column = np.nonzero(A)
+    entries = Entries(row, column, A[row, column], A.shape)
+    whole, whole_vectors = small_singular.small_singular(entries)
+    monkeypatch.setattr(small_singular, "WHOLE_UP_TO", 0)
+    values, vectors = small_singular.small_singular(entries)
+    assert (len(values), vectors.shape[1]) == (len(whole), redundant + 1 + small_singular.MORE)
+    np.testing.assert_allclose(values[-redundant - 1 :], whole[-redundant - 1 :], rtol=1e-6, atol=1e-13)
+    null, whole_null = (v[:, v.shape[1] - redundant :] for v in (vectors, whole_vectors))
+    np.testing.assert_allclose(null @ null.T, whole_null @ whole_null.T, atol=1e-9)

@@ -5,7 +5,6 @@ import ctypes
 import numpy as np
 import pytest
 
-from stiffmbs.compile.layout import FACTORS, packed
 from stiffmbs.solve.elimination_order import EliminationOrder
 from stiffmbs.solve.sundials.fixed_order import FixedOrder
 from stiffmbs.solve.sundials.paired_columns import PairedColumns
@@ -21,11 +20,9 @@ class Solver:
         self.columns, self.rows = np.nonzero(pattern.T)
         n = len(pattern)
         self.matrix = kind(n, self.rows, self.columns, EliminationOrder(np.arange(n), n * n, n**3))
-        self.factors = self.matrix._factors()
-        table = packed(FACTORS, self.factors)
-        self.arrays = self.matrix._solver(ctypes.cast(SAME_ADDRESS, ctypes.c_void_p).value, table)
-        self.content = packed(self.matrix.layout, self.arrays)
-        self.solver = np.array([self.content.ctypes.data])
+        self.memory = self.matrix.memory(ctypes.cast(SAME_ADDRESS, ctypes.c_void_p).value)
+        self.factors, self.arrays = self.memory.factors, self.memory.arrays
+        self.solver = np.array([self.memory.content.ctypes.data])
 
     def solved(self, dense, b):
         self.factors["a"][:] = dense[self.rows, self.columns]

@@ -126,7 +126,9 @@ def _off(equations: LoopEquations, gaps: np.ndarray, most: float) -> dict[int, f
 
 
 def _velocity_gaps(pose: Pose, kept: np.ndarray) -> np.ndarray:
-    """What the rows left out miss by at the velocities of those kept."""
+    """What the rows left out miss by at the velocities of those kept: nothing where all rates are zero."""
+    if not np.any(pose.rates):
+        return np.zeros(len(pose.rates))
     u, _, _, values = np.linalg.lstsq(pose.J.of_rows(kept).dense(), -pose.rates[kept])
     gaps: np.ndarray = np.abs(pose.J.times(u) + pose.rates) * ~kept * (values[-1] >= REGULAR)
     return gaps

@@ -100,7 +100,7 @@ def _into_own_axes(turn: np.ndarray, principal: np.ndarray) -> np.ndarray:
 
 def _space(change: np.ndarray, negligible: float) -> tuple[int, np.ndarray]:
     """The number of directions of vectors (columns), and the one direction, or that across two."""
-    axes, sizes, _ = np.linalg.svd(change)
+    axes, sizes, _ = np.linalg.svd(change, full_matrices=change.shape[1] < len(change))
     if sizes[0] <= negligible:
         return 0, axes[:, 0]
     rank = int(np.sum(sizes > SAME_DIRECTION * sizes[0]))

@@ -68,8 +68,13 @@ class Entries:
         """The product of the transpose with a vector."""
         return np.bincount(self.column, self.value * vector[self.row], self.shape[1])
 
+    def transposed_times_all(self, vectors: np.ndarray) -> np.ndarray:
+        """The products of the transpose with the columns of a matrix."""
+        product: np.ndarray = self._sparse().T @ vectors
+        return product
+
     def solved_gram(self, shift: float, right: np.ndarray) -> np.ndarray:
-        """x of (A A^T + shift I) x = right; the shift is greater than zero."""
+        """x of (A A^T + shift I) x = right, which may have several columns; the shift is greater than zero."""
         if self.shape[0] <= DENSE_UP_TO:
             return np.linalg.solve(self._dense_gram(shift), right)
         result: np.ndarray = _factors(self._sparse_gram(shift)).solve(right)
@@ -92,16 +97,31 @@ class Entries:
         # Pivots on the diagonal have the signs of the eigenvalues (Sylvester's law of inertia).
         return bool(np.array_equal(factors.perm_r, factors.perm_c) and np.all(factors.U.diagonal() > 0.0))
 
+    def singular_values_below(self, bound: float) -> int | None:
+        """How many there are; None where factors of A A^T - bound^2 I do not tell."""
+        try:
+            factors = _factors(self._sparse_gram(-(bound**2)))
+        except RuntimeError:
+            return None
+        signs = factors.U.diagonal()
+        told = np.array_equal(factors.perm_r, factors.perm_c) and np.all(np.isfinite(signs))
+        return int(np.sum(signs < 0.0)) if told else None
+
     def _dense_gram(self, shift: float) -> np.ndarray:
         A = self.dense()
         gram = A @ A.T
         gram[np.diag_indices_from(gram)] += shift
         return gram
 
-    def _sparse_gram(self, shift: float) -> Any:
-        from scipy.sparse import csr_matrix, identity
+    def _sparse(self) -> Any:
+        from scipy.sparse import csr_matrix
 
-        A = csr_matrix((self.value, (self.row, self.column)), shape=self.shape)
+        return csr_matrix((self.value, (self.row, self.column)), shape=self.shape)
+
+    def _sparse_gram(self, shift: float) -> Any:
+        from scipy.sparse import identity
+
+        A = self._sparse()
         return (A @ A.T + shift * identity(self.shape[0])).tocsc()
 
 

@@ -50,12 +50,13 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
         return []
     spaces = [space for _, space in found.null_spaces]
     rests, chosen = list(spaces), list[int]()
-    preference = _preference(found, order, holonomic)
+    preference, shares = _preference(found, order, holonomic), _least_shares(rests)
     for least in WELL_CHOSEN:
         for row in preference:
-            if len(chosen) < found.redundancy and np.min([_shares(rest)[row] for rest in rests]) > least:
+            if len(chosen) < found.redundancy and shares[row] > least:
                 chosen.append(row)
                 rests = [_without(rest, row) for rest in rests]
+                shares = _least_shares(rests)
     circuits = [np.abs(space @ np.linalg.inv(space[chosen])) for space in spaces]
     part = np.any([TAKES_PART * Z.max(axis=0) < Z for Z in circuits], axis=0)
     return [
@@ -68,8 +69,14 @@ def _preference(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) ->
     """The loop's rows, those that should give way first in front."""
     rank = {name: k for k, name in enumerate(order)}
     joint_of = [rank[joint.name] for joint in found.equations.loop.joints for _ in joint.rows]
-    shares = np.min([_shares(space) for _, space in found.null_spaces], axis=0).round(6)
+    shares = _least_shares([space for _, space in found.null_spaces]).round(6)
     return sorted(range(len(joint_of)), key=lambda row: (holonomic[row], -joint_of[row], -shares[row], -row))
+
+
+def _least_shares(spaces: Sequence[np.ndarray]) -> np.ndarray:
+    """Each row's least share in null spaces."""
+    least: np.ndarray = np.min([_shares(space) for space in spaces], axis=0)
+    return least
 
 
 def _shares(space: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
+from .small_singular import small_singular
 
 SOUND = 1e-5
 """Least singular value of the scaled J above which the equations are independent beyond doubt."""
@@ -19,8 +20,6 @@ UNCLEAR = 1e-9, 1e-5
 """A pose with singular values between these, near a singular one by chance, is not asked where others are clear."""
 SINGULAR = 1e-5
 """Part of the general pose's least singular value below which the start counts as singular."""
-SMALL = 1e-3
-"""Singular values below this are not taken from eigenvalues of J J^T, which know them to 1e-8 only."""
 POSES, PERTURBATION, SHRINKS = 3, 0.1, 5
 """Poses to confirm the rank at, the size of a perturbation (arms, rad), and how often it is made smaller in vain."""
 
@@ -78,8 +77,8 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     poses = [start, *others]
     before = equations.row_scale.copy()
     equations.scale_rows([pose.J for pose in poses])
-    rescaled = (equations.row_scale / before)[:, None]
-    decomposed = [_left_singular(rescaled * pose.J.dense()) for pose in poses]
+    rescaled = equations.row_scale / before
+    decomposed = [small_singular(pose.J.scaled(rescaled, np.ones(pose.J.shape[1]))) for pose in poses]
     values = [s for s, _ in decomposed]
     gap = start.gap if CLOSED < start.gap <= AGREES else 0.0
     asked = (values[1:] if gap else _clear(values[1:])) or values[1:] or values
@@ -87,23 +86,13 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     least = max(float(s[rank - 1]) for s in asked) if rank else 0.0
     start_rank = int(np.sum(values[0][:rank] > SINGULAR * least))
     general = [k for k, s in enumerate(values) if _is_general(s, rank, least, k == 0 or any(s is own for own in asked))]
-    null_spaces = [(poses[k], decomposed[k][1][:, rank:]) for k in general]
+    null_spaces = [(poses[k], _last(decomposed[k][1], count - rank)) for k in general]
     return LoopRank(equations, start, rank, start_rank, least, null_spaces)
 
 
-def _left_singular(J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values, the largest first, and left singular vectors.
-
-    As eigenvalues of J J^T, which is some times faster; those too small to be told from rounding there are found anew
-    by the decomposition of J^T on their eigenvectors alone.
-    """
-    squares, vectors = np.linalg.eigh(J @ J.T)
-    count = int(np.sum(squares < SMALL**2))
-    small = vectors[:, :count]
-    _, values, turn = np.linalg.svd(J.T @ small, full_matrices=count > J.shape[1])
-    values = np.pad(values, (0, count - len(values)))
-    large = slice(None, count - 1 if count else None, -1)
-    return np.concatenate([np.sqrt(squares[large]), values]), np.hstack([vectors[:, large], small @ turn.T])
+def _last(vectors: np.ndarray, count: int) -> np.ndarray:
+    """The last columns, so many of them."""
+    return vectors[:, vectors.shape[1] - count :]
 
 
 def _clear(values: list[np.ndarray]) -> list[np.ndarray]:

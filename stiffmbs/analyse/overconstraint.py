@@ -153,11 +153,25 @@ def _remedies(finding: LoopFinding, space: np.ndarray, joints: list[LoopJoint]) 
     if alone:
         yield from ((joint,) for joint in alone)
         return
-    together: list[int] = []
-    while (reached := _rank(space[_stacked(own, together)])) < count:
-        gains = [_rank(space[_stacked(own, [*together, k])]) - reached for k in range(len(joints))]
-        together.append(max(range(len(joints)), key=lambda k: (gains[k], joints[k].element.kind in ELASTIC, k)))
-    yield tuple(joints[k] for k in together)
+    yield tuple(joints[k] for k in _together(space, own, [joint.element.kind in ELASTIC for joint in joints]))
+
+
+def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> Iterator[int]:
+    """Joints, by their rows of a null space, that have all of it: each next one has the most of what is left."""
+    place = np.full((len(own), max(map(len, own))), len(space))
+    for k, rows in enumerate(own):
+        place[k, : len(rows)] = rows
+    rest = np.vstack([space, np.zeros(space.shape[1])])  # its last row stands for those that a joint has not
+    while True:
+        grams = rest[place] @ rest[place].transpose(0, 2, 1)
+        gains = np.sum(np.linalg.eigvalsh(grams) > TAKES_PART**2, axis=1).tolist()
+        best = max(range(len(own)), key=lambda k: (gains[k], elastic[k], k))
+        if not gains[best]:
+            return
+        yield best
+        _, sizes, directions = np.linalg.svd(rest[own[best]], full_matrices=False)
+        taken = directions[sizes > TAKES_PART]
+        rest = rest - (rest @ taken.T) @ taken
 
 
 def _own_rows(finding: LoopFinding, joints: list[LoopJoint]) -> Iterator[np.ndarray]:
@@ -171,10 +185,6 @@ def _first_rows(finding: LoopFinding) -> Iterator[tuple[int, LoopJoint]]:
     for joint in finding.rank.equations.loop.joints:
         yield first, joint
         first += len(joint.rows)
-
-
-def _stacked(own: list[np.ndarray], joints: list[int]) -> np.ndarray:
-    return np.concatenate([np.empty(0, dtype=np.int64), *(own[k] for k in joints)])
 
 
 def _rank(rows: np.ndarray) -> int:

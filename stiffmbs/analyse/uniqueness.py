@@ -51,22 +51,23 @@ def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) ->
     """
     equations = found.equations
     changes = [changes_of(equations, pose, space) for pose, space in null_spaces]
-    names = [name for name in changes[0] if any(np.abs(change[name]).max() > CHANGES for change in changes)]
-    owners = dict.fromkeys(name.partition(".")[0] for name in names)
+    of_owner: dict[str, list[str]] = {}
+    for name in changes[0]:
+        if any(np.abs(change[name]).max() > CHANGES for change in changes):
+            of_owner.setdefault(name.partition(".")[0], []).append(name)
     poses = [pose for pose, _ in null_spaces]
     return [
-        Undetermined(
-            owner, tuple(name for name in names if name.partition(".")[0] == owner),
-            tuple(directions(equations, poses, changes, owner, CHANGES)),
-        )
-        for owner in owners
-    ]  # fmt: skip
+        Undetermined(owner, tuple(names), tuple(directions(equations, poses, changes, owner, CHANGES)))
+        for owner, names in of_owner.items()
+    ]
 
 
 def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> bool:
     """Whether applied forces (friction) depend on reactions that are not unique: then the motion is not unique either."""
     equations = found.equations
     state = equations.state
+    if not len(state.system.term("acceleration", "f_lam").source):
+        return False
     for pose, space in null_spaces:
         _place(equations, pose)
         rng = np.random.default_rng(1)

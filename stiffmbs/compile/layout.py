@@ -16,6 +16,10 @@ Layout = Mapping[str, str]
 INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
 DTYPES = {INTS: np.int64, INDICES: np.int32, FLOATS: np.float64}
 """Of the arrays; indices are short where long lists of them are read anew with each evaluation."""
+OWN_INTS, OWN_INDICES, OWN_FLOATS = "own ints", "own indices", "own floats"
+POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_INDICES: INDICES, OWN_FLOATS: FLOATS}
+"""Kinds of arrays in compiled code.  Compiled code itself asks for the memory of those of its own, as their size is known
+only on the way (`stiffmbs.compile.native.memory`)."""
 
 STATE: Layout = {
     "n_q": INT, "n_u": INT, "n_c": INT, "spatial": INT,
@@ -41,16 +45,16 @@ EQUATIONS: Layout = {
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
 FACTORS: Layout = {
-    "n": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS, "order": INTS,
-    "l_start": INTS, "l_row": INTS, "l": FLOATS, "u_start": INTS, "u_row": INTS, "u": FLOATS,
+    "n": INT, "room": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS,
+    "order": INTS, "l_start": INTS, "l_row": OWN_INTS, "l": OWN_FLOATS, "u_start": INTS, "u_row": OWN_INTS, "u": OWN_FLOATS,
     "pivot": INTS, "work": FLOATS, "b": FLOATS, "previous": FLOATS, "stack": INTS, "x": FLOATS,
 }  # fmt: skip
-"""A sparse matrix by columns, its factors and work space (`stiffmbs.compile.native.factors`)."""
-
+"""A sparse matrix by columns, its factors and work space (`stiffmbs.compile.native.factors`).  `room` is the number of
+entries that each factor is expected to have at the most, `capacity` the number for which there is memory."""
 
 FIXED_ORDER: Layout = {
     "n": INT, "pivots": INT, "last_flag": INT, "array_of": INT, "factors": INTS, "found": INTS, "slot": INDICES, "weight": FLOATS,
-    "lu": FLOATS, "row": INDICES, "column": INDICES, "update_start": INTS, "update": INDICES, "room": INT, "mark": INTS, "x": FLOATS,
+    "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES, "mark": INTS, "x": FLOATS,
 }  # fmt: skip
 """A linear solver of IDA's along fixed pivots (`stiffmbs.solve.native.fixed_order`); it begins as the content of the
 solver of SUNDIALS whose place it takes: number of unknowns, pivots, last flag.  Its long lists are of 32-bit numbers: a long
@@ -58,7 +62,7 @@ chain's solutions wait for memory."""
 
 PAIRED_COLUMNS: Layout = {
     "n": INT, "pivots": INT, "last_flag": INT, "array_of": INT, "factors": INTS, "found": INTS, "slot": INDICES, "weight": FLOATS,
-    "lu": FLOATS, "row": INDICES, "column": INDICES, "place": INDICES, "update_start": INTS, "update": INDICES,
+    "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "place": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES,
     "item_start": INTS, "item_end": INTS, "side": INTS, "mark": INTS, "x": FLOATS,
 }  # fmt: skip
 """The same with its columns in pairs (`stiffmbs.solve.native.paired_columns`)."""
@@ -150,10 +154,13 @@ edges, their values and rates at both ends of the step and of a part of it, and 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     """The table for a layout: addresses of arrays, and numbers as they are.
 
-    The arrays must be contiguous, of the layout's type, and live as long as the table is used.
+    The arrays must be contiguous, of the layout's type, and live as long as the table is used.  Arrays of compiled
+    code's own are empty at first (`stiffmbs.compile.own_memory`).
     """
-    table = np.empty(len(layout), dtype=np.int64)
+    table = np.zeros(len(layout), dtype=np.int64)
     for column, (name, kind) in enumerate(layout.items()):
+        if kind not in (INT, *DTYPES):
+            continue
         value = values[name]
         if kind == INT:
             table[column] = int(value)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.equations import ABSENT, Equations
+from .eliminated_bodies import EliminatedBodies
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,9 @@ class EliminationOrder:
 def elimination_order(equations: Equations) -> EliminationOrder:
     """Bodies and joints are eliminated whole, those first that have the fewest neighbours.
 
-    A joint waits until one of its bodies is gone: before that its own diagonal block is zero, or nearly so where rows are relaxed.
+    The diagonal block of a joint is zero, or nearly so where rows are relaxed, until bodies of the joint are
+    eliminated.  A joint waits until its block is regular for every pose (`stiffmbs.solve.eliminated_bodies`), so that
+    pivots stay on the diagonal and the fill is the estimated one, in trees and in loops.
 
     References
     ----------
@@ -72,14 +75,22 @@ def _owners(equations: Equations) -> tuple[int, np.ndarray]:
     return n_bodies, owner
 
 
-def _least_degree(neighbours: list[set[int]], n_first: int) -> Iterator[tuple[int, set[int]]]:
-    """Nodes in the order of least degree, and the neighbours that each has then; the first ones may begin."""
-    queue = [(len(neighbours[node]), node) for node in range(n_first)]
+def _least_degree(neighbours: list[set[int]], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
+    """Nodes, bodies before joints, in the order of least degree, and the neighbours that each has then.
+
+    A joint that has to wait is looked at again after each neighbour's elimination: what it waits for is one of them.
+    """
+    bodies = EliminatedBodies([sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]], n_bodies)
+    queue = [(len(neighbours[node]), node) for node in range(n_bodies)]
     heapq.heapify(queue)
     gone = [False] * len(neighbours)
     while queue:
         degree, node = heapq.heappop(queue)
         if gone[node] or degree != len(neighbours[node]):
+            continue
+        if node < n_bodies:
+            bodies.eliminate(node)
+        elif not bodies.eliminated_joint(node - n_bodies):
             continue
         gone[node] = True
         around = neighbours[node]

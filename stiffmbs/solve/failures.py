@@ -9,6 +9,6 @@ FAILURES = {
     NO_CONVERGENCE: "the positions could not be brought back to the constraints",
     NOT_FINITE: "an equation or an acceleration has no finite value",
     NO_BALANCE: "friction and the reactions that press it find no unique balance (a joint jams, or there is too much friction)",
-    NO_ROOM: "the factors of the block system need more memory than was set aside for them",
+    NO_ROOM: "there is too little memory for the factors of the block system; give fewer bodies, or close other programs",
 }
 """Each failure of the compiled routines (`stiffmbs.solve.native.statuses`) as a clause."""

@@ -5,13 +5,13 @@ All three are [D J^T; J 0] [x; w] = [a; b], solved by one sparse LU whose patter
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..compile.equations import Equations
 from ..compile.formulation import Block, Formulation, Product
-from ..compile.layout import FACTORS, packed
+from ..compile.layout import FACTORS
+from ..compile.own_memory import packed_with_memory
 from ..compile.state import State
 from .elimination_order import elimination_order
+from .factors import factors_of
 
 _SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
 
@@ -55,10 +55,6 @@ VELOCITY_STEP = Formulation(
 """[M J^T; J 0] [du; w] = [0; -V]: the smallest correction in the mass matrix."""
 
 
-ROOM_FOR_PIVOTING = 4
-"""Times the fill without pivoting that the factors may grow to when pivots leave the diagonal."""
-
-
 class SaddlePoint:
     """One block system with its factors, ready for compiled code.
 
@@ -72,22 +68,9 @@ class SaddlePoint:
         self.equations = Equations(formulation, state.system)
         state.load(formulation.residual_set)
         self.equations_table, self._slots = self.equations.table()
-        n = self.equations.n
-        rows, columns = self.equations.pattern
-        order = elimination_order(self.equations)
-        room = ROOM_FOR_PIVOTING * order.fill + min(n * n, 4096) + n
-        ints, floats = (lambda k: np.zeros(k, dtype=np.int64)), np.zeros
-        self._ready = ints(1)
-        self._arrays = {
-            "n": n, "capacity": room, "ready": self._ready,
-            "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64),
-            "a_row": rows.astype(np.int64), "a": floats(len(rows)), "scale": np.ones(n), "order": order.unknowns,
-            "l_start": ints(n + 1), "l_row": ints(room), "l": floats(room),
-            "u_start": ints(n + 1), "u_row": ints(room), "u": floats(room),
-            "pivot": ints(n), "work": floats(n), "b": floats(n), "previous": floats(n), "stack": ints(4 * n), "x": floats(n),
-        }  # fmt: skip
-        self.factors_table = packed(FACTORS, self._arrays)
+        self._arrays = factors_of(self.equations.n, *self.equations.pattern, elimination_order(self.equations))
+        self.factors_table = packed_with_memory(FACTORS, self._arrays)
 
     def forget_pivots(self) -> None:
         """Have the pivots sought anew with the next factorisation."""
-        self._ready[0] = 0
+        self._arrays["ready"][0] = 0

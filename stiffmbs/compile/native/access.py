@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..layout import ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, MECHANICS, SCHEME, STATE, Layout
+from ..layout import ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, INT, MECHANICS, POINTERS, SCHEME, STATE, Layout
 from ..translate.code import Code, constant
 from ..translate.values import Builtin, Operand, Record, Value, builtin
 
@@ -51,7 +51,7 @@ def view_of(name: str, layout: Layout) -> Builtin:
         fields = {}
         for column, (field, kind) in enumerate(layout.items()):
             entry = code.load(code.item(table, constant(column)))
-            fields[field] = entry if kind == "int" else _pointer(code, kind, entry)
+            fields[field] = entry if kind == INT else _pointer(code, POINTERS[kind], entry)
         return Record(name, fields)
 
     return Builtin(view)

@@ -10,7 +10,9 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .access import compiled
+from ..layout import FACTORS
+from .access import compiled, factors_view
+from .memory import FLOAT, INT, holds
 
 KEEP_DIAGONAL = 0.1
 """A diagonal pivot is taken when it is at least this part of the largest in its column (less fill)."""
@@ -18,6 +20,8 @@ TOO_SMALL = 1e-3
 """A pivot of an earlier order is refused when it is less than this part of its column."""
 
 DONE, SINGULAR, FULL = 0, 1, 2
+"""FULL: there is no memory for more entries."""
+CAPACITY, L_ROW, L, U_ROW, U = (list(FACTORS).index(name) for name in ("capacity", "l_row", "l", "u_row", "u"))
 
 
 @compiled
@@ -55,8 +59,30 @@ def _reach(f, column):
 
 
 @compiled
-def factor(f):
-    """Find pivots and factors of the matrix in `f`; returns DONE, SINGULAR, or FULL (room for the factors too small)."""
+def _more_room(table):
+    """Memory for the entries that the factors are expected to have, or twice as many as before; whether there is some."""
+    f = factors_view(table)
+    capacity = max(f.room, 2 * f.capacity)
+    if not (holds(table, L_ROW, capacity, INT) and holds(table, L, capacity, FLOAT)):
+        return False
+    if not (holds(table, U_ROW, capacity, INT) and holds(table, U, capacity, FLOAT)):
+        return False
+    table[CAPACITY] = capacity
+    return True
+
+
+@compiled
+def factor(table):
+    """Find pivots and factors of the matrix, in as much memory as they take; returns DONE, SINGULAR or FULL."""
+    while True:
+        outcome = _factored_within(factors_view(table))
+        if outcome != FULL or not _more_room(table):
+            return outcome
+
+
+@compiled
+def _factored_within(f):
+    """`factor` in the memory at hand; FULL where it is too little."""
     n = f.n
     for k in range(n):
         f.pivot[k] = -1
@@ -68,11 +94,11 @@ def factor(f):
     for k in range(n):
         f.l_start[k] = l_end
         f.u_start[k] = u_end
-        if l_end + n > f.capacity or u_end + n > f.capacity:
-            return FULL
         column = f.order[k]
         f.l_start[k + 1] = l_end  # so that a column that is not there yet looks empty
         top = _reach(f, column)
+        if max(l_end, u_end) + n - top + 1 > f.capacity:  # a column has the rows that are reached, and its pivot
+            return FULL
         for at in range(top, n):
             f.work[f.stack[at]] = 0.0
         for p in range(f.a_start[column], f.a_start[column + 1]):
@@ -185,11 +211,12 @@ def scale(f):
 
 
 @compiled
-def factored(f):
+def factored(table):
     """Factors of the scaled matrix, by the known scales and pivots where they serve, else by new ones.
 
-    The matrix in `f` is overwritten by the scaled one.
+    The matrix is overwritten by the scaled one.
     """
+    f = factors_view(table)
     if f.ready[0]:
         scale(f)
         if refactor(f) == DONE:
@@ -199,7 +226,7 @@ def factored(f):
                 f.a[p] /= f.scale[f.a_row[p]] * f.scale[column]
     equilibrate(f)
     scale(f)
-    return factor(f)
+    return factor(table)
 
 
 @compiled

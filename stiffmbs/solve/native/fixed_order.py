@@ -10,14 +10,18 @@ from __future__ import annotations
 
 from stiffmbs.compile.layout import FIXED_ORDER
 from stiffmbs.compile.native.access import compiled, factors_view, floats, ints, shifted, view_of
-from stiffmbs.compile.native.factors import DONE, equilibrate, factor, scale
+from stiffmbs.compile.native.factors import DONE, FULL, equilibrate, factor, scale
+from stiffmbs.compile.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
 
 OK, RECOVERABLE, FAILED = 0, 1, -1
 """What IDA is told: after a recoverable failure it tries a smaller step."""
+LAST_FLAG = list(FIXED_ORDER).index("last_flag")
+"""What SUNLinSolLastFlag gives: `FULL` where there was no memory for the factors."""
 CONTENT = 0
 """Where a SUNLinearSolver holds the address of its content."""
 READY, N_LOWER, N_UPPER = range(3)
+LU, ROW, COLUMN, UPDATE = (list(FIXED_ORDER).index(name) for name in ("lu", "row", "column", "update"))
 LARGEST = 1e3
 """A pivot is refused when an entry of its column is so many times larger."""
 
@@ -25,8 +29,31 @@ fixed_order_view = view_of("FixedOrder", FIXED_ORDER)
 
 
 @compiled
+def _count_updates(f):
+    """The number of updates of the elimination along the pivots in `f`."""
+    count = 0
+    for j in range(f.n):
+        for p in range(f.u_start[j], f.u_start[j + 1] - 1):
+            k = f.u_row[p]
+            count += f.l_start[k + 1] - f.l_start[k] - 1
+    return count
+
+
+@compiled
+def _room_for_list(table, f):
+    """Memory for the factors in `f` and the list of their updates; whether there is some."""
+    off_diagonal = f.l_start[f.n] + f.u_start[f.n] - 2 * f.n
+    length = 3 * _count_updates(f)
+    if off_diagonal + f.n > MOST_INDICES:
+        return False
+    if not (holds(table, ROW, off_diagonal, INDEX) and holds(table, COLUMN, off_diagonal, INDEX)):
+        return False
+    return holds(table, LU, off_diagonal + f.n, FLOAT) and holds(table, UPDATE, length, INDEX)
+
+
+@compiled
 def _listed(s, f):
-    """Write down what the elimination along the pivots in `f` does; False where the room for it is too small."""
+    """Write down what the elimination along the pivots in `f` does."""
     n = f.n
     n_lower = f.l_start[n] - n
     n_upper = f.u_start[n] - n
@@ -52,8 +79,6 @@ def _listed(s, f):
         for p in range(f.u_start[j], last):
             k = f.u_row[p]
             left = f.l_start[k] - k
-            if 3 * (count + f.l_start[k + 1] - f.l_start[k]) > s.room:
-                return False
             for below in range(f.l_start[k] + 1, f.l_start[k + 1]):
                 s.update[3 * count] = s.mark[f.l_row[below]]
                 s.update[3 * count + 1] = left
@@ -67,7 +92,6 @@ def _listed(s, f):
     s.update_start[n] = count
     s.found[N_LOWER] = n_lower
     s.found[N_UPPER] = n_upper
-    return True
 
 
 @compiled
@@ -99,13 +123,14 @@ def _eliminated(s, f):
 
 
 @compiled
-def factored_anew(f, kept):
-    """Seek pivots for the matrix in `f`, which is scaled for that and kept meanwhile."""
+def factored_anew(factors, kept):
+    """Seek pivots for the matrix in the table of factors, which is scaled for that and kept meanwhile."""
+    f = factors_view(factors)
     for p in range(f.a_start[f.n]):
         kept[p] = f.a[p]
     equilibrate(f)
     scale(f)
-    outcome = factor(f)
+    outcome = factor(factors)
     for p in range(f.a_start[f.n]):
         f.a[p] = kept[p]
     return outcome
@@ -113,15 +138,20 @@ def factored_anew(f, kept):
 
 def setup(solver, matrix):
     """SUNLinSolSetup: factors along the known order, else along a new one."""
-    s = fixed_order_view(ints(solver[CONTENT]))
-    f = factors_view(s.factors)
-    if s.found[READY] and _eliminated(s, f):
+    table = ints(solver[CONTENT])
+    known = fixed_order_view(table)
+    if known.found[READY] and _eliminated(known, factors_view(known.factors)):
         return int32(OK)
-    s.found[READY] = 0
-    if factored_anew(f, s.weight) != DONE:
-        return int32(RECOVERABLE)
-    if not _listed(s, f):
-        return int32(FAILED)
+    known.found[READY] = 0
+    outcome = factored_anew(known.factors, known.weight)
+    if outcome == DONE and not _room_for_list(table, factors_view(known.factors)):
+        outcome = FULL
+    table[LAST_FLAG] = outcome
+    if outcome != DONE:
+        return int32(FAILED if outcome == FULL else RECOVERABLE)
+    s = fixed_order_view(table)  # the memory may have grown
+    f = factors_view(s.factors)
+    _listed(s, f)
     s.found[READY] = 1
     return int32(OK if _eliminated(s, f) else RECOVERABLE)
 

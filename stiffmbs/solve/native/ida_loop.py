@@ -37,6 +37,8 @@ last sample, place of the next one, whether the last event was found by the sear
 SAMPLES, STEPS_APART = 16, 4
 """The last states are kept as samples, one each few steps: the time and what is reported."""
 HISTORY_WIDTH = 3
+MOST_STEPS = 2048
+"""Steps of any one call, and rows of the history (`stiffmbs.solve.sundials.connection`)."""
 STALLED = -101
 START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
 """Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning
@@ -249,7 +251,7 @@ def _served(c, times, count, y_out, yp_out):
 
 
 def advance(count, times, stop, most, y_out, yp_out, ida):
-    """At most `most` steps towards `stop`, serving output times on the way; returns IDA's last flag.
+    """At most `most` steps, and as many as there is room for, towards `stop`, serving output times on the way; returns IDA's last flag.
 
     The first step's size follows from the distance to the first output time, as in IDA's own mode for them.
     """
@@ -257,7 +259,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     c.count[SERVED] = 0
     c.count[RECORDED] = 0
     flag = _served(c, times, count, y_out, yp_out)
-    for _ in range(most):
+    for _ in range(min(most, MOST_STEPS)):
         if flag != OK:
             break
         flag = _stepped(c, times[c.count[SERVED]] if c.count[SERVED] < count else stop)
@@ -273,7 +275,7 @@ def steps(room, stop, t_out, y_out, ida):
     c.count[SERVED] = 0
     c.count[RECORDED] = 0
     flag = int32(OK)
-    while flag == OK and c.count[SERVED] < room:
+    while flag == OK and c.count[SERVED] < min(room, MOST_STEPS):
         flag = _stepped(c, stop)
         if flag >= 0:
             k = c.count[SERVED]

@@ -67,13 +67,14 @@ def _largest_gap(s, violation):
 def _solved(s, equations, factors, values):
     """Fill in, factor and solve one block system; 0, with the solution in the factors' `b`, or a failure."""
     e = equations_view(equations)
-    f = factors_view(factors)
-    add_entries(e, values, 0.0, f.a)
-    outcome = factored(f)
+    matrix = factors_view(factors)
+    add_entries(e, values, 0.0, matrix.a)
+    outcome = factored(factors)
     if outcome == FULL:
         return NO_ROOM
     if outcome != DONE:
-        return SINGULAR if isfinite(largest_of(f.a, f.a_start[f.n])) else NOT_FINITE
+        return SINGULAR if isfinite(largest_of(matrix.a, matrix.a_start[matrix.n])) else NOT_FINITE
+    f = factors_view(factors)  # the memory may have grown
     add_products(e, values, f.previous, f.previous, f.b)
     solve(f, f.b)
     return 0 if isfinite(largest_of(f.b, f.n)) else NOT_FINITE

@@ -12,11 +12,15 @@ from __future__ import annotations
 
 from stiffmbs.compile.layout import PAIRED_COLUMNS
 from stiffmbs.compile.native.access import compiled, factors_view, floats, ints, shifted, view_of
-from stiffmbs.compile.native.factors import DONE
+from stiffmbs.compile.native.factors import DONE, FULL
+from stiffmbs.compile.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
-from stiffmbs.solve.native.fixed_order import CONTENT, LARGEST, OK, RECOVERABLE, factored_anew
+from stiffmbs.solve.native.fixed_order import CONTENT, FAILED, LARGEST, LAST_FLAG, OK, RECOVERABLE, factored_anew
 
 READY, N_LOWER, N_ITEMS = range(3)
+LU, ROW, COLUMN, PLACE, UPDATE = (
+    list(PAIRED_COLUMNS).index(name) for name in ("lu", "row", "column", "place", "update")
+)
 FIRST, SECOND = 0, 1
 """Which side of its items a column has; one alone has the first."""
 WORTH_A_PAIR = 0.8
@@ -127,6 +131,19 @@ def _upper_items(s, f, item):
 
 
 @compiled
+def _room_for_list(table, f):
+    """Memory for the factors in `f` and their items, of which each has an entry at least; whether there is some."""
+    off_diagonal = f.l_start[f.n] + f.u_start[f.n] - 2 * f.n
+    if 2 * off_diagonal + f.n > MOST_INDICES:
+        return False
+    if not (holds(table, ROW, off_diagonal, INDEX) and holds(table, COLUMN, off_diagonal, INDEX)):
+        return False
+    if not (holds(table, PLACE, off_diagonal, INDEX) and holds(table, UPDATE, f.u_start[f.n] - f.n, INDEX)):
+        return False
+    return holds(table, LU, 2 * off_diagonal + f.n, FLOAT)
+
+
+@compiled
 def _listed(s, f):
     """Write down what the elimination along the pivots in `f` does."""
     _sorted(f)
@@ -199,13 +216,19 @@ def _eliminated(s, f):
 
 def setup(solver, matrix):
     """SUNLinSolSetup: factors along the known order, else along a new one."""
-    s = paired_view(ints(solver[CONTENT]))
-    f = factors_view(s.factors)
-    if s.found[READY] and _eliminated(s, f):
+    table = ints(solver[CONTENT])
+    known = paired_view(table)
+    if known.found[READY] and _eliminated(known, factors_view(known.factors)):
         return int32(OK)
-    s.found[READY] = 0
-    if factored_anew(f, s.weight) != DONE:
-        return int32(RECOVERABLE)
+    known.found[READY] = 0
+    outcome = factored_anew(known.factors, known.weight)
+    if outcome == DONE and not _room_for_list(table, factors_view(known.factors)):
+        outcome = FULL
+    table[LAST_FLAG] = outcome
+    if outcome != DONE:
+        return int32(FAILED if outcome == FULL else RECOVERABLE)
+    s = paired_view(table)  # the memory may have grown
+    f = factors_view(s.factors)
     _listed(s, f)
     s.found[READY] = 1
     return int32(OK if _eliminated(s, f) else RECOVERABLE)

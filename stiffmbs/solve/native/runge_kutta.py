@@ -105,7 +105,7 @@ def advance(end, steps, held, own_steps, explicit):
     s = state_view(m.state)
     held += x.stiff_steps[0]
     for _ in range(steps):
-        if x.stiff_steps[0] >= held:
+        if x.stiff_steps[0] >= held or (own_steps and x.rows[0] >= x.room):
             return PAUSED
         stored = store_rows(x, c, s, m)
         if stored < 1:

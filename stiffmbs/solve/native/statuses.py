@@ -12,4 +12,4 @@ NOT_FINITE = -3
 NO_BALANCE = -6
 """Friction and the reactions that press it have no unique common solution, or the iteration does not find it."""
 NO_ROOM = -7
-"""The factors of a block system need more memory than was set aside."""
+"""There is too little memory for the factors of a block system."""

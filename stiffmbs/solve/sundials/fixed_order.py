@@ -7,9 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...compile.layout import FACTORS, FIXED_ORDER, Layout, packed
+from ...compile.layout import FACTORS, FIXED_ORDER, Layout
+from ...compile.own_memory import packed_with_memory
 from ...compile.routines import Routine
 from ..elimination_order import EliminationOrder
+from ..factors import factors_of
 from .libraries import Libraries, ida_libraries
 from .matrices import Assembled
 from .operations import take_place
@@ -19,8 +21,22 @@ _MODULE = "stiffmbs.solve.native.fixed_order"
 SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
 SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
 
-ROOM_FOR_PIVOTING = 4
-"""Times the estimated fill and updates that there is room for when pivots leave the diagonal."""
+
+@dataclass(frozen=True)
+class Memory:
+    """What a linear solver works on.
+
+    Attributes
+    ----------
+    content : ndarray of int
+        The table that takes the place of the content of a solver of SUNDIALS.
+    arrays, factors : dict
+        What the tables of the solver and of its factors refer to.
+    """
+
+    content: np.ndarray
+    arrays: dict[str, Any]
+    factors: dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -53,44 +69,25 @@ class FixedOrder:
         s = session.libraries
         matrix = session.keep(s.SUNBandMatrix(self.n, 0, 0, session.context), s.SUNMatDestroy, "a matrix")
         solver = session.keep(s.SUNLinSol_Band(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
-        factors = self._factors()
-        solver_arrays = self._solver(s.address("N_VGetArrayPointer"), packed(FACTORS, factors))
-        content = packed(self.layout, solver_arrays)
+        memory = self.memory(s.address("N_VGetArrayPointer"))
         functions = {"SUNLinSolSetup_Band": self.setup.address(), "SUNLinSolSolve_Band": self.solve.address()}
-        take_place(session, solver, self.n, functions, content)
+        take_place(session, solver, self.n, functions, memory.content)
         return Assembled(
-            matrix, solver, factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64),
-            (content, *factors.values(), *solver_arrays.values()), solver_arrays["found"],
+            matrix, solver, memory.factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64), (memory,), memory.arrays["found"]
         )  # fmt: skip
 
-    def _factors(self) -> dict[str, Any]:
-        n, ints, floats = self.n, _ints, np.zeros
-        room = min(ROOM_FOR_PIVOTING * self.order.fill, n * n) + n
-        return {
-            "n": n, "capacity": room, "ready": ints(1),
-            "a_start": np.searchsorted(self.columns, np.arange(n + 1)).astype(np.int64),
-            "a_row": self.rows.astype(np.int64), "a": floats(len(self.rows)), "scale": np.ones(n),
-            "order": self.order.unknowns,
-            "l_start": ints(n + 1), "l_row": ints(room), "l": floats(room),
-            "u_start": ints(n + 1), "u_row": ints(room), "u": floats(room),
-            "pivot": ints(n), "work": floats(n), "b": floats(n), "previous": floats(n), "stack": ints(4 * n), "x": floats(n),
+    def memory(self, array_of: int) -> Memory:
+        """What the compiled routines work on, given the address of N_VGetArrayPointer."""
+        factors = factors_of(self.n, self.rows, self.columns, self.order)
+        table = packed_with_memory(FACTORS, factors)
+        arrays = {
+            "n": self.n, "pivots": 0, "last_flag": 0, "array_of": array_of, "factors": table,
+            "found": np.zeros(3, dtype=np.int64), "slot": np.zeros(len(self.rows), dtype=np.int32),
+            "weight": np.zeros(len(self.rows)), "update_start": np.zeros(self.n + 1, dtype=np.int64),
+            "mark": np.zeros(self.n, dtype=np.int64), "x": np.zeros(self.n + 1), **self._lists(),
         }  # fmt: skip
+        return Memory(packed_with_memory(self.layout, arrays), arrays, factors)
 
-    def _solver(self, array_of: int, factors: np.ndarray) -> dict[str, Any]:
-        n, ints, floats = self.n, _ints, np.zeros
-        entries = 2 * (min(ROOM_FOR_PIVOTING * self.order.fill, n * n) + n)
-        room = 3 * min(ROOM_FOR_PIVOTING * self.order.updates, n * n * n)
-        return {
-            "n": n, "pivots": 0, "last_flag": 0, "array_of": array_of, "factors": factors, "found": ints(3),
-            "slot": _int32s(len(self.rows)), "weight": floats(len(self.rows)), "lu": floats(entries),
-            "row": _int32s(entries), "column": _int32s(entries), "update_start": ints(n + 1), "update": _int32s(room), "room": room,
-            "mark": ints(n), "x": floats(n),
-        }  # fmt: skip
-
-
-def _int32s(count: int) -> np.ndarray:
-    return np.zeros(count, dtype=np.int32)
-
-
-def _ints(count: int) -> np.ndarray:
-    return np.zeros(count, dtype=np.int64)
+    def _lists(self) -> dict[str, np.ndarray]:
+        """What the layout has beside that."""
+        return {}

@@ -29,7 +29,8 @@ FAILURES = {
     -4: f"Newton's iteration failed to converge too often, or with the smallest step: {_JUMP}, or the pose is singular; "
     "give a looser rtol, or take solver projected",
     -5: f"the linear solver could not be started: {_INSIDE}",
-    -6: f"the linear solver failed to factor the iteration matrix: {_INSIDE}",
+    -6: "the linear solver failed to factor the iteration matrix, as there is too little memory for the factors; give fewer "
+    "bodies, or close other programs",
     -7: f"the linear solver failed: {_INSIDE}",
     -8: f"the residual failed: {_INSIDE}",
     -9: f"the residual has no finite value however small the step: {_UNDEFINED}",

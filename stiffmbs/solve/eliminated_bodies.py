@@ -1,0 +1,69 @@
+"""Which joints may be eliminated from a block system without a singular pivot, whatever the pose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+class EliminatedBodies:
+    """The bodies that are eliminated so far, in groups that the eliminated joints connect.
+
+    After bodies B and joints E are eliminated, the pivots of [M J^T; J 0] are regular where the rows of E have full
+    rank in the columns of B.  Rows of joints whose bodies are all in B do, as J has.  A joint with a body outside of B
+    counts as one to ground, so that it can close a loop that is not there, with more rows than freedoms or a dead
+    centre of its own.  A group therefore has either joints to ground or one such open joint: the open joint alone holds
+    a group that moves freely, and its rows are independent of those inside.
+
+    Parameters
+    ----------
+    bodies_of : sequence of sequences of int
+        The bodies of each joint, ground left out.
+    n_bodies : int
+    """
+
+    def __init__(self, bodies_of: Sequence[Sequence[int]], n_bodies: int) -> None:
+        self._bodies_of = bodies_of
+        self._gone = [False] * n_bodies
+        self._parent = list(range(n_bodies))
+        self._grounded = [False] * n_bodies
+        self._open: list[int] = [0] * n_bodies
+        self._waiting: list[list[int]] = [[] for _ in range(n_bodies)]
+
+    def eliminate(self, body: int) -> None:
+        """Eliminate a body: joints that were open towards it become part of its group."""
+        self._gone[body] = True
+        for joint in self._waiting[body]:
+            group = self._joined(joint)
+            if all(self._gone[other] for other in self._bodies_of[joint]):
+                self._open[group] -= 1
+
+    def eliminated_joint(self, joint: int) -> bool:
+        """Eliminate a joint where its pivots are regular; whether they are."""
+        bodies = self._bodies_of[joint]
+        groups = {self._group(body) for body in bodies if self._gone[body]}
+        ahead = [body for body in bodies if not self._gone[body]]
+        grounded = len(bodies) == 1 or any(self._grounded[group] for group in groups)
+        n_open = sum(self._open[group] for group in groups) + bool(ahead)
+        if not groups or n_open > 1 or (n_open and grounded):
+            return False
+        group = self._joined(joint)
+        self._grounded[group], self._open[group] = grounded, n_open
+        for body in ahead:
+            self._waiting[body].append(joint)
+        return True
+
+    def _group(self, body: int) -> int:
+        """The body that stands for the group of an eliminated one."""
+        while self._parent[body] != body:
+            self._parent[body] = self._parent[self._parent[body]]
+            body = self._parent[body]
+        return body
+
+    def _joined(self, joint: int) -> int:
+        """The group of all eliminated bodies of a joint, made one."""
+        first, *others = {self._group(body) for body in self._bodies_of[joint] if self._gone[body]}
+        for other in others:
+            self._parent[other] = first
+            self._grounded[first] |= self._grounded[other]
+            self._open[first] += self._open[other]
+        return first
