@@ -141,6 +141,8 @@ class _Shared:
         seen = _Pace(
             work.t, work.count("steps"), work.count("steps") + work.count("rejected"), work.count("stiff_steps")
         )
+        if seen.steps == self._pace.steps:  # a look for the sake of output points alone
+            return False
         before, self._pace = self._pace, seen
         held = (seen.held - before.held) / (seen.steps - before.steps)
         if held < HELD_BACK:

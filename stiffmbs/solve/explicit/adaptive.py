@@ -107,7 +107,8 @@ class AdaptiveRun:
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
-                advance(work.t, 1, 1, self._grid.times is None, work.at)  # the rows up to here
+                while advance(work.t, 1, 1, self._grid.times is None, work.at) == PAUSED:  # the rows up to here
+                    work.collect(self._rows)
                 work.collect(self._rows)
                 return status
         if status >= 0 and work.t < self._grid.end:
