@@ -17,6 +17,9 @@ KEEP_DIAGONAL = 0.1
 TOO_SMALL = 1e-3
 """A pivot of an earlier order is refused when it is less than this part of its column."""
 
+LIGHT, SPREAD_OVER = 1e-6, 4
+"""Part of what joints couple a body to, below which its own inertia is no scale; joints over which that is looked at."""
+
 DONE, SINGULAR, FULL = 0, 1, 2
 
 
@@ -155,16 +158,48 @@ def refactor(f):
 
 
 @compiled
+def _spread_inertia(f):
+    """Let each unknown that hardly resists feel what its equations couple it to: D_k in `work` becomes the largest D_j (J_k/J_j)^2.
+
+    A body of no inertia on a hinge moves as the hinge and its mass say.  Scaled by its own inertia, what it resists would be the
+    difference of numbers that are larger by the ratio of both.
+    """
+    for row in range(f.n):
+        if f.work[row] > 0.0:
+            continue
+        heaviest = 0.0
+        for p in range(f.a_start[row], f.a_start[row + 1]):
+            k = f.a_row[p]
+            if f.a[p] != 0.0 and f.work[k] > 0.0:
+                heaviest = max(heaviest, f.work[k] / (f.a[p] * f.a[p]))
+        if not heaviest < float("inf"):
+            continue
+        for p in range(f.a_start[row], f.a_start[row + 1]):
+            k = f.a_row[p]
+            coupled = heaviest * f.a[p] * f.a[p]
+            if 0.0 < f.work[k] < LIGHT * coupled:
+                f.work[k] = coupled
+
+
+@compiled
 def equilibrate(f):
     """Scales for a block matrix [D J^T; J 0]: 1/sqrt(D) for its first unknowns, rows of unit length for its multipliers.
 
-    Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill.
+    Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill; those of bodies
+    that hardly resist do not.
     """
     for column in range(f.n):
         f.scale[column] = 0.0
+        f.work[column] = 0.0
         for p in range(f.a_start[column], f.a_start[column + 1]):
             if f.a_row[p] == column and f.a[p] > 0.0:
-                f.scale[column] = 1.0 / sqrt(f.a[p])
+                f.work[column] = f.a[p]
+    for _ in range(SPREAD_OVER):
+        _spread_inertia(f)
+    for column in range(f.n):
+        if f.work[column] > 0.0:
+            f.scale[column] = 1.0 / sqrt(f.work[column])
+        f.work[column] = 0.0
     for column in range(f.n):
         if f.scale[column] == 0.0:
             length = 0.0
