@@ -68,7 +68,7 @@ class Job:
                 return solve_pieces(solve, self.pieces, self.start, grid, self.settings, watch)
             return solve(self.mechanics, self.start, grid, self.settings, watch)
 
-        return solve_up_to_the_inputs_end(self.mechanics.system, self.grid, over)
+        return solve_up_to_the_inputs_end(self.mechanics, self.grid, over)
 
 
 def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:

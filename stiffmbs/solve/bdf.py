@@ -163,8 +163,8 @@ class Integrator:
         for stop in (*self.mechanics.corner_times(grid.start, grid.end).tolist(), grid.end):
             while _just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
-                chattering.begin(t, start.q, start.u)
                 self._begin(start, t)
+                chattering.begin(t, start.q, start.u)
                 for reached in self._leg(t, stop, grid):
                     yield reached if not reached.failure else self._explained(reached)
                     if reached.t < stop and not (reached.fired or reached.failure):

@@ -5,26 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from ..compile.input_ends import InputEnd, first_input_end
-from ..compile.system import System
+from ..compile.input_ends import InputEnd
+from .mechanics import Mechanics
 from .trajectory import Grid, Outcome, Trajectory
 
 CLOSE = 1e-3
 """Part of the run before the end of an input within which a solver that stops by itself stops for that input."""
 
 
-def solve_up_to_the_inputs_end(system: System, grid: Grid, solve: Callable[[Grid], Trajectory]) -> Trajectory:
+def solve_up_to_the_inputs_end(mechanics: Mechanics, grid: Grid, solve: Callable[[Grid], Trajectory]) -> Trajectory:
     """Solve over a grid, or over as much of it as all inputs have values for.
 
     Parameters
     ----------
-    system : System
+    mechanics : Mechanics
+        Of the whole.
     grid : Grid
         Of the whole run.
     solve : callable
         Gives the trajectory over a grid.
     """
-    end = first_input_end(system, grid.start, grid.end)
+    end = mechanics.input_end(grid.start, grid.end)
     if end is None:
         return solve(grid)
     found = solve(_up_to(grid, end))

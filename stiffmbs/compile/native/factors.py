@@ -11,14 +11,12 @@ from __future__ import annotations
 from math import sqrt
 
 from .access import compiled
+from .coupled_inertia import spread_inertia
 
 KEEP_DIAGONAL = 0.1
 """A diagonal pivot is taken when it is at least this part of the largest in its column (less fill)."""
 TOO_SMALL = 1e-3
 """A pivot of an earlier order is refused when it is less than this part of its column."""
-
-LIGHT, SPREAD_OVER = 1e-6, 4
-"""Part of what joints couple a body to, below which its own inertia is no scale; joints over which that is looked at."""
 
 DONE, SINGULAR, FULL = 0, 1, 2
 
@@ -158,47 +156,30 @@ def refactor(f):
 
 
 @compiled
-def _spread_inertia(f):
-    """Let each unknown that hardly resists feel what its equations couple it to: D_k in `work` becomes the largest D_j (J_k/J_j)^2.
-
-    A body of no inertia on a hinge moves as the hinge and its mass say.  Scaled by its own inertia, what it resists would be the
-    difference of numbers that are larger by the ratio of both.
-    """
-    for row in range(f.n):
-        if f.work[row] > 0.0:
-            continue
-        heaviest = 0.0
-        for p in range(f.a_start[row], f.a_start[row + 1]):
-            k = f.a_row[p]
-            if f.a[p] != 0.0 and f.work[k] > 0.0:
-                heaviest = max(heaviest, f.work[k] / (f.a[p] * f.a[p]))
-        if not heaviest < float("inf"):
-            continue
-        for p in range(f.a_start[row], f.a_start[row + 1]):
-            k = f.a_row[p]
-            coupled = heaviest * f.a[p] * f.a[p]
-            if 0.0 < f.work[k] < LIGHT * coupled:
-                f.work[k] = coupled
+def _take_diagonal(f):
+    """The entries of the diagonal above zero, in `work`."""
+    for column in range(f.n):
+        f.work[column] = 0.0
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            if f.a_row[p] == column and f.a[p] > 0.0:
+                f.work[column] = f.a[p]
 
 
 @compiled
 def equilibrate(f):
     """Scales for a block matrix [D J^T; J 0]: 1/sqrt(D) for its first unknowns, rows of unit length for its multipliers.
 
-    Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill; those of bodies
-    that hardly resist do not.
+    Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill.
     """
+    _take_diagonal(f)
+    _scale_by_work(f)
+
+
+@compiled
+def _scale_by_work(f):
+    """Scales by D in `work`."""
     for column in range(f.n):
-        f.scale[column] = 0.0
-        f.work[column] = 0.0
-        for p in range(f.a_start[column], f.a_start[column + 1]):
-            if f.a_row[p] == column and f.a[p] > 0.0:
-                f.work[column] = f.a[p]
-    for _ in range(SPREAD_OVER):
-        _spread_inertia(f)
-    for column in range(f.n):
-        if f.work[column] > 0.0:
-            f.scale[column] = 1.0 / sqrt(f.work[column])
+        f.scale[column] = 1.0 / sqrt(f.work[column]) if f.work[column] > 0.0 else 0.0
         f.work[column] = 0.0
     for column in range(f.n):
         if f.scale[column] == 0.0:
@@ -221,7 +202,7 @@ def scale(f):
 
 @compiled
 def factored(f):
-    """Factors of the scaled matrix, by the known scales and pivots where they serve, else by new ones.
+    """Factors of the scaled block matrix, by the known scales and pivots where they serve, else by new ones.
 
     The matrix in `f` is overwritten by the scaled one.
     """
@@ -232,7 +213,9 @@ def factored(f):
         for column in range(f.n):
             for p in range(f.a_start[column], f.a_start[column + 1]):
                 f.a[p] /= f.scale[f.a_row[p]] * f.scale[column]
-    equilibrate(f)
+    _take_diagonal(f)
+    spread_inertia(f)
+    _scale_by_work(f)
     scale(f)
     return factor(f)
 

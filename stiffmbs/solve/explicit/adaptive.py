@@ -29,8 +29,8 @@ PAUSED, AT_END, AT_EVENT = 0, 1, 2
 WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
 MOST_LOOKS_APART = 16
-SOON_AGAIN = 8
-"""Steps of a leg up to which its end is looked at for a force that jumps back and forth."""
+SOON_AGAIN, NOW_AND_THEN = 4, 8
+"""Steps of a leg up to which its end is looked at for a force that jumps back and forth, and events of which one is in any case."""
 SOON = 8
 """A look comes sooner where stability holds back one in so many of the steps until then."""
 
@@ -101,11 +101,11 @@ class AdaptiveRun:
     def _leg(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
         work, advance, status = self.work, ADVANCE.load(), PAUSED
-        if work.count("steps") - self._begun <= SOON_AGAIN:
-            self._chattering.begin(work.t, self._start.q, self._start.u)
-        self._begun = work.count("steps")
         most = min(leaving.first, work.room) if leaving else work.room
         work.h = first_step(self._scheme, self._mechanics, self._start, work.t, self._grid.end, self._settings)
+        if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
+            self._chattering.begin(work.t, self._start.q, self._start.u)
+        self._begun = work.count("steps")
         while status == PAUSED:
             held = max(1, most // SOON) if leaving else most
             status = advance(stop, most, held, self._grid.times is None, work.at)
