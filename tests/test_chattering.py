@@ -17,7 +17,11 @@ SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
 def solve(model, solver, monkeypatch, **how):
     if solver == "callbacks":
         monkeypatch.setattr(bdf, "available", lambda: (False, "not wanted here"))
-    chosen = {"solver": "projected", "scheme": solver} if solver.startswith("dop") else {"solver": solver.replace("callbacks", "bdf")}
+    chosen = (
+        {"solver": "projected", "scheme": solver}
+        if solver.startswith("dop")
+        else {"solver": solver.replace("callbacks", "bdf")}
+    )
     return stiffmbs.run(model, **chosen, **{"duration": 2.0, "points": 101, **how})
 
 
@@ -93,7 +97,9 @@ def test_looks_at_a_jump_leave_fixed_steps_as_they_are(monkeypatch):
     found = []
     for looks in (50, 1):
         monkeypatch.setattr("stiffmbs.solve.explicit.fixed.LOOKS", looks)
-        found.append(stiffmbs.run(block("-5*sign(block.vx)", velocity=(1, 0)), solver="projected", duration=1.0, points=101))
+        found.append(
+            stiffmbs.run(block("-5*sign(block.vx)", velocity=(1, 0)), solver="projected", duration=1.0, points=101)
+        )
     np.testing.assert_array_equal(found[0]["block.x"], found[1]["block.x"])
 
 

@@ -26,7 +26,9 @@ def sled(**how):
     model = Model()
     model.add("sled", Body(mass=1, inertia=1))
     model.add("rail", Prismatic(i="sled", j="ground"))
-    model.add("push", Drive(joint="rail", **how) if "force" not in how else AppliedForce(i="sled", force=(how["force"], 0)))
+    model.add(
+        "push", Drive(joint="rail", **how) if "force" not in how else AppliedForce(i="sled", force=(how["force"], 0))
+    )
     return model
 
 
@@ -67,14 +69,18 @@ def test_the_earliest_of_several_ends_is_told_for_independent_bodies():
 def test_steps_below_the_precision_of_time_end_the_run():
     """A force over the state and time with a pole: the explicit steps shrink until t + h = t."""
     for scheme in ("dop853", "dopri5"):
-        solution = stiffmbs.run(sled(force="(sled.x + 1)/(t - 0.5)"), duration=2.0, points=21, solver="projected", scheme=scheme)
+        solution = stiffmbs.run(
+            sled(force="(sled.x + 1)/(t - 0.5)"), duration=2.0, points=21, solver="projected", scheme=scheme
+        )
         assert solution.outcome is Outcome.STOPPED
         assert "t = 0.5 s" in solution.message
         assert solution.solver["steps"] < 1000
 
 
 def test_output_points_that_numbers_cannot_tell_apart_are_refused():
-    with pytest.raises(stiffmbs.errors.InputError, match="output points 0.01 s apart at t = 1e\\+15 s, expected 20 s or more"):
+    with pytest.raises(
+        stiffmbs.errors.InputError, match="output points 0.01 s apart at t = 1e\\+15 s, expected 20 s or more"
+    ):
         stiffmbs.run(sled(force="1"), start=1e15, duration=10.0)
 
 

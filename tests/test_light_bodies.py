@@ -22,7 +22,9 @@ def sprung(inertia):
 
 def two_in_a_chain(inertia):
     model = sprung(inertia)
-    second = model.add("second", Body(mass=1, inertia=inertia, position=(0.5 * np.sin(1) + 0.5, -0.5 * np.cos(1)), angle=np.pi / 2))
+    second = model.add(
+        "second", Body(mass=1, inertia=inertia, position=(0.5 * np.sin(1) + 0.5, -0.5 * np.cos(1)), angle=np.pi / 2)
+    )
     model.add("hinge2", Revolute(i=second.at(0, 0.5), j="mass"))
     model.add("spring2", TorsionSpring(i="second", j="mass", stiffness=50))
     return model
@@ -44,7 +46,9 @@ def massless_coupler(inertia):
     model = Model(gravity=(0, -G))
     end = 0.2 + np.sqrt(0.36 - 0.04)
     crank = model.add("mass", Body(mass=1, inertia=0.1, position=(0.1, 0.1), angle=np.pi / 4, omega=3.0))
-    rod = model.add("rod", Body(mass=inertia, inertia=inertia, position=((0.2 + end) / 2, 0.1), angle=np.arctan2(-0.2, end - 0.2)))
+    rod = model.add(
+        "rod", Body(mass=inertia, inertia=inertia, position=((0.2 + end) / 2, 0.1), angle=np.arctan2(-0.2, end - 0.2))
+    )
     model.add("slider", Body(mass=1, inertia=1, position=(end, 0)))
     model.add("o", Revolute(i=crank.at(-0.1 * np.sqrt(2), 0), j="ground"))
     model.add("k", Revolute(i=rod.at(-0.3, 0), j=crank.at(0.1 * np.sqrt(2), 0)))
@@ -56,10 +60,15 @@ def massless_coupler(inertia):
 def in_space(inertia):
     """The same sprung mass, about the negative y axis of space."""
     model = spatial.Model(gravity=(0, 0, -G))
-    mass = model.add("mass", spatial.Body(mass=2, inertia=(inertia,) * 3, position=(0.5 * np.sin(1), 0, -0.5 * np.cos(1))))
+    mass = model.add(
+        "mass", spatial.Body(mass=2, inertia=(inertia,) * 3, position=(0.5 * np.sin(1), 0, -0.5 * np.cos(1)))
+    )
     at = (-0.5 * np.sin(1), 0, 0.5 * np.cos(1))
     axis = {"z": (0, -1, 0), "x": (1, 0, 0)}
-    hinge = {"i": spatial.Marker(body="mass", point=at, orientation=axis), "j": spatial.Marker(body="ground", orientation=axis)}
+    hinge = {
+        "i": spatial.Marker(body="mass", point=at, orientation=axis),
+        "j": spatial.Marker(body="ground", orientation=axis),
+    }
     model.add("hinge", spatial.Revolute(**hinge))
     model.add("spring", spatial.TorsionSpring(**hinge, stiffness=100, free_angle=-1.0))
     return model
@@ -83,7 +92,13 @@ def test_the_sprung_mass_moves_as_its_equation_says(inertia):
     """2*0.25 phi'' = -100 phi - 2 g 0.5 sin(phi)."""
     solution = stiffmbs.run(sprung(inertia), solver="auto", rtol=1e-9, duration=1.0, points=11)
     expected = solve_ivp(
-        lambda t, y: (y[1], -(100 * y[0] + G * np.sin(y[0])) / 0.5), (0, 1), (1.0, 0.0), "DOP853", solution.time, rtol=1e-12, atol=1e-12
+        lambda t, y: (y[1], -(100 * y[0] + G * np.sin(y[0])) / 0.5),
+        (0, 1),
+        (1.0, 0.0),
+        "DOP853",
+        solution.time,
+        rtol=1e-12,
+        atol=1e-12,
     )
     np.testing.assert_allclose(solution["mass.angle"], expected.y[0], atol=1e-7)
     assert solution.solver["steps"] < 100

@@ -6,6 +6,8 @@ from .access import compiled
 
 LIGHT, SPREAD_OVER = 1e-6, 4
 """Part of what joints couple a body to, below which its own inertia is no scale; joints over which that is looked at."""
+COUPLES = 0.1
+"""Part of an equation's largest entry from which on another one couples: one that a pose leaves near zero would count as a gear."""
 
 
 @compiled
@@ -24,13 +26,14 @@ def spread_inertia(f):
 @compiled
 def _spread(f, row):
     """Along one equation, whose row of J is its column in the symmetric matrix."""
+    largest = 0.0
+    for p in range(f.a_start[row], f.a_start[row + 1]):
+        largest = max(largest, abs(f.a[p]))
     heaviest = 0.0
     for p in range(f.a_start[row], f.a_start[row + 1]):
         k = f.a_row[p]
-        if f.a[p] != 0.0 and f.work[k] > 0.0:
+        if abs(f.a[p]) > COUPLES * largest and f.work[k] > 0.0:
             heaviest = max(heaviest, f.work[k] / (f.a[p] * f.a[p]))
-    if not heaviest < float("inf"):
-        return
     for p in range(f.a_start[row], f.a_start[row + 1]):
         k = f.a_row[p]
         coupled = heaviest * f.a[p] * f.a[p]
