@@ -79,7 +79,7 @@ def test_steps_below_the_precision_of_time_end_the_run():
 
 def test_output_points_that_numbers_cannot_tell_apart_are_refused():
     with pytest.raises(
-        stiffmbs.errors.InputError, match="output points 0.01 s apart at t = 1e\\+15 s, expected 20 s or more"
+        stiffmbs.errors.InputError, match=r"output points 0.01 s apart at t = 1e\+15 s, expected 20 s or more"
     ):
         stiffmbs.run(sled(force="1"), start=1e15, duration=10.0)
 

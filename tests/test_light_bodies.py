@@ -60,9 +60,7 @@ def massless_coupler(inertia):
 def in_space(inertia):
     """The same sprung mass, about the negative y axis of space."""
     model = spatial.Model(gravity=(0, 0, -G))
-    mass = model.add(
-        "mass", spatial.Body(mass=2, inertia=(inertia,) * 3, position=(0.5 * np.sin(1), 0, -0.5 * np.cos(1)))
-    )
+    model.add("mass", spatial.Body(mass=2, inertia=(inertia,) * 3, position=(0.5 * np.sin(1), 0, -0.5 * np.cos(1))))
     at = (-0.5 * np.sin(1), 0, 0.5 * np.cos(1))
     axis = {"z": (0, -1, 0), "x": (1, 0, 0)}
     hinge = {

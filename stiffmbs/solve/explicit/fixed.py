@@ -120,7 +120,7 @@ def _jumps(mechanics: Mechanics, stepper: Stepper, t: float, step: float) -> str
     q, u = stepper.q.copy(), stepper.u.copy()
     mechanics.state.q[:], mechanics.state.u[:] = q, u
     change = 2.0 * step * float(np.max(np.abs(mechanics.accelerate(t)[1]), initial=0.0))
-    found = sliding(mechanics, t, q, u, min(max(change, FAR), FARTHEST)) if np.isfinite(change) else []
+    found = sliding(mechanics, t, q, u, min(max(change, FAR), FARTHEST))
     stepper.q[:], stepper.u[:] = q, u
     return f"at t = {t:.6g} s and before, {jump_sentence(mechanics, int(found[0]))}" if len(found) else ""
 
