@@ -41,7 +41,7 @@ class Chattering:
     def __init__(self, mechanics: Mechanics, end: float, rtol: float) -> None:
         self._mechanics, self._end = mechanics, end
         self._reach = min(max(FAR, TOLERANCES * rtol), FARTHEST)
-        self._any = mechanics.system.n_values("switch") > 0
+        self._any = mechanics.system.n_switches > 0
         self._events: deque[float] = deque(maxlen=2 * WINDOW + 1)
         self._count = 0
         self._mark: tuple[float, int] | None = None

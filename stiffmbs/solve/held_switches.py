@@ -40,7 +40,7 @@ class HeldSwitches:
 
     def __init__(self, mechanics: Mechanics, chattering: Chattering) -> None:
         self._mechanics, self._chattering = mechanics, chattering
-        n = mechanics.system.n_values("switch")
+        n = mechanics.system.n_switches
         self.waits, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         self._steps = 0
 

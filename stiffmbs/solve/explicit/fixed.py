@@ -115,7 +115,7 @@ def solve_with_fixed_steps(
 
 def _jumps(mechanics: Mechanics, stepper: Stepper, t: float, step: float) -> str:
     """That steps cross the jump of a force back and forth about a state; empty where they do not."""
-    if not mechanics.system.n_values("switch"):
+    if not mechanics.system.n_switches:
         return ""
     q, u = stepper.q.copy(), stepper.u.copy()
     mechanics.state.q[:], mechanics.state.u[:] = q, u

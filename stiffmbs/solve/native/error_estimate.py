@@ -1,0 +1,54 @@
+"""The error of a Runge-Kutta step, by the schemes that are embedded in it, and where these tell nothing."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from stiffmbs.compile.native.access import compiled, shifted
+from stiffmbs.solve.native.stages import add_stages
+
+DOUBTED = 1e3
+"""The error that a step counts for which cannot be trusted."""
+
+
+@compiled
+def _squares(x, c, row):
+    """The mean square of the difference to an embedded scheme, over the tolerance (without the factor h)."""
+    for i in range(x.n):
+        x.difference[i] = 0.0
+    add_stages(x, x.difference, shifted(c.errors, row * c.extended), c.stages + 1, 1.0)
+    total = 0.0
+    for i in range(x.n):
+        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        ratio = x.difference[i] / scale
+        total += ratio * ratio
+    return total / x.n
+
+
+@compiled
+def error_of(x, c, h):
+    """The estimated error of the step over the tolerance."""
+    first = _squares(x, c, 0)
+    if c.n_errors == 1:
+        return h * sqrt(first)
+    both = first + 0.01 * _squares(x, c, 1)
+    return h * first / sqrt(both) if both != 0.0 else 0.0
+
+
+@compiled
+def error_or_doubt(x, c, h):
+    """The estimated error over the tolerance, or at least `DOUBTED` where the stages have gone astray.
+
+    Stages that leave a stiff contact at its far side see no force there; all differences between schemes then cancel, and
+    the estimate is zero for a step that is nonsense.  The last stage, at the step's end, is then further from the end
+    than the whole step is long.
+    """
+    error = error_of(x, c, h)
+    astray = 0.0
+    way = 0.0
+    for i in range(x.n):
+        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        off, moved = (x.y[i] - x.y_stage[i]) / scale, (x.y[i] - x.y_before[i]) / scale
+        astray += off * off
+        way += moved * moved
+    return max(error, DOUBTED) if astray > way and astray > x.n else error
