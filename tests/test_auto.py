@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs import AppliedForce, Body, Bushing, Model, Prismatic
+from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
 
 
 @pytest.mark.parametrize("name", ["cart_pendulum", "four_bars", "bouncing_ball", "crank_slider"])
@@ -98,7 +98,35 @@ def test_bdf_that_falls_behind_is_left_again():
 def test_where_explicit_steps_stop_the_run_is_bdfs_from_its_start(examples):
     """Four-bars through all their flat poses: a start near one, in mid-run, would put them on a wrong way."""
     scene = stiffmbs.load_scene(examples / "four_bars.yaml", [("N", "2")])
-    solution = stiffmbs.run(scene, solver="auto", duration=20.0, points=201, rtol=1e-9)
+    solution = stiffmbs.run(scene, solver="auto", duration=20.0, points=201, rtol=1e-10)
     assert "auto chose bdf, as explicit steps stopped at t = " in solution.notes[0]
     top = 2 * solution["v0.x"][-1], 2 * solution["v0.y"][-1]
     assert top == pytest.approx((0.839746574269, 0.542978536412), abs=3e-5)
+
+
+def test_flat_poses_are_passed_by_explicit_steps_where_no_digits_are_lost(examples):
+    scene = stiffmbs.load_scene(examples / "four_bars.yaml", [("N", "2")])
+    solution = stiffmbs.run(scene, solver="auto", duration=20.0, points=201, rtol=1e-9)
+    assert solution.solver["name"] == "projected"
+    top = 2 * solution["v0.x"][-1], 2 * solution["v0.y"][-1]
+    assert top == pytest.approx((0.839746574269, 0.542978536412), abs=1e-6)
+
+
+def test_output_points_within_one_explicit_step_do_not_ask_for_a_change_of_hands():
+    """A pendulum of 100 m whose steps are seconds long, seen each 0.1 ms."""
+    model = Model(gravity=(0, -9.81))
+    model.add("bob", Body(mass=100, inertia=1, position=(5, -100)))
+    model.add("rope", Distance(i="bob", j="ground", length=np.sqrt(10025)))
+    solution = stiffmbs.run(model, solver="auto", duration=10.0, output=1e-4)
+    assert solution.solver["name"] == "projected"
+    assert solution.solver["steps"] < 20
+    assert len(solution.time) == 100_001
+    w = np.sqrt(9.81 / np.sqrt(10025))
+    np.testing.assert_allclose(solution["bob.x"], 5 * np.cos(w * solution.time), atol=0.01)
+
+
+def test_output_points_of_the_last_explicit_step_are_kept_where_hands_change():
+    model = stiffening(0.3)
+    solution = stiffmbs.run(model, solver="auto", duration=1.5, output=1e-6, rtol=1e-4)
+    assert solution.solver["name"] == "projected, bdf"
+    np.testing.assert_allclose(np.diff(solution.time), 1e-6, rtol=1e-6)

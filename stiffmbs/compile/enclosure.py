@@ -204,10 +204,13 @@ log = _rising(lambda x: np.log(_positive(x)), lambda x: 1 / _positive(x)[::-1])
 sinh = _rising(np.sinh, lambda x: np.array([np.ones_like(x[0]), np.cosh(x).max(axis=0)]))
 tanh = _rising(np.tanh, lambda x: np.broadcast_to([[0.0], [1.0]], x.shape))
 atan = _rising(np.arctan, lambda x: np.broadcast_to([[0.0], [1.0]], x.shape))
-asin = _rising(lambda x: np.arcsin(np.clip(x, -1, 1)), lambda x: np.broadcast_to([[1.0], [np.inf]], x.shape))
+asin = _rising(
+    lambda x: np.where((x[1] < -1) | (x[0] > 1), np.nan, np.arcsin(np.clip(x, -1, 1))),
+    lambda x: np.broadcast_to([[1.0], [np.inf]], x.shape),
+)
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sin": sin, "cos": cos, "tan": lambda x: sin(x) / cos(x), "sqrt": sqrt, "exp": exp, "log": log,
-    "sinh": sinh, "cosh": lambda x: (exp(x) + exp(-x)) / 2, "tanh": tanh, "atan": atan, "asin": asin,
+    "sinh": sinh, "cosh": lambda x: x.composed(np.cosh(absolute(x).value), np.sinh(x.value)), "tanh": tanh, "atan": atan, "asin": asin,
     "acos": lambda x: np.pi / 2 - asin(x), "atan2": atan2, "abs": absolute, "sign": sign,
     "min": minimum, "max": maximum, "step": step, "step5": step5, "branch": branch,
 }  # fmt: skip

@@ -11,6 +11,8 @@ from .fields import Described, Measured
 
 MOST_OUTPUTS = 10_000_000
 """Output times of a run; a body and a joint take 2 GB at so many, in a temporary file."""
+FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
+"""Stretches of time that a run must be able to tell apart, and how long each must be, in parts of the times themselves."""
 
 
 class RunSettings(Described):
@@ -82,5 +84,18 @@ class RunSettings(Described):
         if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
             raise ValueError(
                 f"found {asked:.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _told_apart(self) -> RunSettings:
+        """Two output points must differ by more than the rounding of the time itself."""
+        count = self.points - 1 if isinstance(self.points, int) else FEWEST_APART
+        spacing = min(self.duration, self.output or self.duration / count)
+        least = ROUNDINGS_APART * max(abs(self.start), abs(self.start + self.duration))
+        if spacing < least:
+            raise ValueError(
+                f"found output points {spacing:.3g} s apart at t = {self.start:.6g} s, expected {least:.3g} s or more: numbers of 16 "
+                "digits tell shorter times no longer apart there"
             )
         return self

@@ -20,6 +20,7 @@ from ..solve import SOLVERS
 from ..solve.explicit import ADAPTIVE
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
+from ..solve.input_ends import solve_up_to_the_inputs_end
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.pieces import Piece, leave_out_coordinates, piece_of, solve_pieces
 from ..solve.suspect import suspect
@@ -62,9 +63,13 @@ class Job:
     def integrate(self, watch: Watch | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver], watch or (lambda t: None)
-        if self.pieces:
-            return solve_pieces(solve, self.pieces, self.start, self.grid, self.settings, watch)
-        return solve(self.mechanics, self.start, self.grid, self.settings, watch)
+
+        def over(grid: Grid) -> Trajectory:
+            if self.pieces:
+                return solve_pieces(solve, self.pieces, self.start, grid, self.settings, watch)
+            return solve(self.mechanics, self.start, grid, self.settings, watch)
+
+        return solve_up_to_the_inputs_end(self.mechanics, self.grid, over)
 
 
 def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:

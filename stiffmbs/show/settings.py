@@ -46,7 +46,8 @@ def output_grid(settings: RunSettings) -> Grid:
     if settings.output is not None:
         count = int(np.floor(settings.duration / settings.output * (1 + 1e-12))) + 1
         times = start + settings.output * np.arange(count)
-        times = np.append(times, end) if end - times[-1] > 1e-9 * settings.output else np.append(times[:-1], end)
+        whole = count > 1 and end - times[-1] <= 1e-9 * settings.output
+        times = np.append(times[:-1] if whole else times, end)
         return Grid(start, end, times)
     points = settings.points if isinstance(settings.points, int) else DEFAULT_POINTS
     return Grid(start, end, np.linspace(start, end, points))

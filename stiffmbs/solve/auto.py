@@ -141,6 +141,8 @@ class _Shared:
         seen = _Pace(
             work.t, work.count("steps"), work.count("steps") + work.count("rejected"), work.count("stiff_steps")
         )
+        if seen.steps == self._pace.steps:  # a look for the sake of output points alone
+            return False
         before, self._pace = self._pace, seen
         held = (seen.held - before.held) / (seen.steps - before.steps)
         if held < HELD_BACK:
@@ -164,8 +166,7 @@ class _Shared:
         leg = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
         self._legs.append(replace(leg, solver="bdf"))
         reached = self._implicit.reached
-        assert reached is not None  # it reports its end at the least
-        if leg.outcome is not Outcome.DONE or reached.t >= self._grid.end:
+        if leg.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
         self._state = self._implicit.split(reached.y)
         self._amends = max(AMENDS * self._trial, 2.0 * self._amends)

@@ -11,6 +11,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from .chattering import Chattering
 from .engine import Engine, Reached
 from .error_control import CHOSEN, ErrorControl
 from .formulations import FORMULATIONS
@@ -160,7 +161,6 @@ class Integrator:
                 )
         self._jumps: list[str] = []
         self._events = self._corners = 0
-        self._held = HeldSwitches(mechanics)
 
     def note(self) -> str:
         """What the user should know: how IDA runs, jumps of velocities, an order held down."""
@@ -177,15 +177,21 @@ class Integrator:
         """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
         t = grid.start
         self._jumps.clear()
+        chattering = Chattering(self.mechanics, grid.end, self.settings.rtol)
+        self._held = HeldSwitches(self.mechanics, chattering)
         for stop in (*self.mechanics.corner_times(grid.start, grid.end).tolist(), grid.end):
             while _just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
-                self._held.begin(t, start.q, start.u)
                 self._begin(start, t)
+                chattering.begin(t, start.q, start.u)
                 for reached in self._leg(t, stop, grid):
                     yield reached if not reached.failure else self._explained(reached)
+                    if reached.t < stop and not (reached.fired or reached.failure):
+                        chattering.look(reached.t, *self.split(reached.y), self._steps())
                 if reached.failure:
                     return
+                if reached.fired:
+                    chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0])
                 before = t = reached.t
                 if t < grid.end:
                     q, u = self.split(reached.y)

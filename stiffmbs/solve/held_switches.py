@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..errors import SolverError
+from .chattering import Chattering, jump_sentence
 from .mechanics import Mechanics
-from .two_sides import jumping, sliding
+from .two_sides import jumping
 
 FEW_STEPS, TIMES_THE_WAIT = 4, 4
 """An event within so many steps of a start, and of the wait before, counts as one by rounding."""
@@ -29,6 +29,8 @@ class HeldSwitches:
     Parameters
     ----------
     mechanics : Mechanics
+    chattering : Chattering
+        Of the same run.
 
     Attributes
     ----------
@@ -36,8 +38,8 @@ class HeldSwitches:
         Steps from the next start on for which each switch is not to be looked at.
     """
 
-    def __init__(self, mechanics: Mechanics) -> None:
-        self._mechanics = mechanics
+    def __init__(self, mechanics: Mechanics, chattering: Chattering) -> None:
+        self._mechanics, self._chattering = mechanics, chattering
         n = mechanics.system.n_switches
         self.waits, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         self._steps = 0
@@ -46,17 +48,6 @@ class HeldSwitches:
     def any(self) -> bool:
         """Whether the system has switches."""
         return bool(len(self.waits))
-
-    def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Look at the state from which the integrator is to start.
-
-        Raises
-        ------
-        SolverError
-            Where a force drives the motion back from both sides of its jump; names the element.
-        """
-        if self.any:
-            self._refuse(t, sliding(self._mechanics, t, q, u))
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
         """Take note of the end of a leg, after so many steps of the run, by the switches that have fired.
@@ -73,21 +64,10 @@ class HeldSwitches:
         self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MOST)
         telling = again[self._in_succession[again] >= TELLING]
         if len(telling):
-            self._refuse(t, np.intersect1d(telling, jumping(self._mechanics, t, q, u)))
+            self._chattering.refuse(t, np.intersect1d(telling, jumping(self._mechanics, t, q, u)))
         self.waits = np.where(self._in_succession, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 1, 0), 0)
-
-    def _refuse(self, t: float, switches: np.ndarray) -> None:
-        if len(switches):
-            raise SolverError(f"stopped at t = {t:.9g} s: {self._sentence(int(switches[0]))}")
-
-    def _sentence(self, switch: int) -> str:
-        return (
-            f"'{self._mechanics.system.writer('switch', switch)}' jumps back and forth, as a force does that changes its "
-            "sign where the motion comes to rest: no motion follows it from there on; expected a force that is steep "
-            "there, without a jump: joint_friction with its smooth_velocity, or tanh(v/0.001) in place of sign(v)"
-        )
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Why the integrator could not go on, where a force that jumps is the reason; empty for other reasons."""
         found = jumping(self._mechanics, t, q, u) if self.any else self.waits
-        return self._sentence(int(found[0])) if len(found) else ""
+        return jump_sentence(self._mechanics, int(found[0])) if len(found) else ""

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.corners import corner_times
+from ..compile.input_ends import InputEnd, first_input_end
 from ..compile.layout import MECHANICS, packed
 from ..compile.routines import together
 from ..compile.state import State
@@ -91,6 +92,7 @@ class Mechanics:
         counting = system.term("acceleration", "counting")
         self._counting = counting.source.astype(np.int64), counting.row.astype(np.int64)
         self._corners = np.inf, -np.inf, np.empty(0)
+        self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
             MECHANICS,
             {
@@ -132,6 +134,12 @@ class Mechanics:
             times = corner_times(self.system, start, end)
             self._corners = start, end, times
         return times[(times > start) & (times < end)]
+
+    def input_end(self, start: float, end: float) -> InputEnd | None:
+        """Where the first formula of time ends between two instants, sought once for all runs between them."""
+        if self._input_end[:2] != (start, end):
+            self._input_end = start, end, first_input_end(self.system, start, end)
+        return self._input_end[2]
 
     @property
     def _at(self) -> int:

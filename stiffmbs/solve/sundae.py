@@ -26,7 +26,10 @@ HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
 """Numbers before the first time in the history (as in `stiffmbs.solve.native.ida_callbacks`), and times kept."""
 DENSE_UP_TO = 90
 """Unknowns up to which the dense linear solver is as fast as the sparse one."""
-MOST_STEPS_BETWEEN_OUTPUTS = 10_000_000
+STEPS_AT_ONCE = 20_000
+"""Steps after which it hands over where it is."""
+TOO_MUCH_WORK = -1
+"""IDA's status where a call has come to its most steps: it goes on when it is called again."""
 TOGETHER = 20
 """Output times that are handed over together, as a handing over costs more than a step."""
 ROOT_FOUND = 2
@@ -148,7 +151,7 @@ class SundaeEngine:
             warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
             self._ida = SundialsIda(
                 self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
-                max_num_steps=MOST_STEPS_BETWEEN_OUTPUTS, max_step=max_step, **options,
+                max_num_steps=STEPS_AT_ONCE, max_step=max_step, **options,
             )  # fmt: skip
         self._before = {"residuals": 0, "jacobians": 0}
         self._since = {"residuals": 0, "jacobians": 0}
@@ -177,16 +180,19 @@ class SundaeEngine:
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
-        ends_there = len(times) > 0 and times[-1] == stop
-        for first in range(0, len(times), TOGETHER):
-            reached = self._several(times[first : first + TOGETHER], stop)
+        ends_there, served = len(times) > 0 and times[-1] == stop, 0
+        while served < len(times):
+            reached = self._several(times[served : served + TOGETHER], stop)
+            served += len(reached.times)
             yield reached
             if self._interrupted:
                 raise KeyboardInterrupt
             if reached.fired or reached.failure:
                 return
-        if not ends_there:
-            yield self._reached(self._ida.step(stop, method="normal", tstop=stop), False)
+        while not ends_there:
+            reached = self._reached(self._ida.step(stop, method="normal", tstop=stop), False)
+            yield reached
+            ends_there = bool(reached.fired or reached.failure or reached.t >= stop)
 
     def _several(self, times: np.ndarray, stop: float) -> Reached:
         """Integrate to the last of a few output times; to what ends it before."""
@@ -213,7 +219,8 @@ class SundaeEngine:
 
     def _reached(self, result: Any, asked_for: bool) -> Reached:
         self._since = {"residuals": result.nfev, "jacobians": result.njev}
-        failure = result.message.rstrip(".").lower() if result.status < 0 else ""
+        failed = result.status < 0 and result.status != TOO_MUCH_WORK
+        failure = result.message.rstrip(".").lower() if failed else ""
         fired = tuple(map(int, np.flatnonzero(result.i_events[-1]))) if result.status == ROOT_FOUND else ()
         rows = 1 if asked_for and not failure and not fired else 0
         times, y = np.array([result.t])[:rows], np.asarray(result.y)

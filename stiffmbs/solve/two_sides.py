@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -13,6 +14,8 @@ FAR, NEAR = 1e-6, 1e-9
 JUMPS, LEAST = 0.1, 1e-9
 """A force jumps where the smaller move leaves that part of the larger one's change of accelerations, and that many
 m/s^2 or rad/s^2."""
+BISECTIONS = 30
+"""Halvings of a move in search of the zero of a switch: from 0.1 to the rounding of the smaller move."""
 AHEAD = 1e-4
 """Time, s, over which the rate of a switch is taken."""
 
@@ -49,31 +52,59 @@ def jumping(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.
     return crossed if near > max(JUMPS * far, LEAST) else crossed[:0]
 
 
-def sliding(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+def sliding(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float = FAR) -> np.ndarray:
     """The switches that the motion is driven to from both sides, by a force that jumps there.
 
     There is then no solution in the ordinary sense but a sliding mode (Filippov, Differential Equations with
     Discontinuous Righthand Sides, 1988, ch. 2): sign(v) at rest is one.
+
+    Parameters
+    ----------
+    reach : float
+        Size of the move, as `FAR`, within which a jump is looked for.
     """
-    crossed = _crossed(mechanics, t, q, u)
+    crossed = _crossed(mechanics, t, q, u, reach)
     if not len(crossed):
         return crossed
-    back, change = np.ones(len(crossed), dtype=bool), []
+    back = _driven_back(_sides(mechanics, t, q, u, reach), crossed)
+    return np.array([k for k in crossed[back] if _slides(mechanics, t, q, u, reach, k)], dtype=int)
+
+
+def _driven_back(sides: list[_Side], switches: np.ndarray) -> np.ndarray:
+    """Whether the motion returns from both sides to the zero of each switch."""
+    a, b = sides
+    return (a.rates[switches] * a.values[switches] < 0.0) & (b.rates[switches] * b.values[switches] < 0.0)
+
+
+def _slides(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float, switch: int) -> bool:
+    """Whether the rates on both sides of a switch's zero differ as much however near the sides are to it."""
+    q, u = _moved(q, u, _zero_within(mechanics, t, q, u, reach, switch))
+    change = []
     for size in (FAR, NEAR):
-        a, b = (_of(side, crossed) for side in _sides(mechanics, t, q, u, size))
-        back &= (a.rates * a.values < 0.0) & (b.rates * b.values < 0.0)
-        change.append(np.abs(a.rates - b.rates))
+        sides = _sides(mechanics, t, q, u, size)
+        if not _driven_back(sides, np.array([switch]))[0]:
+            return False
+        change.append(abs(sides[0].rates[switch] - sides[1].rates[switch]))
     far, near = change
-    return crossed[back & (near > JUMPS * far) & (near > LEAST)]
+    return bool(near > max(JUMPS * far, LEAST))
 
 
-def _of(side: _Side, switches: np.ndarray) -> _Side:
-    return _Side(side.values[switches], side.acceleration, side.rates[switches])
+def _zero_within(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float, switch: int) -> float:
+    """The size of the move, between -reach and reach, at which a switch changes its sign."""
+    low, high = -reach, reach
+    above = _values(mechanics, t, *_moved(q, u, high))[switch] > 0.0
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if (_values(mechanics, t, *_moved(q, u, middle))[switch] > 0.0) == above:
+            high = middle
+        else:
+            low = middle
+    return 0.5 * (low + high)
 
 
-def _crossed(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """The switches that differ in sign between the two sides of the smaller move."""
-    one, other = (_values(mechanics, t, *_moved(q, u, way * NEAR)) for way in (1.0, -1.0))
+def _crossed(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float = NEAR) -> np.ndarray:
+    """The switches that differ in sign between the two sides of a move."""
+    one, other = (_values(mechanics, t, *_moved(q, u, way * reach)) for way in (1.0, -1.0))
     return np.flatnonzero(one * other < 0.0)
 
 
@@ -82,9 +113,17 @@ def _sides(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, size: f
 
 
 def _moved(q: np.ndarray, u: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
-    rng = np.random.default_rng(1)
-    moved = [x + size * np.maximum(1.0, np.abs(x)) * rng.uniform(-1, 1, len(x)) for x in (q, u)]
+    parts = _direction(len(q), len(u))
+    moved = [x + size * np.maximum(1.0, np.abs(x)) * part for x, part in zip((q, u), parts, strict=True)]
     return moved[0], moved[1]
+
+
+@cache
+def _direction(n_q: int, n_u: int) -> tuple[np.ndarray, np.ndarray]:
+    """A direction of moves that every coordinate and velocity takes part in."""
+    rng = np.random.default_rng(1)
+    first, second = (rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) for n in (n_q, n_u))
+    return first, second
 
 
 def _side(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> _Side:

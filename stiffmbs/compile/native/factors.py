@@ -12,6 +12,7 @@ from math import sqrt
 
 from ..layout import FACTORS
 from .access import compiled, factors_view
+from .coupled_inertia import spread_inertia
 from .memory import FLOAT, INT, holds
 
 KEEP_DIAGONAL = 0.1
@@ -181,16 +182,31 @@ def refactor(f):
 
 
 @compiled
+def _take_diagonal(f):
+    """The entries of the diagonal above zero, in `work`."""
+    for column in range(f.n):
+        f.work[column] = 0.0
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            if f.a_row[p] == column and f.a[p] > 0.0:
+                f.work[column] = f.a[p]
+
+
+@compiled
 def equilibrate(f):
     """Scales for a block matrix [D J^T; J 0]: 1/sqrt(D) for its first unknowns, rows of unit length for its multipliers.
 
     Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill.
     """
+    _take_diagonal(f)
+    _scale_by_work(f)
+
+
+@compiled
+def _scale_by_work(f):
+    """Scales by D in `work`."""
     for column in range(f.n):
-        f.scale[column] = 0.0
-        for p in range(f.a_start[column], f.a_start[column + 1]):
-            if f.a_row[p] == column and f.a[p] > 0.0:
-                f.scale[column] = 1.0 / sqrt(f.a[p])
+        f.scale[column] = 1.0 / sqrt(f.work[column]) if f.work[column] > 0.0 else 0.0
+        f.work[column] = 0.0
     for column in range(f.n):
         if f.scale[column] == 0.0:
             length = 0.0
@@ -212,7 +228,7 @@ def scale(f):
 
 @compiled
 def factored(table):
-    """Factors of the scaled matrix, by the known scales and pivots where they serve, else by new ones.
+    """Factors of the scaled block matrix, by the known scales and pivots where they serve, else by new ones.
 
     The matrix is overwritten by the scaled one.
     """
@@ -224,7 +240,9 @@ def factored(table):
         for column in range(f.n):
             for p in range(f.a_start[column], f.a_start[column + 1]):
                 f.a[p] /= f.scale[f.a_row[p]] * f.scale[column]
-    equilibrate(f)
+    _take_diagonal(f)
+    spread_inertia(f)
+    _scale_by_work(f)
     scale(f)
     return factor(table)
 

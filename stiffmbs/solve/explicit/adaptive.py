@@ -11,6 +11,7 @@ import numpy as np
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
+from ..chattering import Chattering
 from ..initial import InitialValues
 from ..limits import refuse_beyond_limits
 from ..mechanics import Mechanics
@@ -18,7 +19,6 @@ from ..restart import restarted
 from ..suspect import suspect
 from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
-from .chatter import Chatter
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
@@ -29,6 +29,8 @@ PAUSED, AT_END, AT_EVENT = 0, 1, 2
 WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
 MOST_LOOKS_APART = 16
+SOON_AGAIN, NOW_AND_THEN = 4, 8
+"""Steps of a leg up to which its end is looked at for a force that jumps back and forth, and events of which one is in any case."""
 SOON = 8
 """A look comes sooner where stability holds back one in so many of the steps until then."""
 
@@ -66,7 +68,8 @@ class AdaptiveRun:
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
         self._corners = mechanics.corner_times(grid.start, grid.end)
-        self._chatter, self._events = Chatter(system), 0
+        self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
+        self._begun = 0  # steps before the present leg
 
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:
         """Integrate to the end, or to where the run is left; the contract is in `stiffmbs.solve.trajectory`."""
@@ -81,6 +84,7 @@ class AdaptiveRun:
                 if status < 0 or self.left:
                     break
         except SolverError as error:
+            self._store_rows()
             outcome, message = Outcome.STOPPED, str(error)
         except KeyboardInterrupt:
             outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
@@ -99,16 +103,20 @@ class AdaptiveRun:
         work, advance, status = self.work, ADVANCE.load(), PAUSED
         most = min(leaving.first, work.room) if leaving else work.room
         work.h = first_step(self._scheme, self._mechanics, self._start, work.t, self._grid.end, self._settings)
+        if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
+            self._chattering.begin(work.t, self._start.q, self._start.u)
+        self._begun = work.count("steps")
         while status == PAUSED:
             held = max(1, most // SOON) if leaving else most
             status = advance(stop, most, held, self._grid.times is None, work.at)
             work.collect(self._rows)
             self._watch(work.t)
+            if status == PAUSED:
+                self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
-                advance(work.t, 1, 1, self._grid.times is None, work.at)  # the rows up to here
-                work.collect(self._rows)
+                self._store_rows()
                 return status
         if status >= 0 and work.t < self._grid.end:
             self._start = restarted(self._mechanics, work.t, work.q, work.u, self._settings.projection)
@@ -116,8 +124,15 @@ class AdaptiveRun:
             switch = work.begin(self._start)
             if status == AT_EVENT:
                 self._events += 1
-                self._chatter.note(work.t, work.count("steps"), switch)
+                self._chattering.note_event(work.t, self._start.q, self._start.u, switch)
         return status
+
+    def _store_rows(self) -> None:
+        """Store what is asked for up to the time reached."""
+        work, status = self.work, PAUSED
+        while status == PAUSED:
+            status = ADVANCE.load()(work.t, 1, 1, self._grid.times is None, work.at)
+            work.collect(self._rows)
 
     def _statistics(self) -> dict[str, int | float]:
         counted = {name: self.work.count(name) for name in ("steps", "rejected", "accelerations")}

@@ -13,10 +13,12 @@ import numpy as np
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
+from ..chattering import jump_sentence
 from ..initial import InitialValues
 from ..limits import refuse_beyond_limits
 from ..mechanics import POSITION_TOLERANCE, Mechanics
 from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from ..two_sides import FAR, sliding
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS
@@ -25,6 +27,8 @@ EULER_CROMER = Routine(
     "stiffmbs.solve.native.euler_cromer", "euler_cromer", "int64(float64, float64, int64, int64, float64, int64*)"
 )
 FIXED_STEPS = Routine("stiffmbs.solve.native.runge_kutta", "fixed_steps", "int64(float64, float64, int64, int64*)")
+LOOKS, FARTHEST = 50, 0.1
+"""How often a run looks whether a force jumps back and forth, and the largest change of a velocity in a step that is taken for that."""
 ROUNDING = 1e-9
 """Part of a step by which an output time may miss a whole number of steps."""
 
@@ -83,10 +87,11 @@ def solve_with_fixed_steps(
     times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
     rows = Rows(len(stepper.q), len(stepper.u), len(times))
     rows.append(times[0], stepper.q, stepper.u)
-    outcome, message, steps = Outcome.DONE, Outcome.DONE.value, 0
+    outcome, message, steps, note = Outcome.DONE, Outcome.DONE.value, 0, ""
+    apart = max(1, len(times) // LOOKS)
     begun = time.perf_counter()
     try:
-        for t, end in itertools.pairwise(times):
+        for row, (t, end) in enumerate(itertools.pairwise(times), 1):
             count = max(1, math.ceil((end - t) / settings.step - ROUNDING))
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
@@ -95,6 +100,8 @@ def solve_with_fixed_steps(
             steps += count
             refuse_beyond_limits(mechanics, end, stepper.q, stepper.u)
             rows.append(end, stepper.q, stepper.u)
+            if not note and row % apart == 0:
+                note = _jumps(mechanics, stepper, end, settings.step)
             watch(end)
     except SolverError as error:
         outcome, message = Outcome.STOPPED, str(error)
@@ -103,7 +110,19 @@ def solve_with_fixed_steps(
     statistics = {
         "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": time.perf_counter() - begun,
     }  # fmt: skip
-    return Trajectory(*rows.stored, outcome, message, statistics)
+    return Trajectory(*rows.stored, outcome, message, statistics, note=note)
+
+
+def _jumps(mechanics: Mechanics, stepper: Stepper, t: float, step: float) -> str:
+    """That steps cross the jump of a force back and forth about a state; empty where they do not."""
+    if not mechanics.system.n_switches:
+        return ""
+    q, u = stepper.q.copy(), stepper.u.copy()
+    mechanics.state.q[:], mechanics.state.u[:] = q, u
+    change = 2.0 * step * float(np.max(np.abs(mechanics.accelerate(t)[1]), initial=0.0))
+    found = sliding(mechanics, t, q, u, min(max(change, FAR), FARTHEST))
+    stepper.q[:], stepper.u[:] = q, u
+    return f"at t = {t:.6g} s and before, {jump_sentence(mechanics, int(found[0]))}" if len(found) else ""
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:

@@ -41,6 +41,7 @@ class Integration:
         n = self._n_q + len(start.u)
         self.room = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
         self.step_times: list[np.ndarray] = []
+        self._collected = 0  # steps whose ends have been taken over
         self._mechanics = mechanics
         self._scheme, self._eliminated = scheme, mechanics.eliminated
         self._end = scheme.stages
@@ -120,8 +121,9 @@ class Integration:
 
     def collect(self, rows: Rows) -> None:
         """Take over the rows and ends of steps that the last call stored, and make room for the next."""
-        count, before = self.count("rows"), sum(len(ends) for ends in self.step_times)
+        count, before = self.count("rows"), self._collected
         y = self._arrays["row_y"][:count]
         rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :])
         self._arrays["rows"][0] = 0
-        self.step_times.append(self._arrays["ends"][np.arange(before, self.count("steps")) % self.room])
+        self._collected = self.count("steps")
+        self.step_times.append(self._arrays["ends"][np.arange(before, self._collected) % self.room])

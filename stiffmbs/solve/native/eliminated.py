@@ -8,8 +8,9 @@ from __future__ import annotations
 from stiffmbs.compile.native.access import compiled, eliminated_view, state_view
 from stiffmbs.compile.native.evaluate import ACCELERATION, evaluate
 
-LOST = 1e-8
-"""A pivot that keeps less than this part of its diagonal entry is left to the LU with pivoting."""
+SMALL, LOST = 1e-2, 1e-6
+"""Pivots that keep less than the first part of their diagonal entry, and what they may keep together: the loss of digits of one is
+passed on to the next.  Beyond that the LU with pivoting has to do it."""
 
 
 @compiled
@@ -48,12 +49,15 @@ def _factored(r):
     The diagonal slots of `s` receive 1/D.
     """
     at = 0
+    kept = 1.0
     for k in range(r.n):
         first = r.column_start[k]
         end = r.column_start[k + 1]
         pivot = r.s[first]
-        if not pivot > LOST * r.diagonal[k]:
-            return False
+        if not pivot > SMALL * r.diagonal[k]:
+            kept *= pivot / r.diagonal[k]
+            if not kept > LOST:
+                return False
         inverse = 1.0 / pivot
         r.s[first] = inverse
         b = r.b[k]

@@ -72,6 +72,9 @@ def _step(x, c, s, m, end):
     while True:
         if t + STRETCHED * h >= end:
             h = end - t
+        if t + h == t:
+            copied(x.y, x.y_before, x.n)
+            return STEP_TOO_SMALL
         status = attempt(x, c, s, m, h)
         error = error_or_doubt(x, c, h) if status == 0 else 0.0
         if not isfinite(error):
