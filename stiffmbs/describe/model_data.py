@@ -17,6 +17,7 @@ from .formula import UNIT
 from .formula_field import TIME, Formula
 from .formula_names import NAMES, FormulaNames
 from .marker import GROUND, MarkerReference
+from .quoted import quoted
 from .request import Request
 from .units import UNITS
 
@@ -81,7 +82,7 @@ class ModelData(Described):
                 if used:
                     name = used.group()
                     raise ValueError(
-                        f"found '{name}' in '{text}', which is a unit and a request, expected one or the other"
+                        f"found '{name}' in '{quoted(text)}', which is a unit and a request, expected one or the other"
                     )
         return named
 

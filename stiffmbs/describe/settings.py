@@ -12,6 +12,8 @@ from .fields import Described, Measured
 MOST_OUTPUTS = 10_000_000
 """Output times of a run; a body and a joint take 2 GB at so many, in a temporary file."""
 
+MANY = 1e300
+
 
 class RunSettings(Described):
     """Duration, output and solver of a run.
@@ -81,6 +83,6 @@ class RunSettings(Described):
         asked = self.duration / self.output if self.output is not None else self.points
         if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
             raise ValueError(
-                f"found {asked:.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
+                f"found {min(asked, MANY):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
             )
         return self

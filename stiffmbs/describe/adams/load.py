@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ..scene import Scene, file_text, made_scene
+from ..scene import Scene, made_scene
 from ..scene_text import scene_text
+from ..text_file import checked, file_text
 from .commands import read_commands
 from .dataset import Dataset, read_dataset
 from .fault import DatasetFault
@@ -76,7 +77,7 @@ def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
 
 def _scene(text: str, source: str) -> tuple[Dataset, dict[str, Any]]:
     try:
-        dataset = read_dataset(text)
+        dataset = read_dataset(checked(text, source))
         return dataset, scene(dataset)
     except DatasetFault as fault:
         raise InputError(f"{source}, {fault}") from None
