@@ -15,7 +15,6 @@ import numpy as np
 from .system import System
 
 
-
 def _on_both_sides(*edges: float) -> np.ndarray:
     return np.array([*(-edge for edge in reversed(edges)), *edges])
 
@@ -49,7 +48,11 @@ def edges_of(system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     found = [(np.zeros(1), 0.0)] * system.n_switches + list(_of_arguments(system))
     counts = [len(edges) for edges, _ in found]
     first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-    return first, np.concatenate([np.empty(0), *(edges for edges, _ in found)]), np.array([period for _, period in found])
+    return (
+        first,
+        np.concatenate([np.empty(0), *(edges for edges, _ in found)]),
+        np.array([period for _, period in found]),
+    )
 
 
 def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, float]]:

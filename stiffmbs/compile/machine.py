@@ -70,7 +70,8 @@ def _called_text() -> str:
     """The text of what generated sources call."""
     native = Path(__file__).parent / "native"
     return "\0".join(
-        (native / f"{name}.py").read_text(encoding="utf-8") for name in ("counted_angle", "spline", "unwound")
+        (native / f"{name}.py").read_text(encoding="utf-8")
+        for name in ("corners", "counted_angle", "spline", "unwound")
     )
 
 
