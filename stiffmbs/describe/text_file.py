@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from ..errors import InputError
+from .quoted import quoted
 
 STANDARD_INPUT = "-"
 """What a file is called whose text is read from standard input."""
@@ -43,12 +44,15 @@ def file_text(path: str | Path, otherwise: str = "") -> str:
         When the file cannot be read, or is no text.
     """
     source = source_name(path)
+    if str(path) == STANDARD_INPUT and sys.stdin is None:
+        raise InputError(f"{source}: found it closed, expected a scene")
     try:
         content = sys.stdin.buffer.read() if str(path) == STANDARD_INPUT else Path(path).read_bytes()
     except FileNotFoundError:
         raise InputError(f"{source}: found no such file, expected a scene") from None
     except (OSError, ValueError) as error:  # a name may hold what no file system takes
-        raise InputError(f"{source}: the file cannot be read ({getattr(error, 'strerror', None) or error})") from None
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{quoted(source)}: the file cannot be read ({reason})") from None
     return decoded(content, source, otherwise)
 
 

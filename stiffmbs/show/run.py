@@ -25,6 +25,7 @@ from ..solve.pieces import Piece, leave_out_coordinates, piece_of, solve_pieces
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from .channels import channels_of
+from .far_away import refuse_far_away
 from .gaps import reported
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
@@ -116,6 +117,7 @@ def examined(model: ModelBuilder | ModelData, settings: RunSettings | None = Non
             raise InputError(f"give_way: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
     order = [*(name for name in data.joints if name not in chosen.give_way), *chosen.give_way]
     grid = output_grid(chosen)
+    refuse_far_away(data)
     system = compile_model(data)
     return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
 from ..describe.scene import Scene
-from ..errors import AssemblyError, StiffmbsError
+from ..describe.text_file import STANDARD_INPUT, source_name
+from ..errors import AssemblyError, InputError, StiffmbsError
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -76,7 +79,27 @@ def solve_scene(path: str, scene: Scene, verified: bool) -> Solution:
         with ProgressBar(start, start + scene.run.duration) as progress:
             return solve(scene, watch=progress)
     except AssemblyError as error:
-        raise AssemblyError(f"{path}: {error}") from None
+        raise AssemblyError(f"{source_name(path)}: {error}") from None
+
+
+def refuse_own_input(option: str, scene: str, output: Path) -> None:
+    """Refuse to write over the file that is read, by whatever name it is called.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        same = scene != STANDARD_INPUT and os.path.samefile(scene, output)
+    except (OSError, ValueError):  # one of them is not there
+        return
+    if same:
+        raise InputError(f"{option} {output}: found the file that is read, {scene}, expected another one")
+
+
+def file_beside(scene: str, ending: str) -> Path:
+    """Where a command writes that is not told where: a file in the working folder, named after the scene."""
+    return Path(f"{'stdin' if scene == STANDARD_INPUT else Path(scene).stem}{ending}")
 
 
 def refuse(scene: str, error: StiffmbsError, as_json: bool = False) -> NoReturn:
