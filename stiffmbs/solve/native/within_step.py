@@ -167,7 +167,9 @@ def _values(w, s, begun, h, place):
 def _cubic(start, start_rate, end, end_rate, x):
     """The cubic with these values and rates (times the length) at 0 and 1."""
     y = 1.0 - x
-    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (y * start_rate - x * end_rate)
+    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (
+        y * start_rate - x * end_rate
+    )
 
 
 @compiled
