@@ -12,7 +12,7 @@ through, or has visited between its ends, has been overlooked.
 
 from __future__ import annotations
 
-from math import floor, sqrt
+from math import floor, isfinite, sqrt
 
 from stiffmbs.compile.layout import WATCH
 from stiffmbs.compile.native.access import compiled, shifted, view_of
@@ -77,7 +77,7 @@ def noted_rates(rate, value, nearby, ahead, count):
 @compiled
 def _left_out(w, k):
     """Whether a function is not looked at: it waits, has no number, or has changed at the end, which is seen without a search."""
-    if not (w.value_before[k] - w.value_after[k]) * 0.0 == 0.0:
+    if not isfinite(w.value_before[k] - w.value_after[k]):
         return True
     if k >= w.n_switches:
         return False
@@ -167,9 +167,7 @@ def _values(w, s, begun, h, place):
 def _cubic(start, start_rate, end, end_rate, x):
     """The cubic with these values and rates (times the length) at 0 and 1."""
     y = 1.0 - x
-    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (
-        y * start_rate - x * end_rate
-    )
+    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (y * start_rate - x * end_rate)
 
 
 @compiled
