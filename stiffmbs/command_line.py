@@ -22,6 +22,7 @@ from .show.scene_command import (
     STOPPED_EARLY,
     changes_of,
     file_beside,
+    in_file,
     refuse,
     refuse_own_input,
     solve_scene,
@@ -150,7 +151,9 @@ def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     from .show.check import check as examine
 
     try:
-        report = examine(load_scene(scene, changes))
+        loaded = load_scene(scene, changes)
+        with in_file(scene):
+            report = examine(loaded)
     except StiffmbsError as error:
         refuse(scene, error, as_json)
     if as_json:

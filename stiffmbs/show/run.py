@@ -27,6 +27,7 @@ from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from .channels import channels_of
 from .far_away import refuse_far_away
 from .gaps import reported
+from .no_number import no_number_sentences
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
 from .solution import Solution
@@ -164,9 +165,11 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     if project:
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
+    channels = channels_of(job.data, job.mechanics.system, rows)
+    notes = (*_notes(job, trajectory), *left_out, *no_number_sentences(rows.t, channels))
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels_of(job.data, job.mechanics.system, rows), outcome=outcome,
-        message=message, notes=(*_notes(job, trajectory), *left_out), solver=statistics,
+        name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
+        message=message, notes=notes, solver=statistics,
         history=trajectory.history, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),

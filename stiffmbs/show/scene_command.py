@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
@@ -75,11 +76,17 @@ def solve_scene(path: str, scene: Scene, verified: bool) -> Solution:
     else:
         from .run import run as solve
     start = scene.run.start
+    with in_file(path), ProgressBar(start, start + scene.run.duration) as progress:
+        return solve(scene, watch=progress)
+
+
+@contextmanager
+def in_file(path: str) -> Iterator[None]:
+    """Put the file's name before what is found wrong with a scene after it was read."""
     try:
-        with ProgressBar(start, start + scene.run.duration) as progress:
-            return solve(scene, watch=progress)
-    except AssemblyError as error:
-        raise AssemblyError(f"{source_name(path)}: {error}") from None
+        yield
+    except (InputError, AssemblyError) as error:
+        raise type(error)(f"{source_name(path)}: {error}") from None
 
 
 def refuse_own_input(option: str, scene: str, output: Path) -> None:

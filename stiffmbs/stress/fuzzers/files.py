@@ -80,8 +80,11 @@ def _tried(content: bytes, dataset: bool) -> Verdict:
     if solution.outcome is not Ending.DONE:
         return _of_message(solution.message)
     bad = [name for name, values in solution.channels.items() if not np.all(np.isfinite(values))]
-    if bad:
+    unsaid = [name for name in bad if "no finite number" not in " ".join(solution.notes)]
+    if unsaid:
         return Verdict(Outcome.WRONG, detail=f"done, but {bad[0]} is no number at some time; notes: {solution.notes}")
+    if bad:
+        return Verdict(Outcome.TOLD, detail="; ".join(solution.notes))
     return Verdict(Outcome.RIGHT, detail="; ".join(solution.notes))
 
 
