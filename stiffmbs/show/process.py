@@ -13,9 +13,11 @@ from typing import Any
 
 import click
 
+from ..describe.quoted import quoted
 from ..interrupts import INTERRUPTED
 
 FAILED = 1
+OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
 ASKING_TO_END = ("SIGINT", "SIGTERM")
 STANDARD_FILES = (0, 1, 2)
 
@@ -65,8 +67,10 @@ def _status(command: Any) -> int:
 def _reason(error: OSError) -> str:
     if error.errno == errno.ENOMEM:
         return "found too little memory, expected more, or a smaller scene with fewer output points"
-    what = error.filename if error.filename is not None else "standard output"
-    return f"{what}: cannot be read or written ({error.strerror or error})"
+    if error.filename is None and error.errno in OF_OUTPUT:
+        return f"standard output: cannot be written ({error.strerror})"
+    where = f"{quoted(str(error.filename))}: " if error.filename is not None else ""
+    return f"{where}found an error of the operating system ({quoted(error.strerror or str(error))})"
 
 
 def _tell(sentence: str) -> None:

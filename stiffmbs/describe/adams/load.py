@@ -76,8 +76,9 @@ def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _scene(text: str, source: str) -> tuple[Dataset, dict[str, Any]]:
+    text = checked(text, source)
     try:
-        dataset = read_dataset(checked(text, source))
+        dataset = read_dataset(text)
         return dataset, scene(dataset)
     except DatasetFault as fault:
         raise InputError(f"{source}, {fault}") from None
