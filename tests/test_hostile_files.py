@@ -64,6 +64,12 @@ def test_hostile_scenes_are_refused_in_one_sentence(text, words):
     assert "\n" not in str(refused.value)
 
 
+def test_an_unknown_body_behind_a_spring_that_measures_the_mechanism():
+    forces = "forces: {s: {type: spring_damper, i: b, j: {body: ground, point: [1, 0]}, stiffness: 1, free_length: 1}, f: {type: force, i: bb, force: [1, 0]}}\n"
+    with pytest.raises(InputError, match=r"forces\.f\.i: found the unknown body 'bb'"):
+        stiffmbs.read_scene(BODY + forces)
+
+
 def test_aliases_that_stand_for_little_are_read():
     scene = stiffmbs.read_scene("bodies: {a: &m {mass: 1, inertia: 2}, b: *m, c: {<<: *m, mass: 3}}\n")
     assert (scene.bodies["b"].mass, scene.bodies["c"].mass, scene.bodies["c"].inertia) == (1, 3, 2)

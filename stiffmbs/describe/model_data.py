@@ -97,11 +97,12 @@ class ModelData(Described):
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
                 seen[name] = f"{section}.{name}"
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions]
-        for section in ("joints", "forces"):
-            for name, element in getattr(self, section).items():
-                check_element(f"{section}.{name}", element, *known)
-                for reason in element.misplaced(self):
-                    raise ValueError(f"{section}.{name}: {reason}")
+        placed = {f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()}
+        for where, element in placed.items():
+            check_element(where, element, *known)
+        for where, element in placed.items():  # which looks at all bodies and markers that elements name
+            for reason in element.misplaced(self):
+                raise ValueError(f"{where}: {reason}")
         self.check_requests()
         return self
 
