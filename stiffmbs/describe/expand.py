@@ -24,7 +24,7 @@ from .quoted import written
 from .table import Table
 from .units import CONSTANTS, Quantity
 
-MOST_REPEATS = 1_000_000
+MOST_REPEATS = 100_000
 _LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
 _BRACES = re.compile(r"\{([^{}]*)\}")
 
