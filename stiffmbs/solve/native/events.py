@@ -5,7 +5,7 @@ from __future__ import annotations
 from stiffmbs.compile.native.access import compiled, shifted
 from stiffmbs.compile.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
-from stiffmbs.solve.native.error_estimate import error_of
+from stiffmbs.solve.native.error_estimate import DOUBTED, error_or_doubt
 from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state, weighted
 from stiffmbs.solve.native.within_step import (
@@ -23,8 +23,6 @@ BEHIND, ROUNDINGS = 1e-10, 2e-15
 MOST_RETAKEN, BISECTIONS = 8, 40
 MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT = 1.0, 0.2, 1, 2
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
-DOUBTED = 1e3
-"""The error that a step counts for where stages have seen a law that its end has not."""
 
 
 @compiled
@@ -192,7 +190,7 @@ def end_at_event(x, c, s, m):
         return 0
     if status < 0:
         return status
-    error = error_of(x, c, x.span[0]) if status == 0 else DOUBTED
+    error = error_or_doubt(x, c, x.span[0]) if status == 0 else DOUBTED
     if not error <= MOST_ERROR:
         return _left(x, c, error)
     _go_past(x, c, s, 2.0 * behind)
