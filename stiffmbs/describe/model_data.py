@@ -97,7 +97,9 @@ class ModelData(Described):
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
                 seen[name] = f"{section}.{name}"
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions]
-        placed = {f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()}
+        placed = {
+            f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
+        }
         for where, element in placed.items():
             check_element(where, element, *known)
         for where, element in placed.items():  # which looks at all bodies and markers that elements name

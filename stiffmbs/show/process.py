@@ -8,6 +8,7 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -31,7 +32,9 @@ class Process(click.Group):
     def main(self, *arguments: Any, **options: Any) -> Any:
         """Run the command that is asked for; see `click.Command.main`."""
         closed = _with_standard_files()
-        with _signals():
+        with _signals(), warnings.catch_warnings():
+            # Numbers that overflow are told where they end up, in sentences.
+            warnings.simplefilter("ignore", RuntimeWarning)
             try:
                 status = _status(lambda: super(Process, self).main(*arguments, **{**options, "standalone_mode": False}))
             finally:
