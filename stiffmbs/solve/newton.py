@@ -45,7 +45,7 @@ class Stiffness:
     @property
     def fastest(self) -> float:
         """The square of the fastest rate, 1/s^2."""
-        return max(self.of_positions, self.of_velocities**2)
+        return max(self.of_positions, self.of_velocities * self.of_velocities)  # infinite where a power would raise
 
     @property
     def bearable(self) -> float:
