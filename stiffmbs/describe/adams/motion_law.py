@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from ..formula import parse
+from ..formula import FormulaError, parse
 from ..quoted import quoted
 from .constraints import TRANSLATIONAL, Motion
 from .time_limit import time_limit
@@ -97,7 +97,10 @@ class Law:
         return {"position": ast.unparse(total(terms))}
 
     def _formula(self) -> str:
-        formula = parse(self._translation.formula(self._motion.function, self._unit))
+        try:
+            formula = parse(self._translation.formula(self._motion.function, self._unit))
+        except FormulaError as error:
+            raise self._motion.function.fault(str(error)) from None
         return ast.unparse(_WithoutInstants().visit(formula))
 
     def _integrated(self) -> str:
