@@ -8,6 +8,11 @@ Examples
 the rail carries 108.8 N at most
 """
 
+# ruff: noqa: E402 Ctrl-C is to end the command without a traceback while all of this is imported
+from .interrupts import quiet_while_loading
+
+quiet_while_loading()
+
 from typing import Any
 
 from .describe.body import Body

@@ -1,5 +1,19 @@
 """``python -m stiffmbs``."""
 
-from .command_line import main
+from __future__ import annotations
 
-main()
+import sys
+
+
+def start() -> None:
+    """The command ``stiffmbs``; also where there is too little memory to load it."""
+    try:
+        from .command_line import main
+    except (MemoryError, ImportError, OSError) as error:
+        print(f"stiffmbs: the program cannot be loaded ({type(error).__name__}: {error})", file=sys.stderr)
+        sys.exit(1)
+    main()
+
+
+if __name__ == "__main__":
+    start()

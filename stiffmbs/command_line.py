@@ -15,8 +15,19 @@ from .describe.scene import Scene, load_scene
 from .describe.schema import scene_schema
 from .errors import InputError, StiffmbsError
 from .show.cache_command import cache
+from .show.process import Process
 from .show.report_command import report
-from .show.scene_command import CHANGES, STOPPED_EARLY, changes_of, refuse, solve_scene, solving_options
+from .show.scene_command import (
+    CHANGES,
+    STOPPED_EARLY,
+    changes_of,
+    file_beside,
+    in_file,
+    refuse,
+    refuse_own_input,
+    solve_scene,
+    solving_options,
+)  # fmt: skip
 from .stress.command import stress
 
 if TYPE_CHECKING:
@@ -27,7 +38,7 @@ UNBROKEN = 10_000
 """Characters of a line in files and pipes."""
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Process, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="stiffmbs")
 def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
@@ -57,8 +68,10 @@ def run(scene: str, output: Path | None, figure: Path | None, as_json: bool, ver
     try:
         if output is not None:
             _files().check_output(output)
+            refuse_own_input("-o", scene, output)
         if figure is not None:
             _drawing().check_figure(figure)
+            refuse_own_input("--figure", scene, figure)
         loaded = load_scene(scene, changes_of(options))
         solution = solve_scene(scene, loaded, verify)
     except StiffmbsError as error:
@@ -96,7 +109,7 @@ def _draw(scene: str, path: Path, solution: Any, loaded: Scene, as_json: bool) -
 
 def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tuple[str, bool]:
     """Write the results where asked, or beside the user's work; says where they lie, and whether none that was asked for is missing."""
-    path = output or Path(f"{Path(scene).stem}.results.npz")
+    path = output or file_beside(scene, ".results.npz")
     if output is None and as_json:
         return "not written", True
     try:
@@ -123,7 +136,7 @@ def _console() -> Console:
     from rich.console import Console
 
     to_a_width = sys.stdout.isatty() or "COLUMNS" in os.environ
-    return Console(width=None if to_a_width else UNBROKEN)
+    return Console(width=None if to_a_width else UNBROKEN, markup=False, emoji=False)
 
 
 @main.command(short_help="Degrees of freedom, redundancy.")
@@ -138,7 +151,9 @@ def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     from .show.check import check as examine
 
     try:
-        report = examine(load_scene(scene, changes))
+        loaded = load_scene(scene, changes)
+        with in_file(scene):
+            report = examine(loaded)
     except StiffmbsError as error:
         refuse(scene, error, as_json)
     if as_json:
@@ -163,6 +178,8 @@ def convert(scene: str, output: Path | None, in_space: bool, changes: list[tuple
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
     try:
+        if output is not None:
+            refuse_own_input("-o", scene, output)
         text = _in_space(scene, changes) if in_space else _of_dataset(scene, changes)
     except StiffmbsError as error:
         refuse(scene, error)
@@ -170,7 +187,7 @@ def convert(scene: str, output: Path | None, in_space: bool, changes: list[tuple
         click.echo(text, nl=False)
         return
     try:
-        output.write_text(text, encoding="utf-8")
+        _files().written_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
     except OSError as error:
         click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
         sys.exit(STOPPED_EARLY)

@@ -1,35 +1,74 @@
 """What was derived and compiled, kept on disk: written once per source and machine, read back without a compiler.
 
-An entry is one file: a digest, then the content.  It is written beside its place and moved there in one step, so
-that a crash or a second process can leave no half of it; what does not match its digest is made again.  Entries of
-one version of the package on one kind of machine share a directory of their own.
+An entry is one file: a message authentication code, then the content.  It is written beside its place and moved there in
+one step, so that a crash or a second process can leave no half of it.  The code is an HMAC (RFC 2104) of the entry's name,
+its content, and what all entries depend on, under a secret of the user's: an entry that is damaged, stands in another's
+place, or was made by someone else does not match, and is made again.  Folders and files that others may write are refused
+with a note.  Entries of one version of the package on one kind of machine share a directory of their own.
 """
 
 from __future__ import annotations
 
 import hashlib
+import hmac
+import logging
 import os
+import secrets
 import tempfile
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-FORMAT = "5"
+from .own_files import NotOwnError, check_folder, read_own
+
+FORMAT = "6"
 """Changed whenever the meaning of an entry's content changes."""
 DIRECTORY_VARIABLE = "STIFFMBS_CACHE"
 RECORD, KERNEL, ROUTINE = "record", "kernel", "routine"
 """Kinds of entries: what was derived of a kind of element, its machine code, and that of solvers."""
 PART = ".part-"
 """How the name of a file begins that is still being written."""
+SECRET = "secret"
+"""The file that holds the user's secret."""
+SECRET_SIZE = CODE_SIZE = 32
+NOWHERE = Path(os.devnull) / "nowhere"
+"""A directory in which nothing can be kept."""
 
 
 def cache_directory() -> Path:
-    """Where compiled kernels are kept: the variable STIFFMBS_CACHE, or the user's cache directory."""
+    """Where compiled kernels are kept: the variable STIFFMBS_CACHE, or the user's cache directory.
+
+    A directory that others may write to is refused with a note, and the user's cache directory serves in its place.
+    """
     chosen = os.environ.get(DIRECTORY_VARIABLE)
     if chosen:
-        return Path(chosen)
+        if not (fault := _fault(Path(chosen))):
+            return Path(chosen)
+        _tell(
+            f"{DIRECTORY_VARIABLE}: the cache {chosen} is not used, as {fault}; expected a folder of your own (chmod go-w)"
+        )
     from platformdirs import user_cache_path
 
-    return user_cache_path("stiffmbs", appauthor=False)
+    usual = user_cache_path("stiffmbs", appauthor=False)
+    if not (fault := _fault(usual)):
+        return usual
+    _tell(f"the cache {usual} is not used, as {fault}; expected a folder of your own (chmod go-w)")
+    return NOWHERE
+
+
+def _fault(directory: Path) -> str:
+    """Why the files in a directory cannot be trusted; nothing where they can."""
+    try:
+        check_folder(directory)
+    except NotOwnError as fault:
+        return str(fault)
+    return ""
+
+
+@cache
+def _tell(note: str) -> None:
+    """Say once, on standard error where the caller has set up no logging, why something is compiled anew."""
+    logging.getLogger(__name__).warning("stiffmbs: note: %s", note)
 
 
 def own_directory() -> Path:
@@ -65,27 +104,70 @@ def _digest(*parts: str) -> str:
 
 
 def read(name: str) -> bytes | None:
-    """The content of an entry, or None where there is none that is whole."""
-    try:
-        stored = (own_directory() / name).read_bytes()
-    except OSError:
+    """The content of an entry, or None where there is none that is whole, the user's own, and of this name."""
+    directory = own_directory()
+    if (fault := _fault(directory)) or (secret := _secret(directory.parent)) is None:
+        if fault:
+            _tell(f"the cache {directory} is not used, as {fault}; expected a folder of your own (chmod go-w)")
         return None
-    digest, content = stored[:32], stored[32:]
-    return content if hashlib.sha256(content).digest() == digest else None
+    try:
+        stored = read_own(directory / name)
+    except NotOwnError as fault:
+        _tell(f"the cache's entry {directory / name} is made anew, as {fault}; expected a file of your own")
+        return None
+    if stored is None:
+        return None
+    code, content = stored[:CODE_SIZE], stored[CODE_SIZE:]
+    return content if hmac.compare_digest(_code(secret, name, content), code) else None
 
 
 def write(name: str, content: bytes) -> None:
     """Keep an entry; a directory that cannot be written to costs a compilation at the next run and nothing else."""
     directory = own_directory()
+    with suppress(OSError):
+        directory.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        directory.mkdir(mode=0o700, exist_ok=True)
+        secret = None if _fault(directory) else _secret(directory.parent) or _new_secret(directory.parent)
+        if secret is not None:
+            _put(directory / name, _code(secret, name, content) + content)
+
+
+def _code(secret: bytes, name: str, content: bytes) -> bytes:
+    return hmac.digest(secret, b"\0".join((_own_tag().encode(), name.encode(), content)), "sha256")
+
+
+def _secret(directory: Path) -> bytes | None:
+    """The user's secret; None where there is none that only the user can read."""
     try:
-        directory.mkdir(parents=True, exist_ok=True)
-        handle, part = tempfile.mkstemp(dir=directory, prefix=PART)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(hashlib.sha256(content).digest() + content)
-            os.replace(part, directory / name)
-        except BaseException:
-            os.unlink(part)
-            raise
-    except OSError:
-        return
+        found = read_own(directory / SECRET, secret=True)
+    except NotOwnError as fault:
+        _tell(f"the entries of the cache are made anew, as of its file {directory / SECRET} {fault}")
+        return None
+    return found if found is not None and len(found) == SECRET_SIZE else None
+
+
+def _new_secret(directory: Path) -> bytes | None:
+    """A new secret, or that of another process which was faster."""
+    with suppress(FileNotFoundError, IsADirectoryError):
+        (directory / SECRET).unlink()
+    handle, part = tempfile.mkstemp(dir=directory, prefix=PART)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(secrets.token_bytes(SECRET_SIZE))
+        with suppress(FileExistsError):
+            os.link(part, directory / SECRET)
+    finally:
+        os.unlink(part)
+    return _secret(directory)
+
+
+def _put(path: Path, content: bytes) -> None:
+    """Write a file beside its place, for the user alone, and move it there."""
+    handle, part = tempfile.mkstemp(dir=path.parent, prefix=PART)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        os.replace(part, path)
+    except BaseException:
+        os.unlink(part)
+        raise

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from .cache import KERNEL, PART, RECORD, ROUTINE, cache_directory, own_directory
+from .cache import KERNEL, PART, RECORD, ROUTINE, SECRET, cache_directory, own_directory
 
 KINDS = (RECORD, KERNEL, ROUTINE)
 OTHERS = "other"
@@ -35,7 +35,7 @@ def stored() -> dict[str, Stored]:
 
 
 def clear() -> Stored:
-    """Remove all entries, and nothing else; returns what was removed.
+    """Remove all entries and the secret that they are bound by, and nothing else; returns what entries were removed.
 
     Raises
     ------
@@ -49,6 +49,8 @@ def clear() -> Stored:
     for directory in _directories():
         if not any(directory.iterdir()):
             directory.rmdir()
+    if (cache_directory() / SECRET).is_file():
+        (cache_directory() / SECRET).unlink(missing_ok=True)
     return Stored(len(sizes), sum(sizes))
 
 

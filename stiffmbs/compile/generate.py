@@ -8,13 +8,14 @@ import sympy as sp
 from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
+from .cornered import CorneredBase, Step
 from .counted_angle import CountedAngle, counter
 from .derive import Derived
 from .spline import Spline
 from .terms import KERNEL_ARGUMENTS, TERM_SETS
 from .turns import Unwound
 
-HEADER = "from stiffmbs.compile.native.counted_angle import counted_angle\nfrom stiffmbs.compile.native.spline import spline\nfrom stiffmbs.compile.native.unwound import unwound\nfrom math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
+HEADER = "from stiffmbs.compile.native.corners import chosen, greater, inside, less, magnitude, sign, step, step5\nfrom stiffmbs.compile.native.counted_angle import counted_angle\nfrom stiffmbs.compile.native.spline import spline\nfrom stiffmbs.compile.native.unwound import unwound\nfrom math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
 
 
 class _Printer(PythonCodePrinter):
@@ -29,6 +30,12 @@ class _Printer(PythonCodePrinter):
         factor = self.parenthesize(base, precedence(expr))
         product = "*".join([factor] * whole + [f"sqrt({self._print(base)})"] * half)
         return f"({product})" if power > 0 else f"(1.0/({product}))"
+
+    def _print_CorneredBase(self, expr: CorneredBase) -> str:
+        arguments = [f"{argument}.0" if argument.is_Integer else self._print(argument) for argument in expr.args]
+        if isinstance(expr, Step):
+            arguments[-1] = str(expr.args[-1])
+        return f"{expr.native}({', '.join(arguments)})"
 
     def _print_CountedAngle(self, expr: CountedAngle) -> str:
         return f"counted_angle({', '.join(self._print(argument) for argument in expr.args)})"

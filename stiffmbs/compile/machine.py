@@ -70,7 +70,8 @@ def _called_text() -> str:
     """The text of what generated sources call."""
     native = Path(__file__).parent / "native"
     return "\0".join(
-        (native / f"{name}.py").read_text(encoding="utf-8") for name in ("counted_angle", "spline", "unwound")
+        (native / f"{name}.py").read_text(encoding="utf-8")
+        for name in ("corners", "counted_angle", "spline", "unwound")
     )
 
 
@@ -100,11 +101,24 @@ def _joined(files: list[Path]) -> str:
 
 
 def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
-    code = store.read(entry)
-    if code is None:
+    code = _unpacked(entry, store.read(entry))
+    found = _linked(code, entry, source.signatures) if code else None
+    if found is None:
         code = _object_code(source, _symbol(entry, ""))
-        store.write(entry, code)
-    return {name: _linked(code, _symbol(entry, name), signature) for name, signature in source.signatures}
+        store.write(entry, _header(entry, code) + code)
+        found = _linked(code, entry, source.signatures)
+    assert found is not None, entry
+    return found
+
+
+def _unpacked(entry: str, stored: bytes | None) -> bytes | None:
+    """The code of an entry; None where it holds anything else, as LLVM ends the process on what is no object code."""
+    head, end, code = (stored or b"").partition(b"\n")
+    return code if head + end == _header(entry, code) else None
+
+
+def _header(entry: str, code: bytes) -> bytes:
+    return f"{entry} {len(code)}\n".encode()
 
 
 def _symbol(entry: str, name: str) -> str:
@@ -157,15 +171,21 @@ def _object_code(source: _Source, prefix: str) -> bytes:
     return _emitter().emit_object(module)
 
 
-def _linked(code: bytes, symbol: str, signature: str) -> Compiled:
+def _linked(code: bytes, entry: str, signatures: Signatures) -> dict[str, Compiled] | None:
+    """The functions of an entry by their names; None where the code holds others."""
     import llvmlite.binding as llvm
 
-    engine = _engine()
-    if not engine.get_function_address(symbol):
-        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-        engine.finalize_object()
-    address = engine.get_function_address(symbol)
-    return Compiled(address, _prototype(signature)(address))
+    engine, found = _engine(), {}
+    for name, signature in signatures:
+        symbol = _symbol(entry, name)
+        if not engine.get_function_address(symbol):
+            engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+            engine.finalize_object()
+        address = engine.get_function_address(symbol)
+        if not address:
+            return None
+        found[name] = Compiled(address, _prototype(signature)(address))
+    return found
 
 
 def _prototype(signature: str) -> Any:

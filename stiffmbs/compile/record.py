@@ -68,13 +68,22 @@ class KindRecord:
 def record_of(kind: Kind) -> KindRecord:
     """Read a kind's record from the cache, or derive it and keep it."""
     entry = _entry(kind)
-    stored = store.read(entry) if entry else None
-    if stored is not None:
-        return KindRecord(**json.loads(stored))
+    record = _read(entry) if entry else None
+    if record is not None:
+        return record
     record = _derived(kind)
     if entry:
         store.write(entry, json.dumps(asdict(record)).encode())
     return record
+
+
+def _read(entry: str) -> KindRecord | None:
+    """A record from the cache; None where there is none that can be read."""
+    stored = store.read(entry)
+    try:
+        return None if stored is None else KindRecord(**json.loads(stored))
+    except (ValueError, TypeError):
+        return None
 
 
 @cache

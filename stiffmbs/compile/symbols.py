@@ -13,6 +13,7 @@ import sympy as sp
 from ..describe.formula import evaluate
 from ..describe.formula_field import TIME
 from . import planar_frames, spatial_frames
+from .cornered import CORNERED
 from .differentiate import Derivatives
 from .frames import ReferredJoint, SymbolicElement
 from .kind import OWN, Kind, Shape
@@ -211,66 +212,9 @@ class _Builder:
         return Spline(x, table, sp.Integer(0))
 
 
-def step(x: sp.Expr, x0: sp.Expr, h0: sp.Expr, x1: sp.Expr, h1: sp.Expr) -> sp.Expr:
-    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic with flat ends."""
-    z = (x - x0) / (x1 - x0)
-    return sp.Piecewise((h0, x <= x0), (h1, x >= x1), (h0 + (h1 - h0) * z**2 * (3 - 2 * z), True))
-
-
-def step5(x: sp.Expr, x0: sp.Expr, h0: sp.Expr, x1: sp.Expr, h1: sp.Expr) -> sp.Expr:
-    """Adams' STEP5: from h0 at x0 to h1 at x1 by a quintic without curvature at its ends."""
-    z = (x - x0) / (x1 - x0)
-    return sp.Piecewise((h0, x <= x0), (h1, x >= x1), (h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z**2), True))
-
-
-def greater(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
-    """The greatest of its arguments, with the derivative of that one."""
-    for other in others:
-        first = sp.Piecewise((first, first >= other), (other, True))
-    return first
-
-
-def less(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
-    """The least of its arguments, with the derivative of that one."""
-    for other in others:
-        first = sp.Piecewise((first, first <= other), (other, True))
-    return first
-
-
-def sign(x: sp.Expr) -> sp.Expr:
-    """-1 or 1, with derivative zero."""
-    return sp.Piecewise((sp.Integer(1), x >= 0), (sp.Integer(-1), True))
-
-
-def magnitude(x: sp.Expr) -> sp.Expr:
-    """The absolute value."""
-    return sp.Piecewise((x, x >= 0), (-x, True))
-
-
-def branch(x: sp.Expr, below: sp.Expr, at: sp.Expr, above: sp.Expr) -> sp.Expr:
-    """One of three expressions by the sign of the first, with the derivative of that one (Adams' IF)."""
-    return sp.Piecewise((below, x < 0), (above, x > 0), (at, True))
-
-
 SMOOTH: dict[str, Callable[..., sp.Expr]] = {
     name: getattr(sp, name)
     for name in (
         "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
     )
 }  # fmt: skip
-
-
-def _differences(first: sp.Expr, *others: sp.Expr) -> tuple[sp.Expr, ...]:
-    return tuple(first - other for other in others)
-
-
-CORNERED: dict[str, tuple[Callable[..., sp.Expr], Callable[..., tuple[sp.Expr, ...]]]] = {
-    "abs": (magnitude, lambda x: (x,)),
-    "sign": (sign, lambda x: (x,)),
-    "min": (less, _differences),
-    "max": (greater, _differences),
-    "step": (step, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
-    "step5": (step5, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
-    "branch": (branch, lambda x, below, at, above: (x,)),
-}
-"""Functions with corners, and what is zero there."""

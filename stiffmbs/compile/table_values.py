@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..describe.table import Table
+from ..errors import InputError
 
 Curve = Callable[[np.ndarray], np.ndarray]
 NATURAL, PERIODIC = 0.0, 1.0
@@ -16,23 +17,41 @@ def spline_data(table: Table) -> np.ndarray:
     """What a kernel needs of a table: count, ends, knots, and the coefficients of each piece (highest first).
 
     Cubic spline interpolation by SciPy; straight lines are pieces without curvature.
+
+    Raises
+    ------
+    InputError
+        When points are so near to each other that a coefficient has no finite value.
     """
     x, y = np.array(table.table, dtype=float).T
-    if table.lines:
-        slope = np.diff(y) / np.diff(x)
-        pieces = np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
-    elif table.akima:
-        from scipy.interpolate import Akima1DInterpolator
-
-        pieces = Akima1DInterpolator(x, y).c
-    else:
-        from scipy.interpolate import CubicSpline
-
-        if table.ends == "periodic":
-            y = np.append(y[:-1], y[0])
-        pieces = CubicSpline(x, y, bc_type=table.ends).c
+    try:
+        with np.errstate(all="ignore"):
+            pieces = _pieces(table, x, y)
+    except (ValueError, np.linalg.LinAlgError):  # SciPy finds numbers that are none
+        pieces = np.full(1, np.nan)
+    if not np.all(np.isfinite(pieces)):
+        raise InputError(
+            f"found points of a table that are {np.diff(x).min():.3g} apart, where its slope or curvature has no finite "
+            "value, expected them further apart"
+        )
     ends = PERIODIC if table.ends == "periodic" else NATURAL
     return np.concatenate([[len(x), ends], x, pieces.T.ravel()])
+
+
+def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """The coefficients of each piece, highest first, a column for each."""
+    if table.lines:
+        slope = np.diff(y) / np.diff(x)
+        return np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
+    if table.akima:
+        from scipy.interpolate import Akima1DInterpolator
+
+        return np.asarray(Akima1DInterpolator(x, y).c)
+    from scipy.interpolate import CubicSpline
+
+    if table.ends == "periodic":
+        y = np.append(y[:-1], y[0])
+    return np.asarray(CubicSpline(x, y, bc_type=table.ends).c)
 
 
 def curve(table: Table) -> Curve:

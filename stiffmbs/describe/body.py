@@ -11,6 +11,7 @@ from pydantic import Field, field_validator
 from . import si
 from .fields import NAME_PATTERN, Described
 from .marker import Marker, Placement
+from .quoted import written
 
 
 class Body(Described):
@@ -86,5 +87,5 @@ def check_names(names: Iterable[object], what: str) -> None:
     """Refuse names that could not stand in a formula or a channel."""
     for name in names:
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
-            shown = "no name" if name in (None, "") else f"the name {name!r}"
+            shown = "no name" if name in (None, "") else f"the name {written(name)}"
             raise ValueError(f"found {what} with {shown}, expected letters, digits and _ not starting with a digit")

@@ -20,10 +20,11 @@ from .formula_field import FUNCTIONS as FORMULA_FUNCTIONS
 from .formula_field import TIME
 from .formula_names import MEASURES
 from .quantity import FUNCTIONS, in_si, quantity
+from .quoted import written
 from .table import Table
 from .units import CONSTANTS, Quantity
 
-MOST_REPEATS = 1_000_000
+MOST_REPEATS = 100_000
 _LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
 _BRACES = re.compile(r"\{([^{}]*)\}")
 
@@ -86,10 +87,10 @@ def read_parameters(found: Any) -> dict[str, Quantity]:
     if found is None:
         return parameters
     if not isinstance(found, dict):
-        raise InputError(f"parameters: found {found!r}, expected a mapping of names to numbers")
+        raise InputError(f"parameters: found {written(found)}, expected a mapping of names to numbers")
     for name, value in found.items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
-            raise InputError(f"parameters: found the name {name!r}, expected letters, digits and _")
+            raise InputError(f"parameters: found the name {written(name)}, expected letters, digits and _")
         if name in CONSTANTS or name in FUNCTIONS or name in (TIME, UNIT):
             raise InputError(f"parameters.{name}: found the name of a constant or function, expected another")
         try:
@@ -112,11 +113,11 @@ def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Tab
     if found is None:
         return {}
     if not isinstance(found, dict):
-        raise InputError(f"tables: found {found!r}, expected a mapping of names to tables")
+        raise InputError(f"tables: found {written(found)}, expected a mapping of names to tables")
     tables = {}
     for name, table in found.items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
-            raise InputError(f"tables: found the name {name!r}, expected letters, digits and _")
+            raise InputError(f"tables: found the name {written(name)}, expected letters, digits and _")
         if name in (*FUNCTIONS, *FORMULA_FUNCTIONS, *MEASURES, *parameters):
             raise InputError(f"tables.{name}: found the name of a function or parameter, expected another")
         try:
@@ -158,7 +159,7 @@ def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity
 def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[str, int, int]:
     match = _LOOP.match(text) if isinstance(text, str) else None
     if match is None:
-        raise InputError(f"{where}.for: found {text!r}, expected a loop such as 'k in 1..N'")
+        raise InputError(f"{where}.for: found {written(text)}, expected a loop such as 'k in 1..N'")
     variable = match[1]
     if variable in parameters or variable in FUNCTIONS:
         raise InputError(f"{where}.for: found the loop variable '{variable}', which has a meaning already")

@@ -24,6 +24,7 @@ from pydantic_core import core_schema
 from ..errors import InputError
 from .formula import FormulaError
 from .quantity import in_si
+from .quoted import quoted, written
 from .units import DIMENSIONS, one
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
@@ -69,7 +70,7 @@ class Described(_Base):
             known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in found:
                 if key not in known:
-                    raise ValueError(f"found the unknown key '{key}', expected one of {', '.join(known)}")
+                    raise ValueError(f"found the unknown key '{quoted(key)}', expected one of {', '.join(known)}")
         return found
 
     @model_validator(mode="before")
@@ -113,7 +114,7 @@ class Measured:
         ):
             if bound is not None and not holds(value, bound):
                 limit = f"{bound:g} {unit}".strip()
-                raise FormulaError(f"found {found}, expected {one(self.dimension)} {words.format(limit)}")
+                raise FormulaError(f"found {quoted(found)}, expected {one(self.dimension)} {words.format(limit)}")
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
@@ -165,12 +166,12 @@ def _reason(fault: Any) -> str:
         case "union_tag_invalid":
             return f"found the type '{context['tag']}', expected one of {context['expected_tags']}"
         case "string_pattern_mismatch":
-            return f"found '{found}', expected a name of letters, digits and _ that does not start with a digit"
+            return f"found '{quoted(found)}', expected a name of letters, digits and _ that does not start with a digit"
         case "literal_error" | "enum":
-            return f"found {found!r}, expected {context['expected']}"
+            return f"found {written(found)}, expected {context['expected']}"
         case "tuple_type" | "list_type":
-            return f"found {found!r}, expected a list in brackets"
+            return f"found {written(found)}, expected a list in brackets"
         case "dict_type" | "model_type" | "model_attributes_type":
-            return f"found {found!r}, expected a mapping of keys to values"
+            return f"found {written(found)}, expected a mapping of keys to values"
         case _:
-            return f"found {found!r}, expected {fault['msg'].removeprefix('Input should be ')}"
+            return f"found {written(found)}, expected {fault['msg'].removeprefix('Input should be ')}"

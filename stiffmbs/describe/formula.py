@@ -16,6 +16,8 @@ import tokenize
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from .quoted import quoted
+
 UNIT = "unit"
 _NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
 """A number that runs into a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
@@ -55,7 +57,9 @@ def parse(text: str) -> ast.expr:
     try:
         tree = ast.parse(_python_spelling(text), mode="eval").body
     except (SyntaxError, tokenize.TokenError, ValueError, RecursionError, MemoryError):
-        raise FormulaError(f"found '{text}', expected a number or a formula such as '125 mm' or '0.6/2'") from None
+        raise FormulaError(
+            f"found '{quoted(text)}', expected a number or a formula such as '125 mm' or '0.6/2'"
+        ) from None
     _check(tree, text, 0)
     return tree
 
@@ -115,17 +119,17 @@ def _check(node: ast.AST, text: str, depth: int) -> None:
         case ast.UnaryOp(op, operand) if type(op) in UNARY:
             children = [operand]
         case ast.Constant(bool()):
-            raise FormulaError(f"found '{text}', expected a number or a formula, not a truth value")
+            raise FormulaError(f"found '{quoted(text)}', expected a number or a formula, not a truth value")
         case ast.Constant(int() | float() as value):
             if not abs(value) < LARGEST_LITERAL:
-                raise FormulaError(f"found a number that is too large in '{text}'")
+                raise FormulaError(f"found a number that is too large in '{quoted(text)}'")
             return
         case ast.Name() | ast.Attribute(ast.Name()):
             return
         case ast.Call(ast.Name(), list() as arguments, []) if not any(isinstance(a, ast.Starred) for a in arguments):
             children = list(arguments)
         case _:
-            raise FormulaError(f"found '{text}', expected only arithmetic, names and functions")
+            raise FormulaError(f"found '{quoted(text)}', expected only arithmetic, names and functions")
     for child in children:
         _check(child, text, depth + 1)
 

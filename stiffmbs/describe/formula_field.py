@@ -15,6 +15,8 @@ from .formula import UNIT, FormulaError, parse
 from .formula_functions import FUNCTIONS, OF_TABLE, check_functions
 from .formula_names import MEASURES
 from .marker import GROUND, MarkerReference
+from .quantity import as_float
+from .quoted import quoted, written
 from .table import Table
 from .units import CONSTANTS, UNITS, Quantity
 
@@ -157,14 +159,14 @@ class FormulaOf:
 
     def _made(self, found: Any, parameters: dict[str, float], tables: Mapping[str, Table]) -> Formula:
         if isinstance(found, Real) and not isinstance(found, bool):
-            found = repr(float(found))
+            found = repr(as_float(found))
         elif hasattr(found, "free_symbols"):
             from sympy.printing.pycode import pycode
 
             found = pycode(found, fully_qualified_modules=False)
         if not isinstance(found, str):
             allowed = "a formula or a table" if self.table else "a formula"
-            raise FormulaError(f"found {found!r}, expected {allowed}")
+            raise FormulaError(f"found {written(found)}, expected {allowed}")
         tree = parse(found)
         known = FUNCTIONS | dict.fromkeys(tables, OF_TABLE)
         check_functions(tree, known, MEASURES, (*known, *MEASURES) if self.coordinates else tuple(known))
@@ -183,7 +185,7 @@ class FormulaOf:
             match node:
                 case ast.Attribute(ast.Name(owner), name) if owner == UNIT:
                     if name not in UNITS:
-                        raise FormulaError(f"found '{name}' after a number in '{text}', expected a unit")
+                        raise FormulaError(f"found '{name}' after a number in '{quoted(text)}', expected a unit")
                     yield f"{UNIT}.{name}", UNITS[name].value
                 case ast.Name(name) if name != TIME and name not in self.variables:
                     yield name, self._value(text, name, known)
@@ -198,7 +200,7 @@ class FormulaOf:
         meanings = [*self.variables, *(["t"] if self.time else [])]
         meanings += ["a body's coordinate such as cart.x"] if self.coordinates else []
         expected = ", ".join([*meanings, "a parameter of the scene"])
-        raise FormulaError(f"found the unknown name '{name}' in '{text}', expected {expected}")
+        raise FormulaError(f"found the unknown name '{name}' in '{quoted(text)}', expected {expected}")
 
     def _check(self, formula: Formula) -> None:
         if not self.time and any(isinstance(n, ast.Name) and n.id == TIME for n in reading_order(formula.tree)):

@@ -12,6 +12,7 @@ from pydantic import Field, GetJsonSchemaHandler, model_validator
 
 from . import si
 from .fields import NAME_PATTERN, Described
+from .quoted import written
 
 GROUND = "ground"
 
@@ -58,7 +59,7 @@ class MarkerReference(Described):
         ):
             raise ValueError("found a marker's name and a point, expected one or the other")
         if not isinstance(found, dict | MarkerReference):
-            raise ValueError(f"found {found!r}, expected a body, body.marker, or a mapping with body and point")
+            raise ValueError(f"found {written(found)}, expected a body, body.marker, or a mapping with body and point")
         return found
 
     @classmethod

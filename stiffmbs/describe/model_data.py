@@ -17,6 +17,7 @@ from .formula import UNIT
 from .formula_field import TIME, Formula
 from .formula_names import NAMES, FormulaNames
 from .marker import GROUND, MarkerReference
+from .quoted import quoted
 from .request import Request
 from .units import UNITS
 
@@ -81,7 +82,7 @@ class ModelData(Described):
                 if used:
                     name = used.group()
                     raise ValueError(
-                        f"found '{name}' in '{text}', which is a unit and a request, expected one or the other"
+                        f"found '{name}' in '{quoted(text)}', which is a unit and a request, expected one or the other"
                     )
         return named
 
@@ -96,11 +97,14 @@ class ModelData(Described):
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
                 seen[name] = f"{section}.{name}"
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions]
-        for section in ("joints", "forces"):
-            for name, element in getattr(self, section).items():
-                check_element(f"{section}.{name}", element, *known)
-                for reason in element.misplaced(self):
-                    raise ValueError(f"{section}.{name}: {reason}")
+        placed = {
+            f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
+        }
+        for where, element in placed.items():
+            check_element(where, element, *known)
+        for where, element in placed.items():  # which looks at all bodies and markers that elements name
+            for reason in element.misplaced(self):
+                raise ValueError(f"{where}: {reason}")
         self.check_requests()
         return self
 

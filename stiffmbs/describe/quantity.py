@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from .formula import UNIT, FormulaError, evaluate, parse
+from .quoted import quoted, written
 from .units import ANY, CONSTANTS, DIMENSIONS, NUMBER, UNITS, Quantity, in_units, one
 
 LARGEST = 1e100
@@ -95,7 +97,7 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
         name = unit if owner == UNIT else name
         if name in known and name in UNITS and with_units:
             raise FormulaError(
-                f"found '{name}' in '{text}', which is a unit and a parameter of the scene, expected one or the other"
+                f"found '{name}' in '{quoted(text)}', which is a unit and a parameter of the scene, expected one or the other"
             )
         for table in (known, UNITS, CONSTANTS):
             if name in table:
@@ -108,13 +110,13 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
     try:
         result: Quantity = evaluate(tree, names, FUNCTIONS, lambda value: Quantity(float(value)))
     except ArithmeticError:
-        raise FormulaError(f"found '{text}', which divides by zero or overflows") from None
+        raise FormulaError(f"found '{quoted(text)}', which divides by zero or overflows") from None
     except ValueError as error:
         if isinstance(error, FormulaError):
             raise
-        raise FormulaError(f"found '{text}', which has no real value") from None
+        raise FormulaError(f"found '{quoted(text)}', which has no real value") from None
     if not math.isfinite(result.value):
-        raise FormulaError(f"found '{text}', which is not a finite number")
+        raise FormulaError(f"found '{quoted(text)}', which is not a finite number")
     return result
 
 
@@ -125,15 +127,23 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
         result = quantity(found, parameters)
         if dimension != ANY and result.dimension is not None and result.dimension != expected:
             raise FormulaError(
-                f"found '{found}', which is in {in_units(result.dimension)}, expected {one(dimension)} in {unit}"
+                f"found '{quoted(found)}', which is in {in_units(result.dimension)}, expected {one(dimension)} in {unit}"
             )
         return _of_ordinary_size(result.value, dimension)
     if isinstance(found, bool) or not hasattr(found, "__float__") or getattr(found, "ndim", False):
         raise FormulaError(f"found {_shown(found)}, expected {one(dimension)} in {unit}")
-    value = float(found)
+    value = as_float(found)
     if not math.isfinite(value):
         raise FormulaError(f"found {value}, expected a finite {dimension} in {unit}")
     return _of_ordinary_size(value, dimension)
+
+
+def as_float(found: Any) -> float:
+    """A number in floating point; errors as `in_si`, for a whole number beyond 1e308."""
+    try:
+        return float(found)
+    except OverflowError:
+        raise FormulaError(f"found a {type(found).__name__} beyond 1e308, expected a smaller number") from None
 
 
 def _of_ordinary_size(value: float, dimension: str) -> float:
@@ -152,4 +162,4 @@ def _shown(found: object) -> str:
         return "yes or no (a truth value)"
     if isinstance(found, dict):
         return "a mapping"
-    return "a list" if isinstance(found, list | tuple) or hasattr(found, "ndim") else repr(found)
+    return "a list" if isinstance(found, list | tuple) or hasattr(found, "ndim") else written(found)

@@ -15,9 +15,11 @@ from .fields import sentence
 from .figure import Figure
 from .model import PlanarData
 from .model_data import ModelData
+from .quoted import written
 from .settings import RunSettings
 from .spatial.model import SpatialData
 from .table import Table
+from .text_file import file_text, source_name
 from .yaml_text import line_of, read_yaml
 
 SECTIONS = ("bodies", "joints", "forces")
@@ -58,7 +60,7 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     Parameters
     ----------
     path : str or Path
-        A YAML file; a dataset where its name ends in ``.adm``.
+        A YAML file, or ``-`` for standard input; a dataset where its name ends in ``.adm``.
     changes : sequence of (path, text)
         Values put in place of the file's, such as ``("bodies.cart.mass", "12 kg")``.
 
@@ -76,29 +78,7 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from .adams.load import load_adams
 
         return load_adams(path, changes)
-    return read_scene(file_text(path), changes, str(path))
-
-
-def file_text(path: str | Path, otherwise: str = "") -> str:
-    """What stands in a file: UTF-8, or another encoding where it is none.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be read.
-    """
-    try:
-        content = Path(path).read_bytes()
-    except FileNotFoundError:
-        raise InputError(f"{path}: found no such file, expected a scene") from None
-    except OSError as error:
-        raise InputError(f"{path}: the file cannot be read ({error.strerror})") from None
-    try:
-        return content.decode()
-    except UnicodeDecodeError:
-        if otherwise:
-            return content.decode(otherwise)
-        raise InputError(f"{path}: the file cannot be read (it is not UTF-8 text)") from None
+    return read_scene(file_text(path), changes, source_name(path))
 
 
 def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene") -> Scene:
@@ -219,7 +199,7 @@ def _family(raw: dict[str, Any]) -> type[Scene]:
     """The class of scenes of as many dimensions as the scene says; of two where it says nothing."""
     found = raw.get("dimensions", 2)
     if found not in (2, 3):
-        raise _Located(f"dimensions: found {found!r}, expected 2 or 3", ("dimensions",))
+        raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
     return FAMILIES[found]
 
 

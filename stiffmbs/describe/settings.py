@@ -14,6 +14,8 @@ MOST_OUTPUTS = 10_000_000
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Stretches of time that a run must be able to tell apart, and how long each must be, in parts of the times themselves."""
 
+MANY = 1e300
+
 
 class RunSettings(Described):
     """Duration, output and solver of a run.
@@ -83,7 +85,7 @@ class RunSettings(Described):
         asked = self.duration / self.output if self.output is not None else self.points
         if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
             raise ValueError(
-                f"found {asked:.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
+                f"found {min(asked, MANY):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
             )
         return self
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..describe.figure import Figure
 from ..errors import InputError
-from .files import refuse_path
+from .files import refuse_path, written_whole
 from .solution import Solution
 
 if TYPE_CHECKING:
@@ -32,7 +32,8 @@ def check_figure(path: Path) -> None:
 
 def draw(path: Path, solution: Solution, figure: Figure | None) -> None:
     """Draw a scene's own figure to a file; parameters and errors as for `drawn`."""
-    drawn(solution, figure).savefig(path, dpi=120)
+    sheet = drawn(solution, figure)
+    written_whole(path, lambda part: sheet.savefig(part, dpi=120))
 
 
 def drawn(solution: Solution, figure: Figure | None) -> Sheet:
@@ -62,7 +63,19 @@ def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
         axes.set_zlabel(figure.z)
     else:
         axes.legend()
-    axes.set_title(figure.title or solution.name)
+    title = figure.title or solution.name
+    axes.set_title(title, parse_math=_is_mathematical(title))
     if figure.equal:
         axes.set_aspect("equal")
     axes.grid(alpha=0.3)
+
+
+def _is_mathematical(title: str) -> bool:
+    """Whether the formulas between dollar signs can be drawn as such; else they are shown as they are written."""
+    from matplotlib.mathtext import MathTextParser
+
+    try:
+        MathTextParser("path").parse(title)
+    except ValueError:
+        return False
+    return True

@@ -11,6 +11,7 @@ from zipfile import ZipFile
 
 import numpy as np
 
+from ..describe.quoted import quoted
 from ..errors import InputError
 from ..solve.storage import blocks, release
 from .solution import Solution
@@ -76,6 +77,11 @@ def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
     """
     if path.suffix not in endings:
         raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
+    try:
+        path.exists()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{option} {quoted(str(path))}: found a name that no file has ({reason})") from None
     if not path.parent.is_dir():
         raise InputError(f"{option} {path}: found no folder '{path.parent}', expected one that exists")
     if path.is_dir() or not os.access(path.parent, os.W_OK):
@@ -106,6 +112,9 @@ def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
     write_to : callable
         Writes to the path it is given.
     """
+    if path.exists() and not path.is_file():  # a pipe or device
+        write_to(path)
+        return
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=".part-", suffix=path.suffix)
     os.close(handle)
     try:

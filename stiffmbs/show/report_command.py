@@ -10,7 +10,15 @@ import click
 
 from ..describe.scene import load_scene
 from ..errors import StiffmbsError
-from .scene_command import STOPPED_EARLY, changes_of, refuse, solve_scene, solving_options
+from .scene_command import (
+    STOPPED_EARLY,
+    changes_of,
+    file_beside,
+    refuse,
+    refuse_own_input,
+    solve_scene,
+    solving_options,
+)  # fmt: skip
 
 
 @click.command(short_help="One page on a scene and its run.")
@@ -25,9 +33,10 @@ def report(scene: str, output: Path | None, verify: bool, **options: Any) -> Non
     """
     from .report import check_report, write_report
 
-    path = output or Path(f"{Path(scene).stem}.report.html")
+    path = output or file_beside(scene, ".report.html")
     try:
         check_report(path)
+        refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes_of(options))
         solution = solve_scene(scene, loaded, verify)
         write_report(path, loaded, solution)

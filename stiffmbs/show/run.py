@@ -26,7 +26,9 @@ from ..solve.pieces import Piece, leave_out_coordinates, piece_of, solve_pieces
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from .channels import channels_of
+from .far_away import refuse_far_away
 from .gaps import reported
+from .no_number import no_number_sentences
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
 from .solution import Solution
@@ -122,6 +124,7 @@ def examined(model: ModelBuilder | ModelData, settings: RunSettings | None = Non
             raise InputError(f"give_way: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
     order = [*(name for name in data.joints if name not in chosen.give_way), *chosen.give_way]
     grid = output_grid(chosen)
+    refuse_far_away(data)
     system = compile_model(data)
     return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
 
@@ -168,9 +171,11 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     if project:
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
+    channels = channels_of(job.data, job.mechanics.system, rows)
+    notes = (*_notes(job, trajectory), *left_out, *no_number_sentences(rows.t, channels))
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels_of(job.data, job.mechanics.system, rows), outcome=outcome,
-        message=message, notes=(*_notes(job, trajectory), *left_out), solver=statistics,
+        name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
+        message=message, notes=notes, solver=statistics,
         history=trajectory.history, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),

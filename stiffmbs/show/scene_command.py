@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
 from ..describe.scene import Scene
-from ..errors import AssemblyError, StiffmbsError
+from ..describe.text_file import STANDARD_INPUT, source_name
+from ..errors import AssemblyError, InputError, StiffmbsError
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -72,11 +76,37 @@ def solve_scene(path: str, scene: Scene, verified: bool) -> Solution:
     else:
         from .run import run as solve
     start = scene.run.start
+    with in_file(path), ProgressBar(start, start + scene.run.duration) as progress:
+        return solve(scene, watch=progress)
+
+
+@contextmanager
+def in_file(path: str) -> Iterator[None]:
+    """Put the file's name before what is found wrong with a scene after it was read."""
     try:
-        with ProgressBar(start, start + scene.run.duration) as progress:
-            return solve(scene, watch=progress)
-    except AssemblyError as error:
-        raise AssemblyError(f"{path}: {error}") from None
+        yield
+    except (InputError, AssemblyError) as error:
+        raise type(error)(f"{source_name(path)}: {error}") from None
+
+
+def refuse_own_input(option: str, scene: str, output: Path) -> None:
+    """Refuse to write over the file that is read, by whatever name it is called.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        same = scene != STANDARD_INPUT and os.path.samefile(scene, output)
+    except (OSError, ValueError):  # one of them is not there
+        return
+    if same:
+        raise InputError(f"{option} {output}: found the file that is read, {scene}, expected another one")
+
+
+def file_beside(scene: str, ending: str) -> Path:
+    """Where a command writes that is not told where: a file in the working folder, named after the scene."""
+    return Path(f"{'stdin' if scene == STANDARD_INPUT else Path(scene).stem}{ending}")
 
 
 def refuse(scene: str, error: StiffmbsError, as_json: bool = False) -> NoReturn:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -79,26 +80,26 @@ def _finite(content: Any) -> Any:
 
 def print_summary(scene: str, solution: Solution, results: str, console: Console) -> None:
     """What was solved, the range of every joint force, energy drift, solver statistics, where the results lie."""
+    say = partial(console.print, highlight=False, markup=False, emoji=False)  # names may hold anything
     start, end = solution.time[0], solution.time[-1]
-    console.print(f"{solution.name or scene}: {start:g} s to {end:g} s, {solution.message}", highlight=False)
+    say(f"{solution.name or scene}: {start:g} s to {end:g} s, {solution.message}")
     for note in solution.notes:
-        console.print(f"note: {note}", highlight=False)
+        say(f"note: {note}")
     for sentence in solution.presolve:
-        console.print(f"presolve: {sentence}", highlight=False)
+        say(f"presolve: {sentence}")
     for sentence in solution.verification:
-        console.print(f"verified: {sentence}", highlight=False)
+        say(f"verified: {sentence}")
     table = force_table(solution)
     if table.row_count:
-        console.print("force and torque on the first body, least .. greatest (N, N m):", highlight=False)
+        say("force and torque on the first body, least .. greatest (N, N m):")
         console.print(table)
     if solution.not_unique:
-        console.print(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values", highlight=False)
+        say(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values")
     total = solution.channels["energy.total"]
-    console.print(
+    say(
         f"energy: {total[0]:.9g} J at the start, changes by at most {solution.energy_drift():.3g} J; "
         f"constraints hold to {np.nanmax(solution.channels['constraint.position']):.2g} in position, "
         f"{np.nanmax(solution.channels['constraint.velocity']):.2g} in velocity",
-        highlight=False,
     )
-    console.print(f"solver: {solver_words(solution.solver)}", highlight=False)
-    console.print(f"results: {results}", highlight=False, soft_wrap=True)
+    say(f"solver: {solver_words(solution.solver)}")
+    say(f"results: {results}", soft_wrap=True)

@@ -45,7 +45,7 @@ class Stiffness:
     @property
     def fastest(self) -> float:
         """The square of the fastest rate, 1/s^2."""
-        return max(self.of_positions, self.of_velocities**2)
+        return max(self.of_positions, self.of_velocities * self.of_velocities)  # infinite where a power would raise
 
     @property
     def bearable(self) -> float:
@@ -76,4 +76,5 @@ def _largest_row_sum(mechanics: Mechanics, name: str, mass: np.ndarray) -> float
     """The largest sum of magnitudes in a row of M^-1 times a term of the tangent set."""
     term = mechanics.system.term("tangent", name)
     sums = np.bincount(term.row, np.abs(mechanics.state.values["tangent"][term.source]), minlength=len(mass))
-    return float((sums / mass).max()) if len(mass) else 0.0
+    with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
+        return float((sums / mass).max()) if len(mass) else 0.0

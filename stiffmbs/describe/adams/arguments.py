@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..quoted import quoted
 from .fault import DatasetFault
 from .text import Piece, Statement
 
@@ -45,7 +46,7 @@ class Arguments:
 
     def __init__(self, statement: Statement, keyword: str, names: Sequence[str], functions: Sequence[str] = ()) -> None:
         self.statement, self.keyword = statement, keyword
-        self.label = f"{keyword}/{statement.ident}" if statement.ident else keyword
+        self.label = f"{keyword}/{quoted(statement.ident)}" if statement.ident else keyword
         self._names, self._functions = names, functions
         self._found: dict[str, Argument] = {}
         name, line = "", statement.line
@@ -72,7 +73,7 @@ class Arguments:
         word = assigned[1] if assigned else piece.text
         name = self._full(word) if _WORD.fullmatch(word) else ""
         if not name:
-            raise self.fault(f"found '{piece.text}', expected one of {', '.join(self._names)}", piece.line)
+            raise self.fault(f"found '{quoted(piece.text)}', expected one of {', '.join(self._names)}", piece.line)
         return name, [assigned[2].strip()] if assigned else []
 
     def _full(self, word: str) -> str:
@@ -127,7 +128,9 @@ class Arguments:
         values = tuple(number(text) for text in self._found[name].values)
         wanted = " or ".join(map(str, counts))
         if None in values or (counts and len(values) not in counts):
-            raise self.fault(f"found {name} = {self.text(name)}, expected {wanted or 'only'} numbers", self.line(name))
+            raise self.fault(
+                f"found {name} = {quoted(self.text(name))}, expected {wanted or 'only'} numbers", self.line(name)
+            )
         return tuple(value for value in values if value is not None)
 
     def number(self, name: str) -> float | None:
@@ -142,7 +145,7 @@ class Arguments:
         found = tuple(_integer(self, text, name, self.line(name)) for text in self._found[name].values)
         if counts and len(found) not in counts:
             raise self.fault(
-                f"found {name} = {self.text(name)}, expected {' or '.join(map(str, counts))} numbers of statements",
+                f"found {name} = {quoted(self.text(name))}, expected {' or '.join(map(str, counts))} numbers of statements",
                 self.line(name),
             )
         return found
@@ -172,6 +175,6 @@ def number(text: str) -> float | None:
 
 
 def _integer(arguments: Arguments, text: str, where: str, line: int) -> int:
-    if not re.fullmatch(r"\d+", text.strip()):
-        raise arguments.fault(f"found '{text}' {where}, expected the number of a statement", line)
+    if not re.fullmatch(r"\d{1,18}", text.strip()):
+        raise arguments.fault(f"found '{quoted(text)}' {where}, expected the number of a statement", line)
     return int(text)

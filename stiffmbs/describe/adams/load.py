@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ..scene import Scene, file_text, made_scene
+from ..scene import Scene, made_scene
 from ..scene_text import scene_text
+from ..text_file import STANDARD_INPUT, checked, file_text, source_name
 from .commands import read_commands
 from .dataset import Dataset, read_dataset
 from .fault import DatasetFault
@@ -44,9 +45,9 @@ def read_adams(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
 
 def load_adams(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
     """Read a scene from a dataset's file, and how to run it from the command file beside it; as `read_adams`."""
-    dataset, found = _scene(file_text(path, ENCODING), str(path))
+    dataset, found = _scene(file_text(path, ENCODING), source_name(path))
     _run_as_commanded(Path(path).with_suffix(COMMANDS), dataset, found)
-    return made_scene(found, changes, str(path), lambda path: _line(dataset, path))
+    return made_scene(found, changes, source_name(path), lambda path: _line(dataset, path))
 
 
 def convert_file(path: str | Path) -> str:
@@ -54,9 +55,9 @@ def convert_file(path: str | Path) -> str:
 
     Errors are those of `read_adams`.
     """
-    dataset, found = _scene(file_text(path, ENCODING), str(path))
+    dataset, found = _scene(file_text(path, ENCODING), source_name(path))
     _run_as_commanded(Path(path).with_suffix(COMMANDS), dataset, found)
-    made_scene(copy.deepcopy(found), (), str(path), lambda path: _line(dataset, path))
+    made_scene(copy.deepcopy(found), (), source_name(path), lambda path: _line(dataset, path))
     return scene_text(_with_aliases(dataset, found))
 
 
@@ -75,6 +76,7 @@ def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _scene(text: str, source: str) -> tuple[Dataset, dict[str, Any]]:
+    text = checked(text, source)
     try:
         dataset = read_dataset(text)
         return dataset, scene(dataset)
@@ -86,7 +88,7 @@ def _scene(text: str, source: str) -> tuple[Dataset, dict[str, Any]]:
 
 def _run_as_commanded(path: Path, dataset: Dataset, found: dict[str, Any]) -> None:
     """Take duration and output from the command file beside a dataset, if there is one."""
-    if not path.is_file():
+    if path.stem == STANDARD_INPUT or not path.is_file():
         return
     try:
         asked = read_commands(file_text(path, ENCODING), dataset.units)

@@ -4,14 +4,29 @@ from __future__ import annotations
 
 import ast
 
-from ..formula import parse
+from ..formula import FormulaError, parse
+from ..quoted import quoted
 from .constraints import TRANSLATIONAL, Motion
+from .time_limit import time_limit
 from .translate import Translation
 from .trees import number, times, total
 
 ORDERS = ("position", "velocity")
 SAME = 1e-9
 """How far an initial displacement may be from the drawn one to be the same, m or rad."""
+
+
+PATIENCE = 10.0
+"""Time, s, after which the search for an integral is given up."""
+LARGEST_EXPONENT = 32
+"""Of what is integrated: higher powers of sums are multiplied out into as many terms."""
+
+
+def _check_exponents(tree: ast.expr) -> None:
+    for node in ast.walk(tree):
+        match node:
+            case ast.BinOp(_, ast.Pow(), ast.Constant(int() | float() as power)) if abs(power) > LARGEST_EXPONENT:
+                raise ValueError(f"found the exponent {power}, expected one up to {LARGEST_EXPONENT}")
 
 
 class _WithoutInstants(ast.NodeTransformer):
@@ -35,7 +50,7 @@ def _falls(condition: ast.expr) -> bool:
     t = sp.Symbol("t", real=True)
     try:
         slope = sp.diff(sp.sympify(ast.unparse(condition), locals={"t": t}), t)
-    except (sp.SympifyError, TypeError, AttributeError):
+    except (sp.SympifyError, TypeError, AttributeError, ValueError, ArithmeticError, RecursionError):
         return False
     return bool(slope.is_negative)
 
@@ -82,7 +97,10 @@ class Law:
         return {"position": ast.unparse(total(terms))}
 
     def _formula(self) -> str:
-        formula = parse(self._translation.formula(self._motion.function, self._unit))
+        try:
+            formula = parse(self._translation.formula(self._motion.function, self._unit))
+        except FormulaError as error:
+            raise self._motion.function.fault(str(error)) from None
         return ast.unparse(_WithoutInstants().visit(formula))
 
     def _integrated(self) -> str:
@@ -98,18 +116,21 @@ class Law:
         t, s = sp.Symbol("t", real=True), sp.Symbol("s", real=True)
         function = self._motion.function
         try:
-            integral = sp.sympify(self._formula(), locals={"t": t})
-            for _ in range(self._motion.order):
-                integral = sp.integrate(integral.subs(t, s), (s, 0, t))
-            found = sp.simplify(integral)
+            formula = self._formula()
+            _check_exponents(parse(formula))
+            with time_limit(PATIENCE):
+                integral = sp.sympify(formula, locals={"t": t})
+                for _ in range(self._motion.order):
+                    integral = sp.integrate(integral.subs(t, s), (s, 0, t))
+                found = sp.simplify(integral)
             parsed = parse(str(found))
-        except (sp.SympifyError, ValueError, TypeError, AttributeError):
+        except (sp.SympifyError, ValueError, TypeError, AttributeError, ArithmeticError, RecursionError, TimeoutError):
             parsed = None
         names = {node.id for node in ast.walk(parsed) if isinstance(node, ast.Name)} if parsed else {"?"}
         if parsed is None or not names <= {"t", "pi", "sin", "cos", "exp", "sqrt", "log", "tan", "atan"}:
             order = ("", "a velocity with ICDISP", "an acceleration")[self._motion.order]
             raise function.fault(
-                f"found '{function.text}' as {order}, whose integral is no formula here, expected a "
+                f"found '{quoted(function.text)}' as {order}, whose integral is no formula here, expected a "
                 "displacement, or a function such as a polynomial or a sine"
             )
         return ast.unparse(parsed)

@@ -11,6 +11,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ..text_file import lines
+
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:/\s*((?:\w+(?=\s*(?:[,\x00]|\Z)))?))?\s*(.*)", re.DOTALL)
 """The name, the number after the slash where there is one, and the rest."""
 _ALIAS = re.compile(r"!\s*adams_view_name\s*=\s*'([^']*)'", re.IGNORECASE)
@@ -65,28 +67,28 @@ class Statement:
 
 def statements(text: str) -> tuple[str, tuple[Statement, ...], bool]:
     """The title, the statements in their order, and whether END was found."""
-    title, *lines = text.lstrip("\ufeff").splitlines() or [""]
-    found, ended = _statements(lines, 2)
+    title, *rest = lines(text) or [""]
+    found, ended = _statements(rest, 2)
     return title.strip(), found, ended
 
 
 def untitled(text: str) -> tuple[tuple[Statement, ...], bool]:
     """The statements of a dataset whose title is missing, and whether END was found."""
-    return _statements(text.lstrip("\ufeff").splitlines(), 1)
+    return _statements(lines(text), 1)
 
 
 def commands(text: str) -> tuple[Statement, ...]:
     """The commands of a command file, which has no title."""
-    return _statements(text.lstrip("\ufeff").splitlines(), 1)[0]
+    return _statements(lines(text), 1)[0]
 
 
-def _statements(lines: list[str], first: int) -> tuple[tuple[Statement, ...], bool]:
+def _statements(texts: list[str], first: int) -> tuple[tuple[Statement, ...], bool]:
     """The statements of lines that count from a first number, and whether END was found."""
     found: list[Statement] = []
     open_lines: list[tuple[int, str]] = []
     alias = next_alias = ""
     joined = False
-    for number, line in enumerate(lines, start=first):
+    for number, line in enumerate(texts, start=first):
         alias_here = _ALIAS.search(line)
         if alias_here:
             next_alias = alias_here[1]
@@ -117,17 +119,17 @@ def _uncommented(line: str) -> str:
     return line
 
 
-def _made(lines: list[tuple[int, str]], alias: str) -> Iterator[Statement]:
-    if not lines:
+def _made(parts: list[tuple[int, str]], alias: str) -> Iterator[Statement]:
+    if not parts:
         return
-    text = "\n".join(part for _, part in lines)
+    text = "\n".join(part for _, part in parts)
     head = _HEAD.match(text)
-    first = lines[0][0]
+    first = parts[0][0]
     if head is None:
         yield Statement(re.sub(rf"[\s{_LINE_COMMA}]+", " ", text).strip()[:20], "", (), first, alias)
         return
     start = head.start(3)
-    numbers = [number for number, part in lines for _ in range(len(part) + 1)]
+    numbers = [number for number, part in parts for _ in range(len(part) + 1)]
     yield Statement(
         head[1].upper(), head[2] or "", tuple(_pieces(text[start:], numbers[start:] or [first])), first, alias
     )

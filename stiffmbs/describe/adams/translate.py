@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..quantity import CONSTANTS
+from ..quoted import quoted
 from .expression import IF, OMITTED
 from .function import Function
 from .mechanism import Mechanism
@@ -37,6 +38,8 @@ CURVES: dict[str, dict[str, Any]] = {
     "LINE": {"lines": True},
 }
 """Functions of splines, and how the scene's table goes through the points."""
+MOST_PARTS = 10_000
+"""Numbers, names and operations in the value of a VARIABLE, which stands in place of its name wherever that is used."""
 NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 
 
@@ -90,8 +93,10 @@ class Translation:
         if name in NAMES:
             return ast.Constant(NAMES[name])
         if name == OMITTED:
-            raise function.fault(f"found nothing before a comma of '{function.text}', expected a value")
-        raise function.fault(f"found '{name}' in '{function.text}', expected TIME, PI, DTOR, RTOD or a function")
+            raise function.fault(f"found nothing before a comma of '{quoted(function.text)}', expected a value")
+        raise function.fault(
+            f"found '{name}' in '{quoted(function.text)}', expected TIME, PI, DTOR, RTOD or a function"
+        )
 
     def variable(self, ident: int, function: Function, within: tuple[int, ...]) -> ast.expr:
         """The expression of a VARIABLE in place of its name."""
@@ -100,7 +105,12 @@ class Translation:
             raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
         if ident in within:
             raise function.fault(f"found VARVAL({ident}), which depends on itself, expected one that does not")
-        return self.translated(variable.function, (*within, ident))
+        value = self.translated(variable.function, (*within, ident))
+        if sum(1 for _ in ast.walk(value)) > MOST_PARTS:
+            raise function.fault(
+                f"found VARVAL({ident}), which has more than {MOST_PARTS} parts with the variables in it, expected fewer"
+            )
+        return value
 
     def call(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
@@ -115,13 +125,13 @@ class Translation:
                 return SPECIAL[name](*map(translate, arguments))
             except TypeError:
                 raise function.fault(
-                    f"found {len(arguments)} arguments of {name} in '{function.text}', expected another number"
+                    f"found {len(arguments)} arguments of {name} in '{quoted(function.text)}', expected another number"
                 ) from None
         if name in (*CURVES, "INTERP"):
             return self.curve(name, arguments, function, translate)
         if name == "ARYVAL":
             return self.array_value(arguments, function)
-        raise function.fault(f"found the function {name} in '{function.text}', expected one that is read here")
+        raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected one that is read here")
 
     def measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
         """A displacement, velocity or angle between markers.
@@ -155,7 +165,9 @@ class Translation:
         idents = [identifier(arguments, k, function) for k in range(len(arguments))]
         most = {"DM": 2, "AX": 2, "AY": 2, "AZ": 2, "VM": 3, "VR": 3, "WM": 3, "VX": 4, "VY": 4, "VZ": 4}.get(name, 3)
         if not 1 <= len(idents) <= most or not idents[0]:
-            raise function.fault(f"found {len(idents)} markers of {name} in '{function.text}', expected 1 to {most}")
+            raise function.fault(
+                f"found {len(idents)} markers of {name} in '{quoted(function.text)}', expected 1 to {most}"
+            )
         found = [self.reference(ident, function) if ident else "" for ident in idents]
         i, j, *others = [*found, "", "", ""][:4]
         axes, seen_from = ("", others[0]) if name in MAGNITUDES else (others[0], others[1])
@@ -165,9 +177,13 @@ class Translation:
         """A marker as the scene writes it."""
         marker = self.mechanism.dataset.markers.get(ident)
         if marker is None:
-            raise function.fault(f"found the marker {ident} in '{function.text}', expected the number of a MARKER")
+            raise function.fault(
+                f"found the marker {ident} in '{quoted(function.text)}', expected the number of a MARKER"
+            )
         if marker.floating:
-            raise function.fault(f"found the floating marker {ident} in '{function.text}', expected a fixed one")
+            raise function.fault(
+                f"found the floating marker {ident} in '{quoted(function.text)}', expected a fixed one"
+            )
         return self.mechanism.placed(marker).reference
 
     def curve(
@@ -181,9 +197,13 @@ class Translation:
         ident, order = identifier(rest, 0, function), identifier(rest, 1, function) if len(rest) > 1 else 0
         spline = self.mechanism.dataset.splines.get(ident)
         if spline is None:
-            raise function.fault(f"found the spline {ident} in '{function.text}', expected the number of a SPLINE")
+            raise function.fault(
+                f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE"
+            )
         if order or not name:
-            raise function.fault(f"found '{function.text}', expected a spline's value, cubic or by straight lines")
+            raise function.fault(
+                f"found '{quoted(function.text)}', expected a spline's value, cubic or by straight lines"
+            )
         table = f"{name}_{ident}"
         points = [[plain(a), plain(b)] for a, b in zip(spline.x, spline.y, strict=True)]
         self.mechanism.tables[table] = {"table": points, **CURVES[name]}
@@ -206,8 +226,10 @@ def identifier(arguments: Sequence[ast.expr], at: int, function: Function) -> in
         case ast.Name(name) if name == OMITTED:
             return 0
         case None:
-            raise function.fault(f"found {len(arguments)} numbers of statements in '{function.text}', expected more")
+            raise function.fault(
+                f"found {len(arguments)} numbers of statements in '{quoted(function.text)}', expected more"
+            )
         case node:
             raise function.fault(
-                f"found '{ast.unparse(node)}' in '{function.text}', expected the number of a statement"
+                f"found '{ast.unparse(node)}' in '{quoted(function.text)}', expected the number of a statement"
             )

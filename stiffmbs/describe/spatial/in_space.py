@@ -11,6 +11,7 @@ from ..model import PlanarData
 from ..model_builder import ModelBuilder
 from ..scene import SpatialScene, load_scene, made_scene
 from ..scene_text import scene_text
+from ..text_file import source_name
 from .embedding.markers import Written
 from .embedding.scene import scene_in_space
 from .model import Model
@@ -25,12 +26,12 @@ def text_in_space(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> 
     """The text of the scene in space of a planar scene's file, some values changed; errors as for `load_scene` too."""
     planar = load_scene(path, changes)
     if not isinstance(planar, PlanarData):
-        raise InputError(f"{path}: found a scene in space, expected a planar one")
+        raise InputError(f"{source_name(path)}: found a scene in space, expected a planar one")
     try:
         found = scene_in_space(planar)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    _checked(copy.deepcopy(found), str(path))
+        raise InputError(f"{source_name(path)}: {error}") from None
+    _checked(copy.deepcopy(found), source_name(path))
     return scene_text(found)
 
 

@@ -17,6 +17,7 @@ from pydantic_core import core_schema
 
 from ..formula import FormulaError
 from ..quantity import in_si
+from ..quoted import written
 
 Quaternion = tuple[float, float, float, float]
 
@@ -99,7 +100,7 @@ class OrientationField:
             case list() | tuple() if len(found) == 3:
                 return _from_rows([[in_si(part, "number", parameters) for part in _listed(row, 3)] for row in found])
         raise FormulaError(
-            f"found {found!r}, expected [w, x, y, z], a 3x3 matrix, {{euler: zxz, angles: [..]}}, or one or two axes "
+            f"found {written(found)}, expected [w, x, y, z], a 3x3 matrix, {{euler: zxz, angles: [..]}}, or one or two axes "
             "such as {z: [..], x: [..]}"
         )
 
@@ -130,7 +131,7 @@ Orientation = Annotated[Quaternion, OrientationField()]
 
 def _listed(found: Any, count: int) -> Any:
     if not isinstance(found, list | tuple | np.ndarray) or len(found) != count:
-        raise FormulaError(f"found {found!r} in an orientation, expected a list of {count} numbers")
+        raise FormulaError(f"found {written(found)} in an orientation, expected a list of {count} numbers")
     return found
 
 

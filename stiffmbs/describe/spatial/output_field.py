@@ -14,6 +14,7 @@ from ..formula import FormulaError, parse
 from ..formula_field import FormulaOf, called_tables
 from ..formula_functions import FUNCTIONS, OF_TABLE, ROUNDING, check_functions
 from ..marker import GROUND, MarkerReference
+from ..quoted import written
 from .output import ACTIONS, ALONG_AXES, MEASURES, Output, Term, placeholder
 
 
@@ -78,7 +79,7 @@ class _OutputField:
         if isinstance(found, Real) and not isinstance(found, bool):
             found = repr(float(found))
         if not isinstance(found, str):
-            raise FormulaError(f"found {found!r}, expected a formula")
+            raise FormulaError(f"found {written(found)}, expected a formula")
         terms = _Terms()
         tree = terms.visit(parse(found))
         tables = (info.context or {}).get("tables") or {}

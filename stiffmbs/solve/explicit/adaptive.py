@@ -149,10 +149,11 @@ def first_step(
     scale = atol + settings.rtol * np.abs(y)
 
     def size(vector: np.ndarray) -> float:
-        return float(np.sqrt(np.mean((vector / scale) ** 2))) if len(vector) else 0.0
+        with np.errstate(over="ignore", invalid="ignore"):
+            return float(np.sqrt(np.mean((vector / scale) ** 2))) if len(vector) else 0.0
 
     of_state, of_rate = size(y), size(rate)
-    h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 else 1e-6
+    h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 and np.isfinite(of_rate) else 1e-6
     q, u = mechanics.system.of_body.moved(start.q, h * start.u), start.u + h * start.acceleration
     mechanics.state.q[:], mechanics.state.u[:] = q, u
     status, acceleration = mechanics.accelerate(t + h)

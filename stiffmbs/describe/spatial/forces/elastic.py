@@ -9,6 +9,7 @@ from pydantic import Field, WithJsonSchema
 from ... import si
 from ...element import Force, Symbolic
 from ...forces.matrix import from_diagonal, product
+from ...quoted import written
 from ..marker import Marker
 from ..nearest import nearest
 from ..wrench import Pairs, along_axes, velocity
@@ -61,7 +62,7 @@ NONE = (NOTHING,) * 6
 def six_rows(found: Any) -> Any:
     """The six by six entries that six numbers stand for as a diagonal, or two blocks, of three numbers or three by three."""
     if not isinstance(found, list | tuple):
-        raise ValueError(f"found {found!r}, expected {FORMS}")
+        raise ValueError(f"found {written(found)}, expected {FORMS}")
     rows = _rows_of_blocks(found) if len(found) == 2 else from_diagonal(found)
     if len(rows) != 6 or any(not isinstance(row, list | tuple) or len(row) != 6 for row in rows):
         raise ValueError(f"found a list of {len(found)}, expected {FORMS}")
