@@ -41,6 +41,8 @@ class KindRecord:
         For each term the (row, column) of its entries in the element's own block.
     sources : dict
         For each usual term set the source of its kernel; absent where the kind contributes nothing.
+    losses : list of int or None
+        Numbers of an element that must be zero for it to keep energy; None where nothing makes that certain.
     """
 
     n_equations: int
@@ -49,6 +51,7 @@ class KindRecord:
     n_counters: int
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
+    losses: list[int] | None
 
 
 @cache
@@ -106,7 +109,7 @@ def _derived(kind: Kind) -> KindRecord:
     }
     return KindRecord(
         derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
-        len(derived.symbols.element.angles), patterns, sources,
+        len(derived.symbols.element.angles), patterns, sources, derived.losses,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..analyse.balance import energy_balance
 from ..analyse.redundancy import Redundancy, examine
 from ..compile.compile_model import compile_model
 from ..compile.presolve import parts_of
@@ -24,8 +25,10 @@ from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.pieces import Piece, leave_out_coordinates, piece_of, solve_pieces
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
+from .balance_notes import balance_notes
 from .channels import channels_of
 from .gaps import reported
+from .growth import senseless
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
 from .solution import Solution
@@ -162,10 +165,15 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     if project:
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
+    system, channels = job.mechanics.system, channels_of(job.data, job.mechanics.system, rows)
+    energies = channels["energy.kinetic"], channels["energy.potential"]
+    balance = energy_balance(system, rows.t, *energies, rows.values, trajectory.step_times)
+    wrong = tuple(senseless(job.mechanics, rows, channels, job.settings))
+    wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels_of(job.data, job.mechanics.system, rows), outcome=outcome,
-        message=message, notes=(*_notes(job, trajectory), *left_out), solver=statistics,
-        history=trajectory.history, not_unique=job.redundancy.not_unique,
+        name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
+        message=message, notes=(*_notes(job, trajectory), *left_out, *wrong), solver=statistics,
+        history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..solve.trajectory import Outcome
+from .balance_notes import balance_words
 from .counters import solver_words
 from .error_bars import UNKNOWN
 from .force_table import NOT_UNIQUE, force_table
@@ -33,6 +34,7 @@ def as_json(scene: str, solution: Solution) -> str:
             "presolve": list(solution.presolve),
             "time": {"start": float(solution.time[0]), "end": float(solution.time[-1])},
             "solver": solution.solver,
+            "balance": solution.balance.as_dict(),
             "not_unique": list(solution.not_unique),
             **({"verification": list(solution.verification)} if solution.verification else {}),
             "channels": _with_errors(solution),
@@ -95,7 +97,7 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
         console.print(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values", highlight=False)
     total = solution.channels["energy.total"]
     console.print(
-        f"energy: {total[0]:.9g} J at the start, changes by at most {solution.energy_drift():.3g} J; "
+        f"energy: {total[0]:.9g} J at the start, {balance_words(solution.balance)}; "
         f"constraints hold to {np.nanmax(solution.channels['constraint.position']):.2g} in position, "
         f"{np.nanmax(solution.channels['constraint.velocity']):.2g} in velocity",
         highlight=False,

@@ -11,6 +11,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from .beyond_sense import Growth
 from .engine import Engine, Reached
 from .error_control import CHOSEN, ErrorControl
 from .formulations import FORMULATIONS
@@ -65,6 +66,7 @@ def integrated(
     system = integrator.mechanics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
+    growth = Growth(integrator.mechanics, grid.start, start.q)
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
@@ -77,6 +79,8 @@ def integrated(
                 outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {reached.failure}{likely}"
             elif pays and not pays(reached):
                 break
+            elif reached.t < grid.end:
+                growth.look(reached.t, *integrator.split(reached.y))
     except SolverError as error:
         outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:

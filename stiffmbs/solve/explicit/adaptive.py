@@ -11,6 +11,7 @@ import numpy as np
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
+from ..beyond_sense import Growth
 from ..initial import InitialValues
 from ..limits import refuse_beyond_limits
 from ..mechanics import Mechanics
@@ -62,6 +63,7 @@ class AdaptiveRun:
         self.left = False
         self._scheme, self._mechanics, self._start, self._grid = scheme, mechanics, start, grid
         self._settings, self._watch = settings, watch
+        self._growth = Growth(mechanics, grid.start, start.q)
         self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
@@ -104,6 +106,8 @@ class AdaptiveRun:
             status = advance(stop, most, held, self._grid.times is None, work.at)
             work.collect(self._rows)
             self._watch(work.t)
+            if work.t < self._grid.end:
+                self._growth.look(work.t, work.q, work.u)
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
