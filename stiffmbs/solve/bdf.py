@@ -71,7 +71,9 @@ def integrated(
     begun = time.perf_counter()
     try:
         for reached in integrator.run(start, grid):
-            rows.extend(reached.times, *integrator.equations.states(reached.rows))
+            states = integrator.equations.states(reached.rows)
+            rows.extend(reached.times, *states)
+            growth.note(reached.times, states[0])
             watch(reached.t)
             integrator.reached = reached
             if reached.failure:

@@ -37,8 +37,15 @@ class Growth:
         self._lengths = reaches(mechanics.system)
         self._t, self._far = [t], [0.0]
 
+    def note(self, times: np.ndarray, places: np.ndarray) -> None:
+        """Remember how far the mechanism was at instants, s, from its coordinates there, one row each."""
+        for t, far in zip(times, np.max(np.abs(places - self._start) * self._lengths, axis=1, initial=0.0), strict=True):
+            if far > MORE * self._far[-1]:
+                self._t.append(float(t))
+                self._far.append(float(far))
+
     def look(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Look at a state.
+        """Look at the state that a solver has come to.
 
         Raises
         ------
@@ -46,12 +53,9 @@ class Growth:
             Where a body is faster than light, or the motion grows like an exponential beyond `BEYOND`; names the body
             and the element that pulls hardest.
         """
-        system = self._mechanics.system
+        self.note(np.array([t]), q[None])
+        system, far = self._mechanics.system, self._far[-1]
         speed, body = fastest(system, u)
-        far = float(np.max(np.abs(q - self._start) * self._lengths, initial=0.0))
-        if far > MORE * self._far[-1]:
-            self._t.append(t)
-            self._far.append(far)
         if speed > LIGHT:
             raise SolverError(self._sentence(t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light"))
         if far > BEYOND * system.size and exponential(np.array(self._t), np.array(self._far)):
