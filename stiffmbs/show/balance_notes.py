@@ -34,7 +34,9 @@ def balance_words(balance: Balance) -> str:
     change, work = float(balance.change[-1]), float(balance.work[-1])
     if balance.keeps_energy:
         return f"changes by at most {balance.imbalance:.3g} J (it should be constant)"
-    words = f"{change:+.6g} J by the end, of which {work:+.6g} J is work of what has no potential; the balance is kept to "
+    words = (
+        f"{change:+.6g} J by the end, of which {work:+.6g} J is work of what has no potential; the balance is kept to "
+    )
     kept = f"{balance.imbalance:.2g} J"
     if balance.resolved > balance.imbalance:
         kept += ", as far as the output instants resolve that work"

@@ -58,7 +58,9 @@ def _grown(system: System, rows: OutputRows) -> str:
         release(rows.q, rows.u)
     limit = BEYOND * system.size
     if np.nanmax(far) > limit and exponential(rows.t, np.fmax.accumulate(far)):
-        return _growth_sentence(system, rows, far, limit, f"{BEYOND:.0e} times the mechanism's size of {system.size:.3g} m")
+        return _growth_sentence(
+            system, rows, far, limit, f"{BEYOND:.0e} times the mechanism's size of {system.size:.3g} m"
+        )
     if np.nanmax(speed) > LIGHT:
         return _growth_sentence(system, rows, speed, LIGHT, "the speed of light")
     resolved = RESOLVED * system.size / np.finfo(float).eps
@@ -72,7 +74,8 @@ def _connected(system: System) -> bool:
     """Whether anything holds bodies together: its deformation is a difference of coordinates."""
     ground = len(system.bodies)
     return any(
-        group.kind.element.kind and bool(np.any(np.sum(group.bodies < ground, axis=1) >= 1 + (not group.record.n_equations)))
+        group.kind.element.kind
+        and bool(np.any(np.sum(group.bodies < ground, axis=1) >= 1 + (not group.record.n_equations)))
         for group in system.groups
     )
 

@@ -3,8 +3,8 @@
 The run is made once more and reported at many instants, within its steps too.  There the block system tells the
 accelerations that the forces give along that very way.  Their integral is the change of the velocities (the momentum
 balance) but where something acts that the step has not seen.  Stiff forces magnify every error of the tolerance, so an
-open balance alone proves nothing: such a stretch is solved again by itself, with steps far shorter than it, and only
-where it then ends elsewhere something was stepped over for certain.
+open balance alone proves nothing: such a stretch is solved again by itself, with steps far shorter than it.  Where it
+then ends elsewhere, but not with a tighter tolerance alone, something was stepped over for certain.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ..analyse.balance import Balance, energy_balance
 from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
+from ..compile.kind import Shape
 from ..compile.system import System
 from ..errors import StiffmbsError
 from ..solve.mechanics import OutputRows
@@ -38,11 +40,15 @@ OPEN = 1e-3
 """Part of the largest velocity, weighted with masses, by which the momentum balance of an interval must be open."""
 ELSEWHERE = 1e-2
 """The same for the velocities at the end of a stretch that is solved again."""
+MUCH = 0.05
+"""The same for a difference that no error of a tolerance makes in one step."""
 STRETCHES = 4
 """Stretches that are solved again at the most."""
 SHORTER = 50
 """Steps in an interval whose balance is open, when its stretch is solved again; a quarter of an interval should do."""
 ENOUGH = 4
+TIGHTER, TIGHTEST = 1e-2, 1e-13
+"""Of the tolerance with which a stretch is solved without short steps; the tightest that rounding allows."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +98,19 @@ class Along:
     balance: Balance | None
     stretches: tuple[SteppedOver, ...] = ()
     obstacle: str = ""
+
+
+def has_laws(system: System) -> bool:
+    """Whether forces or joints have corners or laws (formulas, tables), which may change within one step."""
+    return any(
+        group.entries("switch") or (acts and any(_is_law(shape) for _, shape in group.kind.fields))
+        for group in system.groups
+        for acts in [bool(group.entries("f") or group.record.n_equations)]
+    )
+
+
+def _is_law(shape: Shape) -> bool:
+    return shape[0] in ("formula", "table") or (shape[0] == "several" and any(map(_is_law, shape[1])))
 
 
 def looked_along(job: Job, first: Solution, allowed: float) -> Along:
@@ -150,7 +169,7 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
         first, last = _stretch(rows.t, steps, worst)
         looked[first:last] = True
         width = float(rows.t[worst + 1] - rows.t[worst])
-        off = _solved_again(job, rows, first, last, width, allowed) / speed
+        off = _parted(job, rows, first, last, width, allowed, MUCH * speed) / speed
         if off > ELSEWHERE:
             begin, end = float(rows.t[first]), float(rows.t[last])
             yield SteppedOver(begin, end, float(rows.t[worst]), width, _acting(system, rows, worst), off)
@@ -180,10 +199,27 @@ def _stretch(t: np.ndarray, steps: np.ndarray, k: int) -> tuple[int, int]:
     return min(first, k), min(max(last, k + 1), len(t) - 1)
 
 
-def _solved_again(job: Job, rows: OutputRows, first: int, last: int, width: float, allowed: float) -> float:
-    """How far from the run's own velocities a stretch ends with short steps, as a norm in the mass matrix; 0 if it does not."""
+def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, allowed: float, much: float) -> float:
+    """How far from the run's own velocities a stretch ends with short steps, as a norm in the mass matrix.
+
+    0 where it does not end, or ends a little elsewhere with a tighter tolerance alone: then that is what it lacks.
+    """
+    roots = np.sqrt(job.mechanics.system.mass)
+    short = _solved_again(job, rows, first, last, {"max_step": width / SHORTER}, allowed)
+    if short is None:
+        return 0.0
+    off = float(np.linalg.norm((short - rows.u[last]) * roots))
+    if off > much:
+        return off
+    tight = _solved_again(job, rows, first, last, {"rtol": max(TIGHTER * job.settings.rtol, TIGHTEST)}, allowed)
+    return off if tight is not None and np.linalg.norm((tight - short) * roots) > off / 2 else 0.0
+
+
+def _solved_again(
+    job: Job, rows: OutputRows, first: int, last: int, how: dict[str, Any], allowed: float
+) -> np.ndarray | None:
+    """The velocities at the end of a stretch that is solved in another way; None where it does not come to its end."""
     begin, end = float(rows.t[first]), float(rows.t[last])
-    how = {"max_step": width / SHORTER}
     how |= {"solver": "projected", "scheme": "dop853"} if job.settings.solver == "auto" else {}
     try:
         start = restarted(job.mechanics, begin, rows.q[first], rows.u[first])
@@ -191,10 +227,8 @@ def _solved_again(job: Job, rows: OutputRows, first: int, last: int, width: floa
         stretch = replace(job, settings=changed(job.settings, how), grid=grid, start=start, pieces=())
         found = stretch.integrate(Deadline(begin, end, allowed))
     except StiffmbsError:
-        return 0.0
-    if found.outcome is not Outcome.DONE:
-        return 0.0
-    return float(np.linalg.norm((found.u[-1] - rows.u[last]) * np.sqrt(job.mechanics.system.mass)))
+        return None
+    return found.u[-1] if found.outcome is Outcome.DONE else None
 
 
 def _acting(system: System, rows: OutputRows, k: int) -> str:

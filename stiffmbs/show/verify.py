@@ -6,10 +6,15 @@
 3. With the same solver at a tolerance between (a quarter of the step), where the other integrator says nothing, or the
    first two look suspicious: then the order of convergence tells.
 
+None of these need see what begins and ends within one step.  So the run is looked along (`stiffmbs.show.stepped_over`),
+and where the scene has laws or events in the state it is solved once more with another longest step:
+
+4. As 1, with steps so short that they are several times as many, or that they see what was found along the run.
+
 A tenth of the tolerance is not enough for the first: bdf's error then shrinks by 2 to 10 times, and one peak in twenty has
 nearly the same error in both runs.
 
-All within a few times the first run's time; what was not done is said.
+The reruns take a few times the first run's time, and looking along it as much again; what was not done is said.
 """
 
 from __future__ import annotations
@@ -24,14 +29,16 @@ from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..solve.explicit import ADAPTIVE
-from ..solve.trajectory import Watch
+from ..solve.trajectory import Outcome, Watch
 from .between import Between, looked_between, more_instants
 from .doubts import Comparison, doubts
-from .error_bars import ErrorBar, error_bar
+from .doubts_of_steps import doubts_of_steps
+from .error_bars import UNKNOWN, ErrorBar, error_bar
 from .run import Job, prepare, solved
 from .scales import scales
 from .solution import Solution
 from .solve_again import Again, solve_again
+from .stepped_over import Along, has_laws, looked_along
 
 MOST_EFFORT, PATIENCE = 3.0, 1.0
 """Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
@@ -43,6 +50,8 @@ OTHER_OF_FIXED = 1e-10
 """Relative tolerance of the other solver where the first has fixed steps."""
 ROUNDING = 1e-13
 """Part of a channel's scale that rounding takes."""
+MORE_STEPS, MANY = 4, 1000
+"""Times as many steps, and at least so many, that a run with another longest step takes."""
 
 
 def verify(
@@ -61,7 +70,12 @@ def verify(
     first = solved(job, watch)
     if len(first.time) < 2:
         return replace(first, verification=("not verified: nothing was solved",))
-    return verified(job, first, max(PATIENCE, MOST_EFFORT * (time.perf_counter() - begun)))
+    if first.outcome is Outcome.INTERRUPTED:
+        return replace(first, verification=("not verified: interrupted by the user",))
+    try:
+        return verified(job, first, max(PATIENCE, MOST_EFFORT * (time.perf_counter() - begun)))
+    except KeyboardInterrupt:
+        return replace(first, verification=("verification interrupted by the user",))
 
 
 def verified(job: Job, first: Solution, allowed: float) -> Solution:
@@ -89,6 +103,8 @@ class _Verification:
         self._between: Between | None = None
         self._tighter: dict[int, Again] = {}
         self._other: Again | None = None
+        self._along = Along(None)
+        self._shorter: Again | None = None
         self._skipped: list[str] = []
 
     def result(self) -> Solution:
@@ -98,9 +114,10 @@ class _Verification:
         except KeyboardInterrupt:
             self._skipped.append("verification interrupted by the user")
         comparison = self._comparison()
+        of_steps = tuple(doubts_of_steps(comparison, self._along, self._shorter))
         return replace(
             self._first, errors=comparison.bars, verification=tuple(self._told()),
-            notes=(*self._first.notes, *doubts(comparison)),
+            notes=(*self._first.notes, *doubts(comparison), *of_steps), balance=self._along.balance or self._first.balance,
         )  # fmt: skip
 
     def _solve(self) -> None:
@@ -110,6 +127,24 @@ class _Verification:
         self._ask_the_other()
         if self._other is None or self._other.obstacle or not _judges(self._other) or self._comparison().suspicious:
             self._tighten()
+        self._look_along()
+
+    def _look_along(self) -> None:
+        """What the first run's steps went over, and a run with shorter ones where there may be such."""
+        if _fixed(self._job.settings):
+            return
+        spare = self._allowed / 2
+        self._along = looked_along(self._job, self._first, spare)
+        if self._along.obstacle:
+            self._skipped.append(self._along.obstacle)
+        if self._along.stretches or has_laws(self._job.mechanics.system):
+            longest = min([_shorter_step(self._first), *(found.max_step for found in self._along.stretches)])
+            name, changes = self._tighter_settings(self._levels()[0])
+            reported = self._first.time
+            self._shorter = solve_again(
+                self._job, f"{name} with steps of at most {longest:.3g} s", {**changes, "max_step": longest}, reported,
+                np.arange(len(reported)), spare,
+            )  # fmt: skip
 
     def _look_between(self) -> None:
         """The first tighter run, also at instants between those of the output; the next one where it does not end."""
@@ -165,11 +200,14 @@ class _Verification:
         return self._allowed - (time.perf_counter() - self._begun)
 
     def _comparison(self) -> Comparison:
-        runs = [self._tighter[level] for level in sorted(self._tighter)]
-        tighter = tuple(run for run in runs if run.solution is not None)
+        levels = [self._tighter[level] for level in sorted(self._tighter)]
+        tighter = tuple(run for run in levels if run.solution is not None)
         other = self._other if _judges(self._other) else None
+        shorter = self._shorter if self._shorter is not None and self._shorter.solution is not None else None
+        lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
+        runs = [*tighter, *([other] if other else []), *([shorter] if shorter else [])]
         bars = {
-            name: self._bar(name, [*tighter, *([other] if other else [])])
+            name: UNKNOWN if lost else self._bar(name, runs)
             for name in self._first
             if name not in self._first.not_unique and not name.startswith("constraint.")
         }
@@ -181,7 +219,7 @@ class _Verification:
 
     def _told(self) -> list[str]:
         """What was compared with, and what could not be."""
-        runs = [run for run in (*self._tighter.values(), self._other) if run is not None]
+        runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
         done = [run.name for run in runs if not run.obstacle and (run is not self._other or _judges(run))]
         told = [f"solved again with {' and '.join(done)}"] if done else []
         if self._exact:
@@ -215,6 +253,19 @@ def _tolerances(settings: RunSettings, level: int) -> dict[str, Any]:
     if settings.rtol < APART * rtol:
         rtol = 10 * settings.rtol
     return {"rtol": rtol, **({"atol": settings.atol * rtol / settings.rtol} if settings.atol else {})}
+
+
+def _shorter_step(first: Solution) -> float:
+    """A longest step with which a run takes some times as many steps as it did, s."""
+    steps, whole = np.diff(first.step_times), float(first.time[-1] - first.time[0])
+    if not len(steps):
+        return whole / MANY
+    wanted = max(MORE_STEPS * len(steps), MANY)
+    few, many = whole / (8 * wanted), whole
+    for _ in range(60):  # by bisection of the number of steps, which falls with their length
+        middle = np.sqrt(few * many)
+        few, many = (middle, many) if np.sum(np.ceil(steps / middle)) > wanted else (few, middle)
+    return float(f"{many:.2g}")
 
 
 def _fixed(settings: RunSettings) -> bool:

@@ -39,7 +39,9 @@ class Growth:
 
     def note(self, times: np.ndarray, places: np.ndarray) -> None:
         """Remember how far the mechanism was at instants, s, from its coordinates there, one row each."""
-        for t, far in zip(times, np.max(np.abs(places - self._start) * self._lengths, axis=1, initial=0.0), strict=True):
+        for t, far in zip(
+            times, np.max(np.abs(places - self._start) * self._lengths, axis=1, initial=0.0), strict=True
+        ):
             if far > MORE * self._far[-1]:
                 self._t.append(float(t))
                 self._far.append(float(far))
@@ -57,7 +59,9 @@ class Growth:
         system, far = self._mechanics.system, self._far[-1]
         speed, body = fastest(system, u)
         if speed > LIGHT:
-            raise SolverError(self._sentence(t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light"))
+            raise SolverError(
+                self._sentence(t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
+            )
         if far > BEYOND * system.size and exponential(np.array(self._t), np.array(self._far)):
             what = f"body '{body}' has moved by {far:.3g} m, and ever faster, in a mechanism of {system.size:.3g} m"
             raise SolverError(self._sentence(t, q, u, what))
