@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .balance_notes import BROKEN
 from .doubts import Comparison
 from .parting import distance, parting
 from .scales import UNITS, kind_of
@@ -84,7 +83,7 @@ def _different(comparison: Comparison, shorter: Again | None) -> str:
 def _open_balance(along: Along) -> Iterator[str]:
     balance = along.balance
     assert balance is not None
-    if balance.imbalance > max(BROKEN * balance.scale, CERTAIN * balance.resolved):
+    if balance.imbalance > max(along.missing, CERTAIN * balance.resolved):
         k = int(np.argmax(np.abs(balance.open)))
         yield (
             f"the energy balance is broken: {balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged are missing at "

@@ -25,6 +25,7 @@ from ..errors import StiffmbsError
 from ..solve.mechanics import OutputRows
 from ..solve.restart import restarted
 from ..solve.trajectory import Grid, Outcome
+from .balance_notes import may_be_missing
 from .between import apart
 from .gaps import reported
 from .run import Job
@@ -90,12 +91,15 @@ class Along:
     ----------
     balance : Balance or None
         Of energy and work at all these instants; None where the run did not come to its end again.
+    missing : float
+        What may be missing in it before it is told, J.
     stretches : tuple of SteppedOver
     obstacle : str
         Why nothing was looked at; empty where it was.
     """
 
     balance: Balance | None
+    missing: float = 0.0
     stretches: tuple[SteppedOver, ...] = ()
     obstacle: str = ""
 
@@ -138,7 +142,8 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     energies = kinetic_energy(system, rows.u), potential_energy(system, values)
     balance = energy_balance(system, rows.t, *energies, values, trajectory.step_times)
     left = allowed - (time.perf_counter() - begun)
-    return Along(balance, tuple(_stepped_over(job, rows, trajectory.step_times, left)))
+    missing = may_be_missing(system, balance, rows, job.settings)
+    return Along(balance, missing, tuple(_stepped_over(job, rows, trajectory.step_times, left)))
 
 
 def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
@@ -159,20 +164,21 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
     """The stretches that end elsewhere when they are solved again, the worst first."""
     system = job.mechanics.system
     missing, speed = _momentum(system, rows)
-    begun, looked = time.perf_counter(), np.zeros(len(missing), dtype=bool)
+    end, looked = time.perf_counter() + allowed, np.zeros(len(missing), dtype=bool)
     for _ in range(STRETCHES):
         worst = int(np.argmax(np.where(looked, 0.0, missing), axis=0)) if len(missing) else 0
         if not len(missing) or looked[worst] or not missing[worst] > OPEN * speed:
             return
-        if time.perf_counter() - begun > allowed:
+        left = end - time.perf_counter()
+        if left <= 0:
             return
         first, last = _stretch(rows.t, steps, worst)
         looked[first:last] = True
         width = float(rows.t[worst + 1] - rows.t[worst])
-        off = _parted(job, rows, first, last, width, allowed, MUCH * speed) / speed
+        off = _parted(job, rows, first, last, width, left / 2, MUCH * speed) / speed
         if off > ELSEWHERE:
-            begin, end = float(rows.t[first]), float(rows.t[last])
-            yield SteppedOver(begin, end, float(rows.t[worst]), width, _acting(system, rows, worst), off)
+            ends = float(rows.t[first]), float(rows.t[last])
+            yield SteppedOver(*ends, float(rows.t[worst]), width, _acting(system, rows, worst), off)
 
 
 def _momentum(system: System, rows: OutputRows) -> tuple[np.ndarray, float]:

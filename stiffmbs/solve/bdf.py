@@ -82,7 +82,7 @@ def integrated(
             elif pays and not pays(reached):
                 break
             elif reached.t < grid.end:
-                growth.look(reached.t, *integrator.split(reached.y))
+                growth.look(reached.t, *integrator.split(reached.y), integrator.steps())
     except SolverError as error:
         outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:
@@ -177,7 +177,7 @@ class Integrator:
                 if t < grid.end:
                     q, u = self.split(reached.y)
                     if self._held.any:
-                        self._held.note(t, q, u, self._steps(), reached.fired)
+                        self._held.note(t, q, u, self.steps(), reached.fired)
                     if t >= stop:  # min(2*t, 1) still rises at its corner: what follows is told behind it
                         t = _just_after(t)
                     start = restarted(self.mechanics, t, q, u)
@@ -186,7 +186,8 @@ class Integrator:
                     self._events += before < stop
                     self._corners += before >= stop
 
-    def _steps(self) -> int:
+    def steps(self) -> int:
+        """Taken so far."""
         return int(self.engine.statistics()["steps"])
 
     def _explained(self, reached: Reached) -> Reached:

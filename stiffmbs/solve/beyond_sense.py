@@ -16,6 +16,8 @@ BEYOND = 1e4
 DECADES, FASTER = (1e-4, 1e-2, 1.0), 2.5
 """Parts of the largest motion; the time from the second to the third may be so many times that from the first to the
 second: 10 under a constant force, 3.2 where a force grows as time squared, 1 for exponential growth."""
+MANY = 100_000
+"""Steps for which a motion is followed wherever it goes."""
 MORE = 1.5
 """Times by which a motion must have grown to be noted again."""
 
@@ -46,16 +48,18 @@ class Growth:
                 self._t.append(float(t))
                 self._far.append(float(far))
 
-    def look(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Look at the state that a solver has come to.
+    def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
+        """Look at the state that a solver has come to, with so many steps.
 
         Raises
         ------
         SolverError
-            Where a body is faster than light, or the motion grows like an exponential beyond `BEYOND`; names the body
+            After very many steps, where a body is faster than light, or the motion grows like an exponential beyond `BEYOND`; names the body
             and the element that pulls hardest.
         """
         self.note(np.array([t]), q[None])
+        if steps < MANY:
+            return
         system, far = self._mechanics.system, self._far[-1]
         speed, body = fastest(system, u)
         if speed > LIGHT:

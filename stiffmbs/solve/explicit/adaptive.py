@@ -107,7 +107,7 @@ class AdaptiveRun:
             work.collect(self._rows)
             self._watch(work.t)
             if work.t < self._grid.end:
-                self._growth.look(work.t, work.q, work.u)
+                self._growth.look(work.t, work.q, work.u, work.count("steps"))
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
