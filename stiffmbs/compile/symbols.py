@@ -19,7 +19,6 @@ from .kind import OWN, Kind, Shape
 from .measures import measure, own_coordinate
 from .spline import Spline
 
-
 NARROW: dict[type[sp.Basic], str] = {
     sp.exp: "exp", sp.cosh: "exp", sp.sinh: "exp", sp.tanh: "tanh", sp.atan: "atan",
 }  # fmt: skip

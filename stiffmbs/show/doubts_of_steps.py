@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -31,6 +31,13 @@ def doubts_of_steps(comparison: Comparison, along: Along, shorter: Again | None)
     if along.stretches:
         yield _stepped_over(comparison, along.stretches[0], shorter)
         return
+    if by_luck(comparison, shorter):
+        assert shorter is not None
+        yield (
+            "runs part by what their steps see of the scene's laws, not by their tolerance: this one agrees with "
+            f"{shorter.name}, others do not; set max_step to that, so that it is not left to luck"
+        )
+        return
     different = _different(comparison, shorter)
     if shorter is not None and different:
         yield (
@@ -39,6 +46,26 @@ def doubts_of_steps(comparison: Comparison, along: Along, shorter: Again | None)
         )
     elif along.balance is not None and not any("energy balance" in note for note in comparison.first.notes):
         yield from _open_balance(along)
+
+
+def by_luck(comparison: Comparison, shorter: Again | None) -> bool:
+    """Whether a run agrees with one of shorter steps, but not with others."""
+    if not any(comparison.partings()) or not _whole(shorter):
+        return False
+    return not _parts(comparison, comparison.first.channels, shorter)
+
+
+def _whole(shorter: Again | None) -> bool:
+    return shorter is not None and shorter.solution is not None and not shorter.obstacle and not shorter.remark
+
+
+def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: Again | None) -> str:
+    """Where motions part from those of shorter steps; empty where they do not."""
+    assert shorter is not None
+    first = comparison.first
+    other = {name: shorter.reported(name) for name in first}
+    found = parting(first.time, distance(channels, other, len(first.time), comparison.sizes))
+    return f"from t = {found.t:.4g} s on {found.body} is elsewhere" if found is not None else ""
 
 
 def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | None) -> str:
@@ -68,16 +95,12 @@ def _off(comparison: Comparison, shorter: Again | None) -> str:
 
 def _different(comparison: Comparison, shorter: Again | None) -> str:
     """Where a run with shorter steps parts from one of the same tolerance that the first agrees with; empty where it does not."""
-    whole = shorter is not None and shorter.solution is not None and not shorter.obstacle and not shorter.remark
-    if shorter is None or not whole or not comparison.tighter or any(comparison.partings()):
+    if not _whole(shorter) or not comparison.tighter or any(comparison.partings()):
         return ""
-    first = comparison.first
-    other = {name: shorter.reported(name) for name in first}
-    tight = {name: comparison.tighter[-1].reported(name) for name in first}
-    if len(tight["energy.total"]) < len(first.time):
+    tight = {name: comparison.tighter[-1].reported(name) for name in comparison.first}
+    if len(tight["energy.total"]) < len(comparison.first.time):
         return ""
-    found = parting(first.time, distance(tight, other, len(first.time), comparison.sizes))
-    return f"from t = {found.t:.4g} s on {found.body} is elsewhere" if found is not None else ""
+    return _parts(comparison, tight, shorter)
 
 
 def _open_balance(along: Along) -> Iterator[str]:

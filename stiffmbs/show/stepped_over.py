@@ -43,6 +43,8 @@ ELSEWHERE = 1e-2
 """The same for the velocities at the end of a stretch that is solved again."""
 MUCH = 0.05
 """The same for a difference that no error of a tolerance makes in one step."""
+SAME = 1e-6
+"""Part of the largest kinetic energy by which two runs of the same steps may differ."""
 STRETCHES = 4
 """Stretches that are solved again at the most."""
 SHORTER = 50
@@ -90,10 +92,13 @@ class Along:
     Attributes
     ----------
     balance : Balance or None
-        Of energy and work at all these instants; None where the run did not come to its end again.
+        Of energy and work at all these instants; None where the run did not come to its end again, or took another way.
     missing : float
         What may be missing in it before it is told, J.
     stretches : tuple of SteppedOver
+        Of the run.
+    elsewhere : tuple of SteppedOver
+        Of the same where it took another way when it was reported at more instants.
     obstacle : str
         Why nothing was looked at; empty where it was.
     """
@@ -101,6 +106,7 @@ class Along:
     balance: Balance | None
     missing: float = 0.0
     stretches: tuple[SteppedOver, ...] = ()
+    elsewhere: tuple[SteppedOver, ...] = ()
     obstacle: str = ""
 
 
@@ -142,8 +148,17 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     energies = kinetic_energy(system, rows.u), potential_energy(system, values)
     balance = energy_balance(system, rows.t, *energies, values, trajectory.step_times)
     left = allowed - (time.perf_counter() - begun)
-    missing = may_be_missing(system, balance, rows, job.settings)
-    return Along(balance, missing, tuple(_stepped_over(job, rows, trajectory.step_times, left)))
+    stretches = tuple(_stepped_over(job, rows, trajectory.step_times, left))
+    if not _same_way(first, rows.t, energies[0]):
+        return Along(None, elsewhere=stretches)
+    return Along(balance, may_be_missing(system, balance, rows, job.settings), stretches)
+
+
+def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
+    """Whether a run at more instants has the kinetic energies of the run itself, as it has unless output decides on steps."""
+    at = np.minimum(np.searchsorted(t, first.time), len(t) - 1)
+    own = first["energy.kinetic"]
+    return bool(np.nanmax(np.abs(own - kinetic[at])) <= SAME * np.nanmax(own, initial=0.0))
 
 
 def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:

@@ -32,13 +32,15 @@ from ..solve.explicit import ADAPTIVE
 from ..solve.trajectory import Outcome, Watch
 from .between import Between, looked_between, more_instants
 from .doubts import Comparison, doubts
-from .doubts_of_steps import doubts_of_steps
+from .doubts_of_steps import by_luck, doubts_of_steps
 from .error_bars import UNKNOWN, ErrorBar, error_bar
+from .parting import distance, parting
 from .run import Job, prepare, solved
 from .scales import scales
+from .settings import changed
 from .solution import Solution
 from .solve_again import Again, solve_again
-from .stepped_over import Along, has_laws, looked_along
+from .stepped_over import Along, SteppedOver, has_laws, looked_along
 
 MOST_EFFORT, PATIENCE = 3.0, 1.0
 """Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
@@ -105,6 +107,7 @@ class _Verification:
         self._other: Again | None = None
         self._along = Along(None)
         self._shorter: Again | None = None
+        self._narrow: tuple[SteppedOver, ...] = ()
         self._skipped: list[str] = []
 
     def result(self) -> Solution:
@@ -115,9 +118,11 @@ class _Verification:
             self._skipped.append("verification interrupted by the user")
         comparison = self._comparison()
         of_steps = tuple(doubts_of_steps(comparison, self._along, self._shorter))
+        steps_decide = self._along.stretches or by_luck(comparison, self._shorter)
+        told = () if steps_decide else tuple(doubts(comparison))  # these know no remedy but the tolerance
         return replace(
             self._first, errors=comparison.bars, verification=tuple(self._told()),
-            notes=(*self._first.notes, *doubts(comparison), *of_steps), balance=self._along.balance or self._first.balance,
+            notes=(*self._first.notes, *told, *of_steps), balance=self._along.balance or self._first.balance,
         )  # fmt: skip
 
     def _solve(self) -> None:
@@ -135,16 +140,46 @@ class _Verification:
             return
         spare = self._allowed / 2
         self._along = looked_along(self._job, self._first, spare)
+        self._narrow = self._along.stretches + self._along.elsewhere
         if self._along.obstacle:
             self._skipped.append(self._along.obstacle)
+        elif not self._along.stretches:
+            self._look_along_others(spare)
         if self._along.stretches or has_laws(self._job.mechanics.system):
-            longest = min([_shorter_step(self._first), *(found.max_step for found in self._along.stretches)])
+            longest = min([_shorter_step(self._first), *(found.max_step for found in self._narrow)])
             name, changes = self._tighter_settings(self._levels()[0])
             reported = self._first.time
             self._shorter = solve_again(
                 self._job, f"{name} with steps of at most {longest:.3g} s", {**changes, "max_step": longest}, reported,
                 np.arange(len(reported)), spare,
             )  # fmt: skip
+
+    def _look_along_others(self, allowed: float) -> None:
+        """Leave out runs that part from the first where they have gone over something themselves."""
+        for level, run in self._tighter.items():
+            self._tighter[level] = self._looked_along(run, self._tighter_settings(level)[1], allowed)
+        if self._other is not None and _judges(self._other):
+            self._other = self._looked_along(self._other, self._other_settings(), allowed)
+        if self._between is not None and any(run.blind for run in self._tighter.values()):
+            self._between = None
+
+    def _looked_along(self, run: Again, changes: dict[str, Any], allowed: float) -> Again:
+        """A run, with what its steps go over."""
+        if run.solution is None or run.obstacle:
+            return run
+        reported = {name: run.reported(name) for name in self._first}
+        away = distance(self._first.channels, reported, len(self._first.time), self._sizes)
+        if parting(self._first.time, away) is None:
+            return run
+        job = replace(self._job, settings=changed(self._job.settings, changes))
+        found = looked_along(job, run.solution, allowed)
+        self._narrow += found.stretches + found.elsewhere
+        if not found.stretches:
+            return run
+        whose = f"'{found.stretches[0].element}'" if found.stretches[0].element else "something"
+        return replace(
+            run, blind=f"its steps go over {whose} at t = {found.stretches[0].at:.6g} s, which this run has seen"
+        )
 
     def _look_between(self) -> None:
         """The first tighter run, also at instants between those of the output; the next one where it does not end."""
@@ -189,19 +224,22 @@ class _Verification:
         return f"{_name(settings.solver, settings.scheme)} at rtol {changes['rtol']:.3g}", changes
 
     def _ask_the_other(self) -> None:
-        settings, reported = self._job.settings, self._first.time
+        changes, reported = self._other_settings(), self._first.time
+        name = f"{_name(changes['solver'], 'dop853')} at rtol {changes['rtol']:.3g}"
+        self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
+
+    def _other_settings(self) -> dict[str, Any]:
+        settings = self._job.settings
         solver = "projected" if self._first.solver["name"] == "bdf" else "bdf"
         how = {"solver": solver, "scheme": "dop853", "formulation": "SI2", "projection": True}
-        changes = {**how, **({"rtol": OTHER_OF_FIXED} if _fixed(settings) else _tolerances(settings, 2))}
-        name = f"{_name(solver, 'dop853')} at rtol {changes['rtol']:.3g}"
-        self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
+        return {**how, **({"rtol": OTHER_OF_FIXED} if _fixed(settings) else _tolerances(settings, 2))}
 
     def _left(self) -> float:
         return self._allowed - (time.perf_counter() - self._begun)
 
     def _comparison(self) -> Comparison:
         levels = [self._tighter[level] for level in sorted(self._tighter)]
-        tighter = tuple(run for run in levels if run.solution is not None)
+        tighter = tuple(run for run in levels if run.solution is not None and not run.blind)
         other = self._other if _judges(self._other) else None
         shorter = self._shorter if self._shorter is not None and self._shorter.solution is not None else None
         lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
@@ -220,11 +258,14 @@ class _Verification:
     def _told(self) -> list[str]:
         """What was compared with, and what could not be."""
         runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
-        done = [run.name for run in runs if not run.obstacle and (run is not self._other or _judges(run))]
+        done = [
+            run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
+        ]
         told = [f"solved again with {' and '.join(done)}"] if done else []
         if self._exact:
             told = ["kinematic: positions follow from the drives alone, exact but for rounding; bars are of sampling"]
         told += [f"{run.name}: {run.obstacle}" for run in runs if run.obstacle]
+        told += [f"{run.name}, not counted: {run.blind}" for run in runs if run.blind]
         if self._other is not None and self._other.remark:
             told.append(f"{self._other.name}, not counted: {self._other.remark}")
         if self._between is None:
@@ -239,7 +280,7 @@ class _Verification:
 
 def _judges(other: Again | None) -> bool:
     """Whether a run of the other solver says something: explicit steps at their limit of stability are noisy."""
-    return other is not None and other.solution is not None and not other.remark
+    return other is not None and other.solution is not None and not other.remark and not other.blind
 
 
 def _levels_of(rtol: float) -> tuple[int, ...]:
