@@ -116,8 +116,9 @@ def within_steps(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
     if not len(steps):
         return np.zeros(max(len(t) - 1, 0), dtype=bool)
     after, before = np.searchsorted(steps, t[:-1], side="right"), np.searchsorted(steps, t[1:], side="left")
-    strictly = (after > 0) & (before < len(steps)) & (steps[np.maximum(after - 1, 0)] < t[:-1])
-    return (after == before) & strictly
+    last = len(steps) - 1
+    begun, ended = steps[np.maximum(after - 1, 0)] < t[:-1], steps[np.minimum(before, last)] > t[1:]
+    return (after == before) & (after > 0) & (before <= last) & begun & ended
 
 
 def _where(system: System, balance: Balance, rows: OutputRows, k: int) -> str:

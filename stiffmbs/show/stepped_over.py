@@ -43,8 +43,8 @@ ELSEWHERE = 1e-2
 """The same for the velocities at the end of a stretch that is solved again."""
 MUCH = 0.05
 """The same for a difference that no error of a tolerance makes in one step."""
-SAME = 1e-6
-"""Part of the largest kinetic energy by which two runs of the same steps may differ."""
+SAME = 1e-2
+"""Part of the largest kinetic energy by which two runs may differ that saw the same; impacts magnify every difference."""
 STRETCHES = 4
 """Stretches that are solved again at the most."""
 SHORTER = 50
@@ -155,7 +155,7 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
 
 
 def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
-    """Whether a run at more instants has the kinetic energies of the run itself, as it has unless output decides on steps."""
+    """Whether a run at more instants has the kinetic energies of the run itself, as it has unless output decides what steps see."""
     at = np.minimum(np.searchsorted(t, first.time), len(t) - 1)
     own = first["energy.kinetic"]
     return bool(np.nanmax(np.abs(own - kinetic[at])) <= SAME * np.nanmax(own, initial=0.0))
