@@ -132,7 +132,9 @@ def test_a_report_of_a_diverged_run_has_no_all_clear():
 
 def test_constraints_that_drift_apart_are_told():
     scene = stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml")
-    solution = stiffmbs.run(scene, solver="projected", scheme="euler_cromer", projection=False, step=0.02, duration=3.0, output=0.02)
+    solution = stiffmbs.run(
+        scene, solver="projected", scheme="euler_cromer", projection=False, step=0.02, duration=3.0, output=0.02
+    )
     assert any("joint 'hinge'" in note and "open by" in note for note in solution.notes)
 
 

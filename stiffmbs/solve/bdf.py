@@ -11,7 +11,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from .beyond_sense import Growth
+from .beyond_sense import refuse_beyond_sense
 from .engine import Engine, Reached
 from .error_control import CHOSEN, ErrorControl
 from .formulations import FORMULATIONS
@@ -66,14 +66,11 @@ def integrated(
     system = integrator.mechanics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
-    growth = Growth(integrator.mechanics, grid.start, start.q)
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
         for reached in integrator.run(start, grid):
-            states = integrator.equations.states(reached.rows)
-            rows.extend(reached.times, *states)
-            growth.note(reached.times, states[0])
+            rows.extend(reached.times, *integrator.equations.states(reached.rows))
             watch(reached.t)
             integrator.reached = reached
             if reached.failure:
@@ -82,7 +79,8 @@ def integrated(
             elif pays and not pays(reached):
                 break
             elif reached.t < grid.end:
-                growth.look(reached.t, *integrator.split(reached.y), integrator.steps())
+                state = integrator.split(reached.y)
+                refuse_beyond_sense(integrator.mechanics, rows, reached.t, *state, integrator.steps())
     except SolverError as error:
         outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:

@@ -8,6 +8,7 @@ from ..compile.system import System
 from ..errors import SolverError
 from .mechanics import Mechanics
 from .suspect import suspect
+from .trajectory import Rows
 
 LIGHT = 299_792_458.0
 """Speed of light, m/s."""
@@ -18,62 +19,51 @@ DECADES, FASTER = (1e-4, 1e-2, 1.0), 2.5
 second: 10 under a constant force, 3.2 where a force grows as time squared, 1 for exponential growth."""
 MANY = 100_000
 """Steps for which a motion is followed wherever it goes."""
-MORE = 1.5
-"""Times by which a motion must have grown to be noted again."""
+INSTANTS = 2000
+"""Of those stored, at which growth is looked at."""
 
 
-class Growth:
-    """Watches how far a mechanism moves, and stops a run that has diverged.
+def refuse_beyond_sense(mechanics: Mechanics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
+    """Stop a run that has diverged, after very many steps.
 
     Parameters
     ----------
     mechanics : Mechanics
+    rows : Rows
+        What the run has stored so far.
     t : float
-        Of the start, s.
-    q : ndarray, shape (n_q,)
+        Where it is, s.
+    q, u : ndarrays, shapes (n_q,), (n_u,)
         There.
+    steps : int
+        Taken so far.
+
+    Raises
+    ------
+    SolverError
+        Where a body is faster than light, or the motion grows like an exponential beyond `BEYOND`; names the body and the
+        element that pulls hardest.
     """
+    if steps < MANY:
+        return
+    system = mechanics.system
+    speed, body = fastest(system, u)
+    if speed > LIGHT:
+        raise SolverError(
+            _sentence(mechanics, t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
+        )
+    times, places, _ = rows.stored
+    few = slice(None, None, 1 + len(times) // INSTANTS)
+    far = np.max(np.abs(np.vstack([places[few], q]) - places[0]) * reaches(system), axis=1, initial=0.0)
+    if far[-1] > BEYOND * system.size and exponential(np.append(times[few], t), np.maximum.accumulate(far)):
+        what = f"body '{body}' has moved by {far[-1]:.3g} m, and ever faster, in a mechanism of {system.size:.3g} m"
+        raise SolverError(_sentence(mechanics, t, q, u, what))
 
-    def __init__(self, mechanics: Mechanics, t: float, q: np.ndarray) -> None:
-        self._mechanics, self._start = mechanics, q.copy()
-        self._lengths = reaches(mechanics.system)
-        self._t, self._far = [t], [0.0]
 
-    def note(self, times: np.ndarray, places: np.ndarray) -> None:
-        """Remember how far the mechanism was at instants, s, from its coordinates there, one row each."""
-        for t, far in zip(
-            times, np.max(np.abs(places - self._start) * self._lengths, axis=1, initial=0.0), strict=True
-        ):
-            if far > MORE * self._far[-1]:
-                self._t.append(float(t))
-                self._far.append(float(far))
-
-    def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
-        """Look at the state that a solver has come to, with so many steps.
-
-        Raises
-        ------
-        SolverError
-            After very many steps, where a body is faster than light, or the motion grows like an exponential beyond `BEYOND`; names the body
-            and the element that pulls hardest.
-        """
-        self.note(np.array([t]), q[None])
-        if steps < MANY:
-            return
-        system, far = self._mechanics.system, self._far[-1]
-        speed, body = fastest(system, u)
-        if speed > LIGHT:
-            raise SolverError(
-                self._sentence(t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
-            )
-        if far > BEYOND * system.size and exponential(np.array(self._t), np.array(self._far)):
-            what = f"body '{body}' has moved by {far:.3g} m, and ever faster, in a mechanism of {system.size:.3g} m"
-            raise SolverError(self._sentence(t, q, u, what))
-
-    def _sentence(self, t: float, q: np.ndarray, u: np.ndarray, what: str) -> str:
-        likely = suspect(self._mechanics, t, q.copy(), u.copy())
-        remedy = "look for a wrong sign of a stiffness, damping or force"
-        return f"stopped at t = {t:.9g} s: the motion grows beyond sense: {what}{likely}; {remedy}"
+def _sentence(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, what: str) -> str:
+    likely = suspect(mechanics, t, q.copy(), u.copy())
+    remedy = "look for a wrong sign of a stiffness, damping or force"
+    return f"stopped at t = {t:.9g} s: the motion grows beyond sense: {what}{likely}; {remedy}"
 
 
 def reaches(system: System) -> np.ndarray:

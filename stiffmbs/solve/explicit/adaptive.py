@@ -11,7 +11,7 @@ import numpy as np
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
-from ..beyond_sense import Growth
+from ..beyond_sense import refuse_beyond_sense
 from ..initial import InitialValues
 from ..limits import refuse_beyond_limits
 from ..mechanics import Mechanics
@@ -63,7 +63,6 @@ class AdaptiveRun:
         self.left = False
         self._scheme, self._mechanics, self._start, self._grid = scheme, mechanics, start, grid
         self._settings, self._watch = settings, watch
-        self._growth = Growth(mechanics, grid.start, start.q)
         self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
@@ -107,7 +106,7 @@ class AdaptiveRun:
             work.collect(self._rows)
             self._watch(work.t)
             if work.t < self._grid.end:
-                self._growth.look(work.t, work.q, work.u, work.count("steps"))
+                refuse_beyond_sense(self._mechanics, self._rows, work.t, work.q, work.u, work.count("steps"))
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
