@@ -62,6 +62,12 @@ class Balance:
         return self.change - self.work
 
     @property
+    def furthest(self) -> float:
+        """The largest magnitude of that, or of what is missing in one interval."""
+        open_ = self.open
+        return float(max(np.max(np.abs(open_), initial=0.0), np.max(np.abs(np.diff(open_)), initial=0.0)))
+
+    @property
     def _seen(self) -> np.ndarray:
         """The intervals whose work the instants may resolve: those of hardly more than one step of the solver."""
         return (self.steps <= SEEN) | self.keeps_energy
@@ -109,13 +115,18 @@ def energy_balance(
             nothing = np.empty(0)
             return Balance(t, np.zeros(1), np.zeros(1), nothing, nothing, 0.0, 0.0, system.keeps_energy)
         total = kinetic + potential
-        gained, within = _gained(t, power)
+        gained, within = _gained(t, power) if not system.keeps_energy else np.zeros((2, len(t) - 1))
         work = np.concatenate([[0.0], np.cumsum(gained)])
-        coarse = np.concatenate([[0.0], np.cumsum(_gained(t[::2], power[::2])[0])])
-        resolved = float(np.max(np.abs(work[::2] - coarse), initial=0.0))
+        resolved = 0.0 if system.keeps_energy else _difference(work[::2], t[::2], power[::2])
         scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
     inside = np.searchsorted(steps, t[1:], side="left") - np.searchsorted(steps, t[:-1], side="right")
     return Balance(t, total - total[0], work, within, inside, resolved, scale, system.keeps_energy)
+
+
+def _difference(work: np.ndarray, t: np.ndarray, power: np.ndarray) -> float:
+    """How far the work is from what the power gives at fewer instants."""
+    coarse = np.concatenate([[0.0], np.cumsum(_gained(t, power)[0])])
+    return float(np.max(np.abs(work - coarse), initial=0.0))
 
 
 def _gained(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -59,6 +59,8 @@ def balance_notes(
     steps : ndarray
         Ends of the solver's own steps, s; empty where it does not tell them.
     """
+    if not balance.furthest > BROKEN * balance.scale:
+        return
     allowed = may_be_missing(system, balance, rows, settings)
     if balance.keeps_energy:
         yield from _changed(system, balance, rows, allowed)
