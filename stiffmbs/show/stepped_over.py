@@ -19,6 +19,8 @@ import numpy as np
 from ..analyse.balance import Balance, energy_balance
 from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
+from ..analyse.singular_poses import PosesOnTheWay
+from ..compile.group import Group
 from ..compile.kind import Shape
 from ..compile.system import System
 from ..errors import StiffmbsError
@@ -41,6 +43,8 @@ OPEN = 1e-3
 """Part of the largest velocity, weighted with masses, by which the momentum balance of an interval must be open."""
 ELSEWHERE = 1e-2
 """The same for the velocities at the end of a stretch that is solved again."""
+SHARE = 1e-3
+"""Part of the largest change of a reaction that a law's own must have for the law to be what was stepped over."""
 MUCH = 0.05
 """The same for a difference that no error of a tolerance makes in one step."""
 SAME = 1e-2
@@ -112,11 +116,11 @@ class Along:
 
 def has_laws(system: System) -> bool:
     """Whether forces or joints have corners or laws (formulas, tables), which may change within one step."""
-    return any(
-        group.entries("switch") or (acts and any(_is_law(shape) for _, shape in group.kind.fields))
-        for group in system.groups
-        for acts in [bool(group.entries("f") or group.record.n_equations)]
-    )
+    return any(_has_law(group) for group in system.groups if group.entries("f") or group.record.n_equations)
+
+
+def _has_law(group: Group) -> bool:
+    return bool(group.entries("switch")) or any(_is_law(shape) for _, shape in group.kind.fields)
 
 
 def _is_law(shape: Shape) -> bool:
@@ -178,6 +182,7 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
 def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[SteppedOver]:
     """The stretches that end elsewhere when they are solved again, the worst first."""
     system = job.mechanics.system
+    poses = PosesOnTheWay(system, rows.t, rows.q)
     missing, speed = _momentum(system, rows)
     end, looked = time.perf_counter() + allowed, np.zeros(len(missing), dtype=bool)
     for _ in range(STRETCHES):
@@ -189,11 +194,13 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
             return
         first, last = _stretch(rows.t, steps, worst)
         looked[first:last] = True
-        width = float(rows.t[worst + 1] - rows.t[worst])
+        width, element = float(rows.t[worst + 1] - rows.t[worst]), _acting(system, rows, worst)
+        if not element or poses.nearest(float(rows.t[first]), float(rows.t[last])) is not None:
+            continue  # where joints hold less than elsewhere, the way on is left to any difference
         off = _parted(job, rows, first, last, width, left / 2, MUCH * speed) / speed
         if off > ELSEWHERE:
             ends = float(rows.t[first]), float(rows.t[last])
-            yield SteppedOver(*ends, float(rows.t[worst]), width, _acting(system, rows, worst), off)
+            yield SteppedOver(*ends, float(rows.t[worst]), width, element, off)
 
 
 def _momentum(system: System, rows: OutputRows) -> tuple[np.ndarray, float]:
@@ -253,14 +260,14 @@ def _solved_again(
 
 
 def _acting(system: System, rows: OutputRows, k: int) -> str:
-    """The element whose force changes most in an interval."""
+    """The force, or the joint with a law, whose reaction changes most in an interval; empty where others change far more."""
     around = slice(max(k - 1, 0), k + 3)
     changes = {
         name: float(np.ptp(values))
         for name, values in reactions(system, rows.values[around]).items()
         if np.isfinite(values).all()
     }
-    joints = {joint for joint, _ in system.equations}
-    forces = {name: much for name, much in changes.items() if name.rpartition(".")[0] not in joints and much > 0}
-    name = max(forces or changes, key=lambda each: changes[each], default="")
-    return name.rpartition(".")[0]
+    laws = {name for group in system.groups if not group.record.n_equations or _has_law(group) for name in group.names}
+    of_laws = {name: much for name, much in changes.items() if name.rpartition(".")[0] in laws}
+    name = max(of_laws, key=lambda each: of_laws[each], default="")
+    return name.rpartition(".")[0] if name and of_laws[name] > SHARE * max(changes.values()) else ""
