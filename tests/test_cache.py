@@ -200,3 +200,26 @@ def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch):
         Path, "read_text", lambda path, **how: read(path, **how) + ("#" if path.name == "matrix.py" else "")
     )
     assert record._entry(kind) != before
+
+
+def test_sources_do_not_depend_on_the_order_of_sets():
+    """Python orders sets by a seed of the process; sums in kernels must not follow it, or numbers change with a recompilation."""
+    script = (
+        "from stiffmbs.describe.scene import read_scene\n"
+        "from stiffmbs.compile.compile_model import compile_model\n"
+        "from stiffmbs.compile.record import _derived\n"
+        "scene = read_scene('bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}\\n"
+        "forces: {f: {type: bushing, i: a, j: b, stiffness: [1, 2, 3], damping: [1, 2, 3]}}')\n"
+        "print([sorted(_derived(group.kind).sources.items()) for group in compile_model(scene).groups])\n"
+    )
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert found[0] == found[1]

@@ -47,12 +47,12 @@ def _shared(
 ) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
     """What outputs have in common, each part after those that it uses, and the outputs in terms of these."""
     names: dict[sp.Symbol, sp.Expr] = {}
-    following = [symbol for output in outputs for symbol in output.free_symbols]
+    following = [symbol for output in outputs for symbol in _by_name(output.free_symbols)]
     while following:
         symbol = following.pop()
         if symbol in meanings and symbol not in names:
             names[symbol] = meanings[symbol].xreplace(turned)
-            following += names[symbol].free_symbols
+            following += _by_name(names[symbol].free_symbols)
     common, reduced = sp.cse([*outputs, *names.values()], symbols=sp.numbered_symbols("s_"), order="none")
     parts = {**dict(common), **dict(zip(names, reduced[len(outputs) :], strict=True))}
     ordered: dict[sp.Symbol, sp.Expr] = {}
@@ -61,12 +61,17 @@ def _shared(
     return list(ordered.items()), reduced[: len(outputs)]
 
 
+def _by_name(symbols: set[sp.Symbol]) -> list[sp.Symbol]:
+    """Symbols in an order that does not change from run to run, so that neither do sums."""
+    return sorted(symbols, key=lambda symbol: symbol.name)
+
+
 def _append(symbol: sp.Symbol, parts: Mapping[sp.Symbol, sp.Expr], ordered: dict[sp.Symbol, sp.Expr]) -> None:
     """Put a part behind all that it uses."""
     pending = [symbol]
     while pending:
         last = pending[-1]
-        missing = [part for part in parts[last].free_symbols if part in parts and part not in ordered]
+        missing = [part for part in _by_name(parts[last].free_symbols) if part in parts and part not in ordered]
         if last in ordered or not missing:
             ordered.setdefault(last, parts[last])
             pending.pop()

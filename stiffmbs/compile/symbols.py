@@ -26,7 +26,8 @@ NARROW: dict[type[sp.Basic], str] = {
 
 
 STEEP, LEAST_SQUARE = 10, 1e-200
-"""Whole powers from this one on are taken for exp(n log |x|), as that of a sine is narrow; the square of the least |x|."""
+"""Whole powers from this one on, and those by a formula, are taken for exp(n log |x|): a high power of a sine is narrow.  The
+square of the least |x|."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ class Symbols:
                 self.note_law(sp.cos(part.args[0]), "reciprocal")
             elif isinstance(part, sp.Pow) and part.exp.is_Number and part.exp < 0:
                 self.note_law(part.base, "reciprocal")
-            elif isinstance(part, sp.Pow) and part.exp.is_Number and part.exp >= STEEP:
+            elif isinstance(part, sp.Pow) and not (part.exp.is_Number and part.exp < STEEP):
                 self.note_law(part.exp * sp.log(part.base**2 + sp.Float(LEAST_SQUARE)) / 2, "exp")
 
 

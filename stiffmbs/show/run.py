@@ -199,5 +199,8 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
     if trajectory.note:
         yield trajectory.note
     fixed = job.settings.solver == "projected" and job.settings.scheme not in ADAPTIVE
-    if fixed and job.mechanics.system.first_limit:
-        yield f"{job.settings.scheme} does not locate the corners that forces have in the state (contacts, step, abs); dopri5, dop853 and bdf do"
+    if fixed and job.mechanics.system.n_values("switch"):
+        yield (
+            f"{job.settings.scheme} does not locate the corners that forces have in the state (contacts, step, abs, tables), and a step of "
+            f"{job.settings.step:g} s may pass over them; dopri5, dop853 and bdf see them"
+        )

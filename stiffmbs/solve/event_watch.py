@@ -48,11 +48,6 @@ class EventWatch:
         }  # fmt: skip
         self.table = packed(WATCH, self._arrays)
 
-    @property
-    def nodes(self) -> np.ndarray:
-        """The places of the nodes within a step, from 0 to 1."""
-        return self._arrays["node"]
-
     def begin(self) -> None:
         """Forget the last step: the integrator starts anew."""
         self._mark[:] = 0.0

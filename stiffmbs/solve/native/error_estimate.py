@@ -1,4 +1,4 @@
-"""The error of a Runge-Kutta step, by the schemes that are embedded in it."""
+"""The error of a Runge-Kutta step, by the schemes that are embedded in it, and where these tell nothing."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ from math import sqrt
 
 from stiffmbs.compile.native.access import compiled, shifted
 from stiffmbs.solve.native.stages import add_stages
+
+DOUBTED = 1e3
+"""The error that a step counts for which cannot be trusted."""
 
 
 @compiled
@@ -30,3 +33,22 @@ def error_of(x, c, h):
         return h * sqrt(first)
     both = first + 0.01 * _squares(x, c, 1)
     return h * first / sqrt(both) if both != 0.0 else 0.0
+
+
+@compiled
+def error_or_doubt(x, c, h):
+    """The estimated error over the tolerance, or at least `DOUBTED` where the stages have gone astray.
+
+    Stages that leave a stiff contact at its far side see no force there; all differences between schemes then cancel, and
+    the estimate is zero for a step that is nonsense.  The last stage, at the step's end, is then further from the end
+    than the whole step is long.
+    """
+    error = error_of(x, c, h)
+    astray = 0.0
+    way = 0.0
+    for i in range(x.n):
+        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        off, moved = (x.y[i] - x.y_stage[i]) / scale, (x.y[i] - x.y_before[i]) / scale
+        astray += off * off
+        way += moved * moved
+    return max(error, DOUBTED) if astray > way and astray > x.n else error

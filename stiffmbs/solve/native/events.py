@@ -5,9 +5,9 @@ from __future__ import annotations
 from stiffmbs.compile.native.access import compiled, shifted
 from stiffmbs.compile.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
-from stiffmbs.solve.native.error_estimate import error_of
+from stiffmbs.solve.native.error_estimate import DOUBTED, error_or_doubt
 from stiffmbs.solve.native.interpolant import interpolated, prepare
-from stiffmbs.solve.native.stages import copied, load_state
+from stiffmbs.solve.native.stages import copied, load_state, weighted
 from stiffmbs.solve.native.within_step import (
     DIFFERENCE,
     first_event,
@@ -21,7 +21,7 @@ from stiffmbs.solve.native.within_step import (
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: in parts of the step, and of the time."""
 MOST_RETAKEN, BISECTIONS = 8, 40
-MOST_ERROR, LEAST_FACTOR, RETRIED = 1.0, 0.2, 1
+MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT = 1.0, 0.2, 1, 2
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
 
 
@@ -66,8 +66,19 @@ def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
 
 
 @compiled
+def _stages_have_changed(x, c, s):
+    """Whether a stage has seen another law than the start and the end of the step; its weights may hide that from the error."""
+    for row in range(1, c.stages):
+        weighted(x, c, x.y_stage, row, x.span[0])
+        if _changed(x, _values(x, s, x.y_stage, x.t_before[0] + c.c[row] * x.span[0])):
+            return True
+    return False
+
+
+@compiled
 def _event_within(x, c, s, m):
-    """The time from the step's start to an event that begins and ends within it; 0 for none, or a negative status."""
+    """The time from the step's start to an event that begins and ends within it; 0 for none, a negative status, or the whole
+    length where stages show that there is one but not where."""
     w = watch_view(x.watch)
     h = x.span[0]
     if not h > ROUNDINGS * abs(x.t[0]):
@@ -77,6 +88,8 @@ def _event_within(x, c, s, m):
     _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t[0], -small, w.value_after, w.rate_after)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
+    if _stages_have_changed(x, c, s):
+        return h
     status = prepare(x, c, s, m)
     if status < 0:
         return float(status)
@@ -125,8 +138,8 @@ def _go_past(x, c, s, ahead):
 
 
 @compiled
-def _settled_at_change(x, c, s, m, high, behind):
-    """Take the step again until it ends just before the first change of a switch; 0 or a negative status.
+def _taken_to_change(x, c, s, m, high, behind):
+    """Take the step again until it ends just before the first change of a switch; 0, a negative status, or `RETRIED`.
 
     The first guess comes from the interpolant of a step whose stages have seen both laws, the next ones from those of
     steps that end where the guess says.
@@ -138,36 +151,46 @@ def _settled_at_change(x, c, s, m, high, behind):
             return status
         first = _first_change(x, c, s, high)
         if not changed and first <= x.span[0] + 2.0 * behind:
-            break
+            return 0
         status = _retaken(x, c, s, m, max(first - behind, 0.5 * first))
         if status < 0:
             return status
         changed = _changed(x, _values(x, s, x.y, x.t[0]))
         if changed:
             high = x.span[0]
-    return 0
+    return RETRIED if changed else 0
+
+
+@compiled
+def _taken_to_event(x, c, s, m, h, behind):
+    """Take the step again up to the first event in it; 0, a negative status, `RETRIED`, or `NO_EVENT`."""
+    values = _values(x, s, x.y, x.t[0])
+    if _changed(x, values):
+        _note_changed(x, values)
+        return _taken_to_change(x, c, s, m, h, behind)
+    within = _event_within(x, c, s, m)
+    if within == 0.0:
+        return NO_EVENT
+    if within < 0.0:
+        return int(within)
+    return RETRIED if within == h else _retaken(x, c, s, m, max(within - behind, 0.5 * within))
 
 
 @compiled
 def end_at_event(x, c, s, m):
     """Where a switch has changed within the last step, or has changed twice, take the step again up to the first change.
 
-    0, a negative status, or `RETRIED` where the step's shortened form has too large an error and is left.
+    0, a negative status, or `RETRIED` where the step's shortened form cannot be trusted and is left.
     """
     h = x.span[0]
     behind = max(BEHIND * h, ROUNDINGS * abs(x.t[0]))
-    if _changed(x, _values(x, s, x.y, x.t[0])):
-        _note_changed(x, _values(x, s, x.y, x.t[0]))
-        status = _settled_at_change(x, c, s, m, h, behind)
-    else:
-        within = _event_within(x, c, s, m)
-        if within == 0.0:
-            copied(x.sides, _values(x, s, x.y, x.t[0]), x.n_switches)
-            return 0
-        status = int(within) if within < 0.0 else _retaken(x, c, s, m, max(within - behind, 0.5 * within))
+    status = _taken_to_event(x, c, s, m, h, behind)
+    if status == NO_EVENT:
+        copied(x.sides, _values(x, s, x.y, x.t[0]), x.n_switches)
+        return 0
     if status < 0:
         return status
-    error = error_of(x, c, x.span[0])
+    error = error_or_doubt(x, c, x.span[0]) if status == 0 else DOUBTED
     if not error <= MOST_ERROR:
         return _left(x, c, error)
     _go_past(x, c, s, 2.0 * behind)

@@ -13,10 +13,12 @@ from stiffmbs.solve.native.within_step import (
     BEGUN,
     DIFFERENCE,
     READY,
+    clear,
     first_event,
     keep_row,
     noted,
     noted_rates,
+    shift_ends,
     suspicious,
     watch_view,
 )
@@ -119,14 +121,12 @@ def _stepped(c, toward):
 
 
 @compiled
-def _note_event_functions(c, t, ahead, value, rate):
-    """Values and rates of all event functions at the state in c.y; rates are taken over a time `ahead`, which may be negative."""
+def _note_rates(c, t, ahead, value, rate):
+    """Rates of all event functions at the state in c.y, by their values there and a time `ahead` later, which may be negative."""
     s = state_view(c.state)
     e = equations_view(c.equations)
     w = watch_view(c.watch)
     y, yp = _array(c, c.y), _array(c, c.yp)
-    load(s, e, y, yp)
-    noted(value, evaluate(s, SWITCH, t), w.n)
     for k in range(e.n):
         c.probe[k] = y[k] + ahead * yp[k]
     load(s, e, c.probe, yp)
@@ -142,9 +142,11 @@ def _watch_start(c, toward):
         w.mark[READY] = 1.0
         w.mark[BEGUN] = c.mark[RETURNED]
         ahead = max(START_DIFFERENCE * (toward - c.mark[RETURNED]), ROUNDINGS * abs(c.mark[RETURNED]))
-        _note_event_functions(c, c.mark[RETURNED], ahead, w.value_before, w.rate_before)
         s = state_view(c.state)
+        load(s, equations_view(c.equations), _array(c, c.y), _array(c, c.yp))
         keep_row(w, s, 0)
+        noted(w.value_before, evaluate(s, SWITCH, c.mark[RETURNED]), w.n)
+        _note_rates(c, c.mark[RETURNED], ahead, w.value_before, w.rate_before)
 
 
 @compiled
@@ -157,7 +159,15 @@ def _looked_within(c, flag):
         return flag
     s = state_view(c.state)
     e = equations_view(c.equations)
-    _note_event_functions(c, c.mark[RETURNED], -DIFFERENCE * h, w.value_after, w.rate_after)
+    load(s, e, _array(c, c.y), _array(c, c.yp))
+    noted(w.value_after, evaluate(s, SWITCH, c.mark[RETURNED]), w.n)
+    if clear(w, h, w.row, s.q):
+        keep_row(w, s, 0)
+        w.mark[BEGUN] = c.mark[RETURNED]
+        shift_ends(w)
+        return flag
+    _note_rates(c, c.mark[RETURNED], -DIFFERENCE * h, w.value_after, w.rate_after)
+    load(s, e, _array(c, c.y), _array(c, c.yp))
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):
             if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
@@ -174,8 +184,7 @@ def _looked_within(c, flag):
         load(s, e, _array(c, c.y), _array(c, c.yp))
     keep_row(w, s, 0)
     w.mark[BEGUN] = c.mark[RETURNED]
-    noted(w.value_before, w.value_after, w.n)
-    noted(w.rate_before, w.rate_after, w.n)
+    shift_ends(w)
     return flag
 
 

@@ -6,7 +6,7 @@ from math import isfinite
 
 from stiffmbs.compile.native.access import compiled, explicit_view, mechanics_view, scheme_view, shifted, state_view
 from stiffmbs.solve.native.attempt import arrive, attempt
-from stiffmbs.solve.native.error_estimate import error_of
+from stiffmbs.solve.native.error_estimate import error_or_doubt
 from stiffmbs.solve.native.events import RETRIED, end_at_event
 from stiffmbs.solve.native.interpolant import store_rows, store_step
 from stiffmbs.solve.native.stages import copied
@@ -73,7 +73,7 @@ def _step(x, c, s, m, end):
         if t + STRETCHED * h >= end:
             h = end - t
         status = attempt(x, c, s, m, h)
-        error = error_of(x, c, h) if status == 0 else 0.0
+        error = error_or_doubt(x, c, h) if status == 0 else 0.0
         if not isfinite(error):
             status = NOT_FINITE
         if status == 0 and error <= 1.0:

@@ -21,19 +21,21 @@ from stiffmbs.compile.native.evaluate import SWITCH, evaluate
 READY, BEGUN = range(2)
 """Marks: whether values at the start of the step are known, and that start's time."""
 MARGIN = 0.1
-"""Part of the range of a function's bounds that is added to them on both sides."""
+"""Part of the range of a function's bounds that is added to those between the ends."""
 LOOKED_AT = 0.4142135623730951
 """Place within a part of a step where a cubic is compared with the function: no round fraction of a period."""
-FITS, ROUNDING = 0.02, 1e-9
-"""Part of the range of its values by which the function may differ from the cubic there, and what rounding takes of values and
-rates."""
-LEAST_PART, MOST_PARTS = 1e-5, 20_000
-DIFFERENCE = 1e-5
-"""Part of a step over which rates are taken."""
+FITS, NOISE = 0.02, 1e-11
+"""Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
+state that rounding takes of values and rates."""
+LEAST_PART, MOST_PARTS = 1e-4, 5000
+DIFFERENCE = 1e-3
+"""Part of a step, or of a part of one, over which rates are taken."""
 BISECTIONS, BEHIND = 50, 1e-9
 """The event is put behind the change by this part of the step, so that the new law holds there."""
-TURNED = 1.0
-"""rad, by which a body may turn in a step without a look inside: rates at the ends tell nothing of whole turns."""
+CLEAR = 4.0
+"""Times that a function must be further from zero than its change in a step to be taken for far from it."""
+TURNED, HARDLY_TURNED = 1.0, 0.3
+"""rad, by which a body may turn in a step without a look inside, or at rates: those at the ends tell nothing of whole turns."""
 
 watch_view = view_of("Watch", WATCH)
 
@@ -91,14 +93,14 @@ def _bound(start, start_rate, end, end_rate, side):
     That of the cubic's Bezier points, and of the tangents' meeting point, beyond which no convex function goes.
     """
     p, q = start + start_rate / 3.0, end - end_rate / 3.0
-    low, high = min(start, end, p, q), max(start, end, p, q)
+    low, high = min(p, q), max(p, q)
     if start_rate * end_rate < 0.0:
         place = (end - end_rate - start) / (start_rate - end_rate)
         if 0.0 < place < 1.0:
             meeting = start + start_rate * place
             low, high = min(low, meeting), max(high, meeting)
-    margin = MARGIN * (high - low)
-    return low - margin if side < 0 else high + margin
+    margin = MARGIN * (max(high, start, end) - min(low, start, end))
+    return min(low - margin, start, end) if side < 0 else max(high + margin, start, end)
 
 
 @compiled
@@ -112,11 +114,41 @@ def _reaches(w, k, start, start_rate, end, end_rate):
 
 
 @compiled
+def _turned(w, q_before, q_after, most):
+    """Whether a body has turned by more than an angle."""
+    turned = 0.0
+    for k in range(w.n_angles):
+        turned = max(turned, abs(q_after[w.angle[k]] - q_before[w.angle[k]]))
+    return turned > most
+
+
+@compiled
+def clear(w, h, q_before, q_after):
+    """Whether all functions are so far from zero that rates need not be looked at; rates at the end are then those of the step."""
+    if w.n > w.n_switches or _turned(w, q_before, q_after, HARDLY_TURNED):
+        return False
+    for k in range(w.n):
+        change = w.value_after[k] - w.value_before[k]
+        nearest = min(abs(w.value_after[k]), abs(w.value_before[k]))
+        if not nearest > CLEAR * (abs(change) + h * abs(w.rate_before[k])):
+            return False
+    for k in range(w.n):
+        w.rate_after[k] = (w.value_after[k] - w.value_before[k]) / h
+    return True
+
+
+@compiled
+def shift_ends(w):
+    """The end of the last step is the start of the next."""
+    noted(w.value_before, w.value_after, w.n)
+    noted(w.rate_before, w.rate_after, w.n)
+
+
+@compiled
 def suspicious(w, h, q_before, q_after):
     """Whether the values and rates at both ends of a step of length h leave room for an event inside."""
-    for k in range(w.n_angles):
-        if abs(q_after[w.angle[k]] - q_before[w.angle[k]]) > TURNED:
-            return True
+    if _turned(w, q_before, q_after, TURNED):
+        return True
     for k in range(w.n):
         if not _left_out(w, k) and _reaches(
             w, k, w.value_before[k], h * w.rate_before[k], w.value_after[k], h * w.rate_after[k]
@@ -171,8 +203,8 @@ def _cubic(start, start_rate, end, end_rate, x):
 
 
 @compiled
-def _described(w, part):
-    """Whether cubics describe the functions that may have an event within a part of the step."""
+def _described(w, part, noise):
+    """Whether cubics describe the functions that may have an event within a part of the step, but for noise."""
     for k in range(w.n):
         if _left_out(w, k):
             continue
@@ -180,8 +212,7 @@ def _described(w, part):
         if not _reaches(w, k, start, start_rate, end, end_rate):
             continue
         seen = max(start, end, w.m[k]) - min(start, end, w.m[k])
-        rounding = ROUNDING * (abs(start) + abs(end) + abs(start_rate) + abs(end_rate))
-        if not abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT)) <= FITS * seen + rounding:
+        if not abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT)) <= FITS * seen + noise:
             return False
     return True
 
@@ -265,6 +296,9 @@ def first_event(w, s, begun, h):
     low = 0.0
     part = 0.5
     parts = 0
+    noise = 0.0
+    for i in range(w.n_state):
+        noise = max(noise, NOISE * abs(w.row[i]))
     while low < 1.0:
         end = min(low + part, 1.0)
         part = end - low
@@ -272,7 +306,7 @@ def first_event(w, s, begun, h):
         noted_rates(w.b_rate, w.b, _values(w, s, begun, h, end - DIFFERENCE * part), -DIFFERENCE * part, w.n)
         noted(w.m, _values(w, s, begun, h, low + LOOKED_AT * part), w.n)
         parts += 1
-        fits = _described(w, part)
+        fits = _described(w, part, noise)
         if not fits and part > LEAST_PART and parts < MOST_PARTS:
             part *= 0.5
             continue
