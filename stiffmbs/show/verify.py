@@ -241,7 +241,7 @@ class _Verification:
         levels = [self._tighter[level] for level in sorted(self._tighter)]
         tighter = tuple(run for run in levels if run.solution is not None and not run.blind)
         other = self._other if _judges(self._other) else None
-        shorter = self._shorter if self._shorter is not None and self._shorter.solution is not None else None
+        shorter = self._shorter if _judges(self._shorter) else None
         lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
         runs = [*tighter, *([other] if other else []), *([shorter] if shorter else [])]
         bars = {
