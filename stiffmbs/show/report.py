@@ -66,6 +66,7 @@ def write_report(path: Path, scene: Scene, solution: Solution) -> None:
     written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
 
 
+@np.errstate(all="ignore")  # of a diverged run sums overflow
 def report_page(scene: Scene, solution: Solution) -> str:
     """The page as HTML, figures and all."""
     from jinja2 import Environment

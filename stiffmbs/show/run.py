@@ -154,6 +154,7 @@ def run(
     return solved(prepare(model, settings, **changes), watch)
 
 
+@np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
     trajectory = job.integrate(watch)

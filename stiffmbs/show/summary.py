@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
+@np.errstate(all="ignore")  # of a diverged run sums overflow
 def as_json(scene: str, solution: Solution) -> str:
     """The one-line JSON object of ``stiffmbs run --json``."""
     return _line(
@@ -79,6 +80,7 @@ def _finite(content: Any) -> Any:
             return content
 
 
+@np.errstate(all="ignore")  # of a diverged run sums overflow
 def print_summary(scene: str, solution: Solution, results: str, console: Console) -> None:
     """What was solved, the range of every joint force, energy drift, solver statistics, where the results lie."""
     start, end = solution.time[0], solution.time[-1]

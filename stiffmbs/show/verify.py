@@ -80,6 +80,7 @@ def verify(
         return replace(first, verification=("verification interrupted by the user",))
 
 
+@np.errstate(all="ignore")  # as for `solved`
 def verified(job: Job, first: Solution, allowed: float) -> Solution:
     """What `verify` returns, for a job that was solved already.
 
