@@ -20,8 +20,6 @@ from ..analyse.balance import Balance, energy_balance
 from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
 from ..analyse.singular_poses import PosesOnTheWay
-from ..compile.group import Group
-from ..compile.kind import Shape
 from ..compile.system import System
 from ..errors import StiffmbsError
 from ..solve.mechanics import OutputRows
@@ -30,6 +28,7 @@ from ..solve.trajectory import Grid, Outcome
 from .balance_notes import may_be_missing
 from .between import apart
 from .gaps import reported
+from .laws import has_law
 from .run import Job
 from .settings import changed, near_constraints
 from .solution import Solution
@@ -112,19 +111,6 @@ class Along:
     stretches: tuple[SteppedOver, ...] = ()
     elsewhere: tuple[SteppedOver, ...] = ()
     obstacle: str = ""
-
-
-def has_laws(system: System) -> bool:
-    """Whether forces or joints have corners or laws (formulas, tables), which may change within one step."""
-    return any(_has_law(group) for group in system.groups if group.entries("f") or group.record.n_equations)
-
-
-def _has_law(group: Group) -> bool:
-    return bool(group.entries("switch")) or any(_is_law(shape) for _, shape in group.kind.fields)
-
-
-def _is_law(shape: Shape) -> bool:
-    return shape[0] in ("formula", "table") or (shape[0] == "several" and any(map(_is_law, shape[1])))
 
 
 def looked_along(job: Job, first: Solution, allowed: float) -> Along:
@@ -267,7 +253,7 @@ def _acting(system: System, rows: OutputRows, k: int) -> str:
         for name, values in reactions(system, rows.values[around]).items()
         if np.isfinite(values).all()
     }
-    laws = {name for group in system.groups if not group.record.n_equations or _has_law(group) for name in group.names}
+    laws = {name for group in system.groups if not group.record.n_equations or has_law(group) for name in group.names}
     of_laws = {name: much for name, much in changes.items() if name.rpartition(".")[0] in laws}
     name = max(of_laws, key=lambda each: of_laws[each], default="")
     return name.rpartition(".")[0] if name and of_laws[name] > SHARE * max(changes.values()) else ""

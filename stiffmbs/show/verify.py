@@ -28,32 +28,27 @@ import numpy as np
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
-from ..solve.explicit import ADAPTIVE
 from ..solve.trajectory import Outcome, Watch
 from .between import Between, looked_between, more_instants
 from .doubts import Comparison, doubts
 from .doubts_of_steps import by_luck, doubts_of_steps
 from .error_bars import UNKNOWN, ErrorBar, error_bar
+from .laws import has_laws
 from .parting import distance, parting
 from .run import Job, prepare, solved
 from .scales import scales
 from .settings import changed
+from .settings_again import has_fixed_steps, levels_of, name_of_solver, shorter_step, tolerances
 from .solution import Solution
 from .solve_again import Again, solve_again
-from .stepped_over import Along, SteppedOver, has_laws, looked_along
+from .stepped_over import Along, SteppedOver, looked_along
 
 MOST_EFFORT, PATIENCE = 3.0, 1.0
 """Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
-TIGHTEST = 1e-13
-"""Relative tolerance below which steps fail by rounding."""
-APART = 2.0
-"""Times tighter that a tolerance must be at the least to tell anything beside another."""
 OTHER_OF_FIXED = 1e-10
 """Relative tolerance of the other solver where the first has fixed steps."""
 ROUNDING = 1e-13
 """Part of a channel's scale that rounding takes."""
-MORE_STEPS, MANY = 4, 1000
-"""Times as many steps, and at least so many, that a run with another longest step takes."""
 
 
 def verify(
@@ -137,7 +132,7 @@ class _Verification:
 
     def _look_along(self) -> None:
         """What the first run's steps went over, and a run with shorter ones where there may be such."""
-        if _fixed(self._job.settings):
+        if has_fixed_steps(self._job.settings):
             return
         spare = self._allowed / 2
         self._along = looked_along(self._job, self._first, spare)
@@ -147,7 +142,7 @@ class _Verification:
         elif not self._along.stretches:
             self._look_along_others(spare)
         if self._along.stretches or has_laws(self._job.mechanics.system):
-            longest = min([_shorter_step(self._first), *(found.max_step for found in self._narrow)])
+            longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
             name, changes = self._tighter_settings(self._levels()[0])
             reported = self._first.time
             self._shorter = solve_again(
@@ -212,28 +207,28 @@ class _Verification:
         settings = self._job.settings
         if self._exact:
             return (1,)
-        return (1, 2) if _fixed(settings) else _levels_of(settings.rtol)
+        return (1, 2) if has_fixed_steps(settings) else levels_of(settings.rtol)
 
     def _tighter_settings(self, level: int) -> tuple[str, dict[str, Any]]:
         settings = self._job.settings
         if self._exact:
             return "kinematic between the output instants", {}
-        if _fixed(settings):
+        if has_fixed_steps(settings):
             step = settings.step / 2**level
             return f"{settings.scheme} with steps of {step:.3g} s", {"step": step}
-        changes = _tolerances(settings, level)
-        return f"{_name(settings.solver, settings.scheme)} at rtol {changes['rtol']:.3g}", changes
+        changes = tolerances(settings, level)
+        return f"{name_of_solver(settings.solver, settings.scheme)} at rtol {changes['rtol']:.3g}", changes
 
     def _ask_the_other(self) -> None:
         changes, reported = self._other_settings(), self._first.time
-        name = f"{_name(changes['solver'], 'dop853')} at rtol {changes['rtol']:.3g}"
+        name = f"{name_of_solver(changes['solver'], 'dop853')} at rtol {changes['rtol']:.3g}"
         self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
 
     def _other_settings(self) -> dict[str, Any]:
         settings = self._job.settings
         solver = "projected" if self._first.solver["name"] == "bdf" else "bdf"
         how = {"solver": solver, "scheme": "dop853", "formulation": "SI2", "projection": True}
-        return {**how, **({"rtol": OTHER_OF_FIXED} if _fixed(settings) else _tolerances(settings, 2))}
+        return {**how, **({"rtol": OTHER_OF_FIXED} if has_fixed_steps(settings) else tolerances(settings, 2))}
 
     def _left(self) -> float:
         return self._allowed - (time.perf_counter() - self._begun)
@@ -282,37 +277,3 @@ class _Verification:
 def _judges(other: Again | None) -> bool:
     """Whether a run of the other solver says something: explicit steps at their limit of stability are noisy."""
     return other is not None and other.solution is not None and not other.remark and not other.blind
-
-
-def _levels_of(rtol: float) -> tuple[int, ...]:
-    """A hundredth and a tenth of a tolerance, as far as rounding leaves both."""
-    return tuple(level for level, most in ((2, 10 * APART), (1, 0.0)) if rtol > most * TIGHTEST)
-
-
-def _tolerances(settings: RunSettings, level: int) -> dict[str, Any]:
-    """Tighter by so many powers of ten, down to the tightest; looser where that is hardly tighter: then that run's error shows."""
-    rtol = max(settings.rtol / 10**level, TIGHTEST)
-    if settings.rtol < APART * rtol:
-        rtol = 10 * settings.rtol
-    return {"rtol": rtol, **({"atol": settings.atol * rtol / settings.rtol} if settings.atol else {})}
-
-
-def _shorter_step(first: Solution) -> float:
-    """A longest step with which a run takes some times as many steps as it did, s."""
-    steps, whole = np.diff(first.step_times), float(first.time[-1] - first.time[0])
-    if not len(steps):
-        return whole / MANY
-    wanted = max(MORE_STEPS * len(steps), MANY)
-    few, many = whole / (8 * wanted), whole
-    for _ in range(60):  # by bisection of the number of steps, which falls with their length
-        middle = np.sqrt(few * many)
-        few, many = (middle, many) if np.sum(np.ceil(steps / middle)) > wanted else (few, middle)
-    return float(f"{many:.2g}")
-
-
-def _fixed(settings: RunSettings) -> bool:
-    return settings.solver == "projected" and settings.scheme not in ADAPTIVE
-
-
-def _name(solver: str, scheme: str) -> str:
-    return scheme if solver == "projected" else solver
