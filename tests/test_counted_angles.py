@@ -59,3 +59,67 @@ def test_an_angle_far_from_zero_is_as_exact_as_one_near_it():
     half = np.arctan2(solution["wheel.q3"], solution["wheel.q0"])
     assert np.abs(np.sin(half - solution["turned"] / 2)).max() < 1e-13
     assert abs(solution["turned"][-1] - 1000) < 0.1
+
+
+FAST = (
+    {"rtol": 1e-2},
+    {"solver": "auto", "rtol": 1e-4},
+    {"solver": "projected", "scheme": "rk4", "step": 1e-3},
+    {"solver": "projected", "scheme": "dop853", "rtol": 1e-3},
+)
+
+
+@pytest.mark.parametrize("settings", FAST)
+def test_a_request_counts_as_a_torsion_spring_does(settings):
+    """3000 rad/s, whatever the output points: omega = omega_0 cos(w t) with w^2 = k/I, phi = omega_0/w sin(w t)."""
+    model = spatial.Model("wheel")
+    model.add("wheel", spatial.Body(mass=1, inertia=(1, 1, 1), omega=(0, 0, 3000)))
+    model.add("pin", spatial.Revolute(i="wheel", j="ground"))
+    model.add("spring", spatial.TorsionSpring(i="wheel", j="ground", stiffness=1e-3))
+    model.request("turned", "az(wheel)")
+    model.request("sum", "az(wheel) + 2*az(wheel, ground)")
+    w = np.sqrt(1e-3)
+    for points in (2, 11, 1001):
+        solution = stiffmbs.run(model, duration=1.0, points=points, **settings)
+        assert np.allclose(solution["turned"], -solution["spring.tz"] / 1e-3, rtol=0, atol=1e-6)
+        assert np.allclose(solution["turned"], 3000 / w * np.sin(w * solution.time), rtol=0, atol=np.pi)
+        assert np.allclose(solution["sum"], 3 * solution["turned"], rtol=1e-12)
+
+
+@pytest.mark.parametrize("points", [2, 7, 101])
+def test_an_angle_that_swings_between_output_points_is_counted(points):
+    model = geared()
+    model.add("motor", spatial.Drive(joint="pin_a", position="300*t + 40*sin(2*pi*t)"))
+    solution = stiffmbs.run(model, duration=2.0, points=points, solver="kinematic")
+    assert np.allclose(solution["turned_a"], 300 * solution.time + 40 * np.sin(2 * np.pi * solution.time), atol=1e-8)
+    assert np.allclose(solution["turned_b"], -solution["turned_a"] / RATIO, rtol=0, atol=1e-8)
+
+
+def test_bodies_that_are_merged_and_mechanisms_apart_are_counted():
+    """A wheel with a fixed hub and, apart from it, another one: the presolve keeps both requests."""
+    model = spatial.Model("wheels")
+    for name, x, omega in (("one", 0.0, 50.0), ("two", 1.0, -70.0)):
+        place = spatial.Marker(body="ground", point=(x, 0, 0))
+        model.add(name, spatial.Body(mass=1, inertia=(1, 1, 1), position=(x, 0, 0), omega=(0, 0, omega)))
+        model.add(f"pin_{name}", spatial.Revolute(i=name, j=place))
+    model.add("hub", spatial.Body(mass=1, inertia=(1, 1, 1), omega=(0, 0, 50.0)))
+    model.add("weld", spatial.Fixed(i="hub", j="one"))
+    model.request("hub_turned", "az(hub)")
+    model.request("apart", "az(two, one)")
+    model.request("on_it", "az(hub, one)")
+    for presolve in (True, False):
+        solution = stiffmbs.run(model, duration=10.0, points=3, presolve=presolve)
+        assert np.allclose(solution["hub_turned"], [0, 250, 500], rtol=1e-5)
+        assert np.allclose(solution["apart"], [0, -600, -1200], rtol=1e-5)
+        assert np.allclose(solution["on_it"], 0, atol=1e-12)
+
+
+def test_an_angle_that_has_no_direction_at_a_pole_stops_no_run():
+    """A turn about y takes the x axis through the z axis, where az jumps by half a turn and comes back."""
+    model = spatial.Model("tumbling")
+    model.add("body", spatial.Body(mass=1, inertia=(1, 2, 3), omega=(0, 5, 0)))
+    model.request("about_z", "az(body)")
+    model.request("about_y", "ay(body)")
+    solution = stiffmbs.run(model, duration=10.0, points=11)
+    assert np.allclose(solution["about_y"], 5 * solution.time, atol=1e-4)
+    assert np.abs(solution["about_z"]).max() < 3.2

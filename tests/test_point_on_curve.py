@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model, PointOnCurve, Prismatic
+from stiffmbs.describe.scene import read_scene
 
 from .test_joints import RATE, G, reaction, turning_arm
 
@@ -69,3 +70,22 @@ def test_curve_turns_with_its_marker():
     turned = np.exp(-1j * RATE * solution.time) * (solution["bead.x"] + 1j * solution["bead.y"])
     x, y = turned.imag + 0.1, -turned.real
     np.testing.assert_allclose(y, 0.5 - x**2, atol=1e-10)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "kinematic"])
+def test_a_cam_with_a_narrow_bump_lifts_its_follower_in_every_turn(solver):
+    """A formula of the polar angle itself, which lies between -pi and pi however often the cam has turned."""
+    scene = read_scene("""
+bodies:
+  cam: {mass: 1, inertia: 1, omega: 10}
+  f: {mass: 1, inertia: 1, position: [0, 1], angle: 90 deg}
+joints:
+  shaft: {type: revolute, i: cam, j: ground}
+  motor: {type: drive, joint: shaft, position: 10*t}
+  guide: {type: prismatic, i: f, j: {body: ground, angle: 90 deg}}
+  follower: {type: point_on_curve, i: f, j: cam, radius: "1 + 0.1*exp(-((angle - 0.96)/0.01)^2)"}
+run: {duration: 2 s, points: 2001, max_step: 0.5 ms}
+""")
+    solution = stiffmbs.run(scene, solver=solver)
+    angle = np.mod(np.pi / 2 - 10 * solution.t + np.pi, 2 * np.pi) - np.pi
+    np.testing.assert_allclose(solution["f.y"], 1 + 0.1 * np.exp(-(((angle - 0.96) / 0.01) ** 2)), atol=1e-9)

@@ -35,13 +35,15 @@ def note(model):
 
 @pytest.mark.parametrize("turn", [1e-6, 0.01, 0.3, 1.0])
 def test_a_turn_is_told_by_its_angle(turn):
-    found = re.search(r"assembly changed arm.angle by (\S+) rad$", note(arm(turn)))
+    found = re.search(r"assembly changed arm.angle by (\S+) rad", note(arm(turn)))
     assert float(found[1]) == pytest.approx(turn, rel=1e-2)
 
 
 def test_moves_and_velocities_are_told_apart():
     told = note(arm(offset=0.25, omega=(0.5, 0, 2)))
-    assert re.search(r"arm\.y by \S+ m, arm\.angle by \S+ rad and arm\.vy by \S+ m/s, arm\.omega by \S+ rad/s$", told)
+    assert re.search(
+        r"arm by \S+ m, arm\.angle by \S+ rad \(\S+ deg\) and arm's velocity by \S+ m/s, arm\.omega by \S+ rad/s$", told
+    )
     assert "nothing" not in told
 
 

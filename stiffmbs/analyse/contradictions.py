@@ -53,9 +53,9 @@ class Contradiction:
 
 
 def time_dependent(equations: LoopEquations, pose: Pose, duration: float) -> np.ndarray:
-    """Which rows depend on time, as seen at instants of the run."""
+    """Which rows have time in them, or prescribe velocities, as seen at instants of the run."""
     rates = [equations.pose(pose.q, pose.t + part * duration).rates for part in (0.0, *INSTANTS)]
-    return np.any(np.array(rates) != 0.0, axis=0)
+    return equations.timed | np.any(np.array(rates) != 0.0, axis=0)
 
 
 def contradictions(found: LoopRank, redundant: list[Redundant], duration: float) -> list[Contradiction]:

@@ -72,6 +72,8 @@ class LoopEquations:
         Root mean square arm of the joints, m: velocities count in it, so that units of length do not matter.
     row_scale : ndarray, shape (n,)
         What each equation is multiplied by; so lam = row_scale * w for a null vector w of the scaled J^T.
+    timed : ndarray of bool, shape (n,)
+        Which equations have time in them.
     """
 
     def __init__(self, loop: Loop, state: State, t: float) -> None:
@@ -83,6 +85,7 @@ class LoopEquations:
         self._vectors = {name: self._places(name) for name in ("C", "V")}
         self._pattern = self._pattern_of_J()
         self._holonomic = system.holonomic[loop.rows]
+        self.timed = system.timed[loop.rows]
         state.evaluate("motion", t)
         J = self._J()
         turning = system.per_velocity(0.0, 1.0)[loop.columns] > 0

@@ -55,23 +55,9 @@ def _axis(k: int, i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
     )
 
 
-def _ax(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    z = _axis(2, i, j)
-    return np.arctan2(-z[:, 1], z[:, 2])
-
-
-def _ay(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    z = _axis(2, i, j)
-    return np.arctan2(z[:, 0], z[:, 2])
-
-
 def _az(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
     x = _axis(0, i, j)
     return np.arctan2(x[:, 1], x[:, 0])
-
-
-ANGLES: dict[str, Between] = {"ax": _ax, "ay": _ay, "az": _az}
-"""About an axis of j, from -pi to pi, shape (n,)."""
 
 
 def _psi(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:

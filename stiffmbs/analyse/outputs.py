@@ -12,14 +12,16 @@ from ..compile.table_values import curve
 from ..describe.formula import evaluate
 from ..describe.formula_field import TIME
 from ..describe.formula_value import branch_value, step5_value, step_value
-from ..describe.spatial.output import ACTIONS, Output, Term, ends, placeholder
-from .marker_measures import ANGLES, MAGNITUDES, SCALARS, VECTORS
+from ..describe.spatial.output import ACTIONS, COUNTED_ANGLES, Output, Term, ends, placeholder
+from .marker_measures import MAGNITUDES, SCALARS, VECTORS
 from .marker_motion import Motions
 
 AXES = "xyz"
 
 
-def outputs(model: Any, time: np.ndarray, channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def outputs(
+    model: Any, time: np.ndarray, channels: Mapping[str, np.ndarray], counted: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
     """The requests of a model in space at each instant.
 
     Parameters
@@ -29,13 +31,15 @@ def outputs(model: Any, time: np.ndarray, channels: Mapping[str, np.ndarray]) ->
         s.
     channels : mapping of str to ndarray
         Of bodies, joints and forces, shape (n,).
+    counted : mapping of str to ndarray
+        The angles over whole turns, as `SpatialData.counted_angles` names them, rad, shape (n,).
 
     Returns
     -------
     dict of str to ndarray
         By channel, shape (n,).
     """
-    terms = _Terms(model, time, channels)
+    terms = _Terms(model, time, channels, counted)
     with np.errstate(all="ignore"):
         return {name: _value(output, time, channels, terms) for name, output in model.outputs()}
 
@@ -60,8 +64,10 @@ def _value(output: Output, time: np.ndarray, channels: Mapping[str, np.ndarray],
 class _Terms:
     """Measures between markers and actions of elements, each computed once."""
 
-    def __init__(self, model: Any, time: np.ndarray, channels: Mapping[str, np.ndarray]) -> None:
-        self._model, self._time, self._channels = model, time, channels
+    def __init__(
+        self, model: Any, time: np.ndarray, channels: Mapping[str, np.ndarray], counted: Mapping[str, np.ndarray]
+    ) -> None:
+        self._model, self._channels, self._counted = model, channels, counted
         self._motions = Motions(model, channels, len(time))
         self._known: dict[Term, np.ndarray] = {}
 
@@ -72,22 +78,16 @@ class _Terms:
         return self._known[term]
 
     def _measure(self, term: Term) -> np.ndarray:
+        if term.function in COUNTED_ANGLES:
+            return self._counted[str(term)]
         i, j, *axes = (self._motions.of(marker) for marker in term.markers)
         name = term.function
         if name in MAGNITUDES:
             return np.linalg.norm(MAGNITUDES[name](i, j), axis=1)
         if name in SCALARS:
             return SCALARS[name](i, j)
-        if name in ANGLES:
-            return self._turned(ANGLES[name](i, j), j.along(i.omega - j.omega)[:, AXES.index(name[1])])
         vectors = VECTORS[name[:-1]](i, j)
         return (axes[0].along(vectors) if axes else vectors)[:, AXES.index(name[-1])]
-
-    def _turned(self, angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """An angle over whole turns: by the change that its rate tells from one instant to the next (Adams' AZ)."""
-        expected = np.diff(self._time) * (rate[1:] + rate[:-1]) / 2
-        turns = np.round((expected - np.diff(angle)) / (2 * np.pi))
-        return angle + 2 * np.pi * np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(turns), turns, 0.0))])
 
     def _action(self, term: Term) -> np.ndarray:
         force, torque = (

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.system import System
-from ..describe.element import JointName
-from ..describe.marker import MarkerReference
 from .finding import LoopFinding
 from .give_way import TAKES_PART, Redundant
 from .loops import LoopJoint
 from .redundancy import Redundancy
 from .replacements import Choice, replacements
+from .sharing import ELASTIC, elastic_joints
 from .uniqueness import Undetermined, undetermined
 
 MOST_NAMES = 6
@@ -35,7 +34,9 @@ class Overconstraint:
     shared : bool
         Whether all hold the same bodies against each other, so that what they carry together is unique.
     remedies : tuple of tuple of str
-        Joints that would have to be left out or made elastic, all of one tuple together, for every reaction to be unique.
+        Joints that would have to be left out, all of one tuple together, for every reaction to be unique.
+    elastic : tuple of str
+        Joints that would have to be elastic, all together, for their stiffness to decide about every reaction.
     replacements : tuple of tuple of (str, str)
         Joints and the kinds that would let go of just what is held too often: each that does alone, or a few together.
     reason, remedy : str
@@ -47,6 +48,7 @@ class Overconstraint:
     undetermined: tuple[Undetermined, ...]
     shared: bool
     remedies: tuple[tuple[str, ...], ...]
+    elastic: tuple[str, ...]
     replacements: tuple[Choice, ...]
     reason: str
     remedy: str
@@ -99,6 +101,8 @@ def _overconstraint(system: System, finding: LoopFinding, block: list[Redundant]
     names = {joint.name for joint in joints}
     spaces = [(pose, _of_block(finding, space, block)) for pose, space in finding.rank.null_spaces]
     remedies = list(_remedies(finding, spaces[-1][1], joints))
+    shares = [spaces[-1][1][rows] for rows in _own_rows(finding, joints)]
+    elastic = elastic_joints(joints, shares)
     chosen = replacements(finding.rank.equations, spaces, joints) if system.of_body.dimensions == 3 else []
     parts = undetermined(finding.rank, spaces)
     channels = {name for part in finding.undetermined if part.element in names for name in part.channels}
@@ -108,9 +112,10 @@ def _overconstraint(system: System, finding: LoopFinding, block: list[Redundant]
         undetermined=tuple(parts),
         shared=_between_the_same(joints) and {name for part in parts for name in part.channels} == channels,
         remedies=tuple(tuple(joint.name for joint in some) for some in remedies),
+        elastic=tuple(joint.name for joint in elastic),
         replacements=tuple(chosen),
         reason=_reason(system, joints, driven, len(block)),
-        remedy=_remedy(remedies, chosen, what),
+        remedy=_remedy(remedies, elastic, chosen, what),
     )
 
 
@@ -143,8 +148,7 @@ def _of_block(finding: LoopFinding, space: np.ndarray, block: list[Redundant]) -
 def _remedies(finding: LoopFinding, space: np.ndarray, joints: list[LoopJoint]) -> Iterator[tuple[LoopJoint, ...]]:
     """Each joint that alone would settle it; where there is none, a few that do together."""
     count = space.shape[1]
-    first = {joint.name: row for row, joint in _first_rows(finding)}
-    own = [np.arange(first[joint.name], first[joint.name] + len(joint.rows)) for joint in joints]
+    own = list(_own_rows(finding, joints))
     alone = [joint for joint, rows in zip(joints, own, strict=True) if _rank(space[rows]) == count]
     if alone:
         yield from ((joint,) for joint in alone)
@@ -152,8 +156,14 @@ def _remedies(finding: LoopFinding, space: np.ndarray, joints: list[LoopJoint]) 
     together: list[int] = []
     while (reached := _rank(space[_stacked(own, together)])) < count:
         gains = [_rank(space[_stacked(own, [*together, k])]) - reached for k in range(len(joints))]
-        together.append(max(range(len(joints)), key=lambda k: (gains[k], _elastic(joints[k]), k)))
+        together.append(max(range(len(joints)), key=lambda k: (gains[k], joints[k].element.kind in ELASTIC, k)))
     yield tuple(joints[k] for k in together)
+
+
+def _own_rows(finding: LoopFinding, joints: list[LoopJoint]) -> Iterator[np.ndarray]:
+    """The rows of each joint in the loop."""
+    first = {joint.name: row for row, joint in _first_rows(finding)}
+    yield from (np.arange(first[joint.name], first[joint.name] + len(joint.rows)) for joint in joints)
 
 
 def _first_rows(finding: LoopFinding) -> Iterator[tuple[int, LoopJoint]]:
@@ -172,16 +182,33 @@ def _rank(rows: np.ndarray) -> int:
     return int(np.sum(values > TAKES_PART)) if values.size else 0
 
 
-def _remedy(remedies: list[tuple[LoopJoint, ...]], chosen: list[Choice], what: str) -> str:
-    ways = list(_replaced(chosen))
-    if len(remedies) == 1 and len(remedies[0]) > 1:
-        ways.append(f"bushings in place of {listed([joint.name for joint in remedies[0]])}")
-        return f"{', or '.join(ways)} make {what} unique"
-    elastic = [joint.name for (joint,) in remedies if _elastic(joint)]
-    others = [joint.name for (joint,) in remedies if not _elastic(joint)]
-    choices = (("a bushing in place of", elastic), ("leaving out", others))
-    ways += [f"{way} {_one_of(names)}" for way, names in choices if names]
-    return f"{', or '.join(ways)} makes {what} unique"
+def _remedy(
+    remedies: list[tuple[LoopJoint, ...]], elastic: tuple[LoopJoint, ...], chosen: list[Choice], what: str
+) -> str:
+    """What makes reactions determinate by statics, and what lets stiffness decide."""
+    ways = [f"with {kinds}" for kinds in _replaced(chosen)]
+    left_out = [joint.name for joint, *more in remedies if not more and joint.element.kind not in ELASTIC]
+    if left_out or not (ways or elastic):
+        ways.append(f"without {_one_of(left_out) if left_out else listed([joint.name for joint in remedies[0]])}")
+    told = [f"{', or '.join(ways)}, {what} are statically determinate"] if ways else []
+    if elastic:
+        told.append(
+            f"with {_elastic_words(elastic)}, stiffness decides how {what} are shared; one elastic joint beside rigid ones "
+            "that hold the same would carry nothing"
+        )
+    return "; ".join(told)
+
+
+def _elastic_words(elastic: Sequence[LoopJoint]) -> str:
+    """Bushings and springs in place of joints, in words."""
+    of_kind: dict[str, list[str]] = {}
+    for joint in elastic:
+        of_kind.setdefault(ELASTIC[joint.element.kind], []).append(joint.name)
+    return " and ".join(f"{kind}s in place of {_all_of(names)}" for kind, names in of_kind.items())
+
+
+def _all_of(names: Sequence[str]) -> str:
+    return f"both {listed(names)}" if len(names) == 2 else f"all of {listed(names)}" if len(names) > 2 else names[0]
 
 
 def _replaced(chosen: list[Choice]) -> Iterator[str]:
@@ -201,8 +228,3 @@ def _a(kind: str) -> str:
 
 def _one_of(names: Sequence[str]) -> str:
     return f"one of {listed(names)}" if len(names) > 1 else names[0]
-
-
-def _elastic(joint: LoopJoint) -> bool:
-    """Whether a bushing can take the joint's place: it holds two markers."""
-    return len(list(joint.element.parts(MarkerReference))) == 2 and not next(joint.element.parts(JointName), None)

@@ -9,11 +9,15 @@ import numpy as np
 
 from ..compile.system import System
 from ..solve.mechanics import Mechanics
+from .elastic import held, screwed, stiffnesses
+from .unproven import by_functions
 
 FREE = 1e-8
 """Singular value, in parts of the largest, of a motion that no joint hinders."""
 PERTURBATION = 0.1
 """Size of a move (sizes of the system, rad) to a second pose: what is free at one alone is a matter of that pose."""
+FURTHER = 0.3
+"""Size of a move along a motion of a body's own, where forces are looked at again: at the start they may stand across it."""
 TURNS = 1e-6
 """Part of a motion that is rounding."""
 
@@ -25,19 +29,25 @@ class OwnFreedom:
     Attributes
     ----------
     body : str
-    joints : tuple of str
-        That hold it between others.
+    between : tuple of str
+        The joints and forces that hold it between others.
     motion : str
         ``turn``, ``slide`` or, where it is more than one of these, ``move``.
+    held_by : tuple of str
+        The forces that are stiff against it; none where only joints and inertia act.
     """
 
     body: str
-    joints: tuple[str, ...]
+    between: tuple[str, ...]
     motion: str
+    held_by: tuple[str, ...] = ()
 
 
 def own_freedoms(mechanics: Mechanics, t: float) -> list[OwnFreedom]:
-    """The bodies that can move by themselves although joints hold them between others.
+    """The bodies that can move by themselves although joints and elastic forces hold them between others.
+
+    The motions are those that J of a body alone leaves free.  A force holds one where its tangent stiffness there is not
+    zero: what bushings and springs hold is told apart from what nothing holds.
 
     Parameters
     ----------
@@ -47,43 +57,86 @@ def own_freedoms(mechanics: Mechanics, t: float) -> list[OwnFreedom]:
         s.
     """
     system, state = mechanics.system, mechanics.state
-    between = dict(_between_others(system))
-    found = _free(mechanics, between, t)
-    if not found:
+    around = _joints_around(system)
+    for body in _held_by_functions(system):  # a formula that is flat here may hold the body elsewhere
+        around.pop(body, None)
+    ways = dict(_free_ways(mechanics, list(around), t))
+    if not ways:
         return []
     q = state.q.copy()
     step = PERTURBATION * np.random.default_rng(1).uniform(-1, 1, system.n_u) * system.per_velocity(system.size, 1.0)
     state.q[:] = system.of_body.moved(q, step)
-    also = _free(mechanics, between, t) if mechanics.assemble(t) >= 0 else {}
+    also = dict(_free_ways(mechanics, list(ways), t)) if mechanics.assemble(t) >= 0 else {}
     state.q[:] = q
-    return [
-        OwnFreedom(system.bodies[body], between[body], motion)
-        for body, motion in found.items()
-        if motion == also.get(body)
-    ]
+    always = {body: free for body, free in ways.items() if len(free) == len(also.get(body, ()))}
+    found = [_classified(mechanics, body, free, around[body], t) for body, free in always.items()]
+    return [freedom for freedom in found if freedom]
 
 
-def _between_others(system: System) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Each body that joints hold against more than one other (the ground is one), with these joints."""
+def _joints_around(system: System) -> dict[int, dict[str, set[int]]]:
+    """For each body that has joints these, each with the other bodies at it (the ground is one)."""
     around: dict[int, dict[str, set[int]]] = {}
     for group in system.groups:
         for name, bodies in zip(group.names, group.bodies.tolist(), strict=True) if group.record.n_equations else ():
             for body in set(bodies) - {len(system.bodies)}:
                 around.setdefault(body, {})[name] = set(bodies) - {body}
-    for body, joints in around.items():
-        if len(set[int]().union(*joints.values())) > 1:
-            yield body, tuple(joints)
+    return around
 
 
-def _free(mechanics: Mechanics, bodies: dict[int, tuple[str, ...]], t: float) -> dict[int, str]:
-    """Of some bodies those that no joint hinders from a motion of their own, and that motion."""
+def _held_by_functions(system: System) -> set[int]:
+    """The bodies in constraints with formulas or tables."""
+    J = system.term("motion", "J")
+    return set((J.column[by_functions(system)[J.row]] // system.of_body.n_u).tolist())
+
+
+def _classified(
+    mechanics: Mechanics, body: int, free: np.ndarray, joints: dict[str, set[int]], t: float
+) -> OwnFreedom | None:
+    """What is told of a body's motions that no joint hinders; None where it is held against one other only, or by forces."""
+    system = mechanics.system
+    elastic = stiffnesses(mechanics.state, t).get(body, {})
+    others = _others_of_forces(system)
+    by_joints = set[int]().union(*joints.values())
+    by_forces = set[int]().union(*(others[name] - {body} for name in elastic))
+    if len(by_joints | by_forces) < 2:
+        return None
+    name, straight = system.bodies[body], system.of_body.linear
+    holding, loose = _held(mechanics, body, free, t)
+    if len(loose):
+        return OwnFreedom(name, (*joints, *(elastic if len(by_joints) < 2 else ())), _motion(loose, straight))
+    if len(by_joints) < 2:
+        return None
+    return OwnFreedom(name, tuple(joints), _motion(free, straight), tuple(holding))
+
+
+def _held(mechanics: Mechanics, body: int, free: np.ndarray, t: float) -> tuple[list[str], np.ndarray]:
+    """The forces that are stiff against motions of a body, and the motions that none is stiff against, here and further along."""
+    state = mechanics.state
+    scale = mechanics.system.per_velocity(mechanics.system.size, 1.0)[: mechanics.system.of_body.n_u]
+    names, loose = held(stiffnesses(state, t).get(body, {}), free, scale)
+    q = state.q.copy()
+    for way in loose:
+        state.q[:] = screwed(mechanics.system, q, body, FURTHER * scale * way)
+        more, loose = held(stiffnesses(state, t).get(body, {}), loose, scale)
+        names = list(dict.fromkeys([*names, *more]))
+        state.q[:] = q
+    return names, loose
+
+
+def _others_of_forces(system: System) -> dict[str, set[int]]:
+    """By force the bodies that it acts on or reads (the ground is one)."""
+    groups = (group for group in system.groups if not group.record.n_equations)
+    return {name: set(bodies) for g in groups for name, bodies in zip(g.names, g.bodies.tolist(), strict=True)}
+
+
+def _free_ways(mechanics: Mechanics, bodies: list[int], t: float) -> Iterator[tuple[int, np.ndarray]]:
+    """Of some bodies those that no joint hinders from motions of their own, and these, a row each, in sizes and rad."""
     system, state = mechanics.system, mechanics.state
     state.evaluate("motion", t)
     term, width = system.term("motion", "J"), system.of_body.n_u
     value = state.values["motion"][term.source] / system.per_velocity(1.0, system.size)[term.column]
     order = np.argsort(term.column // width, kind="stable")
     ends = np.searchsorted(term.column[order] // width, np.arange(len(system.bodies) + 1))
-    found = {}
     for body in bodies:
         own = order[ends[body] : ends[body + 1]]
         rows, row = np.unique(term.row[own], return_inverse=True)
@@ -94,8 +147,7 @@ def _free(mechanics: Mechanics, bodies: dict[int, tuple[str, ...]], t: float) ->
         _, values, ways = np.linalg.svd(J)
         free = ways[values <= FREE * values[0]]
         if len(free):
-            found[body] = _motion(free, system.of_body.linear)
-    return found
+            yield body, free
 
 
 def _motion(ways: np.ndarray, linear: int) -> str:

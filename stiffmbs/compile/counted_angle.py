@@ -7,7 +7,13 @@ own error, far below half a turn, has no part in the angle.
 
 from __future__ import annotations
 
+from typing import Any
+
 import sympy as sp
+
+POLE = sp.Float(1e-4)
+"""Sine squared plus cosine squared below which an angle has no direction to speak of (an axis within 0.6 deg of the one that
+it turns about): no step is to be spent on the half turn that the angle makes there at any speed."""
 
 
 class CountedAngle(sp.Function):  # type: ignore[misc]
@@ -25,3 +31,16 @@ class CountedAngle(sp.Function):  # type: ignore[misc]
 def counter(k: int) -> sp.Symbol:
     """The symbol of an element's k-th counter."""
     return sp.Symbol(f"counted{k}", real=True)
+
+
+def counting_rate(angle: CountedAngle, e: Any) -> sp.Expr:
+    """The rate of a counter: that of its angle, (c s' - s c')/(s^2 + c^2), bounded where s and c both vanish.
+
+    Parameters
+    ----------
+    angle : CountedAngle
+    e : SymbolicElement
+    """
+    sine, cosine, _ = angle.args
+    squares = e.named(sine**2 + cosine**2)
+    return (cosine * e.rate(sine) - sine * e.rate(cosine)) * squares / (squares**2 + POLE**2)

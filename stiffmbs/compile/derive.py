@@ -9,7 +9,7 @@ The reaction is the generalised force on the first body, turned into force and t
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import sympy as sp
@@ -17,10 +17,12 @@ import sympy as sp
 from ..describe.element import Force, Joint
 from ..describe.request import Request
 from ..errors import InputError
+from .counted_angle import counting_rate
 from .frames import SymbolicElement
 from .kind import Kind
 from .losses import power_of_force, power_of_joint
 from .symbols import Symbols, symbols_of
+from .variation import Summand, Variation
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,12 @@ class Derived:
     losses : list of int or None
         Numbers of an element that must be zero for it to keep energy (`stiffmbs.compile.losses`); None where nothing
         makes that certain.
+    variation : list of list of Summand
+        For each entry of C_q what it depends on.
+    removable : list of bool
+        For each equation with a position form whether it may be left out where these are constant.
+    timed : list of bool
+        For each equation whether time is in it.
     """
 
     n_equations: int
@@ -74,6 +82,9 @@ class Derived:
     symbols: Symbols
     terms: dict[str, Sequence[Entry | LateEntry]]
     losses: list[int] | None
+    variation: list[list[Summand]] = field(default_factory=list)
+    removable: list[bool] = field(default_factory=list)
+    timed: list[bool] = field(default_factory=list)
 
 
 def derive(kind: Kind) -> Derived:
@@ -132,7 +143,13 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     ]
     for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
-    return Derived(V.rows, C.rows, symbols, entries, [] if power == 0 else None)
+    variation = Variation(symbols)
+    return Derived(
+        V.rows, C.rows, symbols, entries, [] if power == 0 else None,
+        [variation.summands(entry.expression) for entry in entries["C_q"]],
+        [variation.removable(C[r], [entry.column for entry in entries["C_q"] if entry.row == r]) for r in range(C.rows)],
+        [e.depends(equation, [e.t]) for equation in (*C, *rates)],
+    )  # fmt: skip
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
@@ -170,7 +187,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
     first = e.q.rows
-    angles, rates = sp.Matrix(e.angles), sp.Matrix([e.rate(angle) for angle in e.angles])
+    angles, rates = sp.Matrix(e.angles), sp.Matrix([counting_rate(angle, e) for angle in e.angles])
     terms = {"counted": angles, "counting": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
     return {
         name: [Entry(entry.expression, first + entry.row, entry.column) for entry in _entries(matrix)]

@@ -91,6 +91,10 @@ class Group:
         column = self._in_whole(axes[1], pattern[:, 1]) if len(axes) > 1 else np.zeros_like(source)
         return source.ravel(), row.ravel(), column.ravel()
 
+    def coordinates(self, own: np.ndarray) -> np.ndarray:
+        """Numbers in the whole of the elements' own coordinates, shape (count, len(own)); those of the ground are past the end."""
+        return self._of_bodies("q", own)
+
     def _in_whole(self, axis: str, own: np.ndarray) -> np.ndarray:
         """Numbers in the whole for the elements' own numbers, shape (count, entries)."""
         elements = np.arange(self.count)[:, None]

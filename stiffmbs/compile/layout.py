@@ -140,7 +140,7 @@ ITERATION: Layout = {
 WATCH: Layout = {
     "n": INT, "n_switches": INT, "waits": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
-    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
+    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "mark": FLOATS,
 }  # fmt: skip
 """What the search for events within a step works on (`stiffmbs.solve.native.within_step`): the event functions with their

@@ -31,11 +31,12 @@ def mechanisms(system: System) -> list[np.ndarray]:
 
 
 def _acting(system: System) -> list[Group]:
-    return [group for group in system.groups if not issubclass(group.kind.element, Request)]
+    """What has a part in the integration: not requests, unless they count turns."""
+    return [g for g in system.groups if g.record.n_counters or not issubclass(g.kind.element, Request)]
 
 
 def counters_of(system: System) -> dict[tuple[str, int], int]:
-    """The coordinates that count turns for joints and forces, by element and number among its own; not those of requests."""
+    """The coordinates that count turns, by element and number among its own."""
     return {
         (name, k): int(at)
         for group in _acting(system)
@@ -55,7 +56,7 @@ def _pairs(system: System, group: Group) -> np.ndarray:
 
 
 def part_of(system: System, bodies: np.ndarray) -> System:
-    """The system of one mechanism, without requests; its elements' numbers stay those of the whole.
+    """The system of one mechanism, without requests that count no turns; its elements' numbers stay those of the whole.
 
     Parameters
     ----------

@@ -71,6 +71,16 @@ class BodyFrame:
         return self.u
 
     @property
+    def vectors(self) -> dict[sp.Symbol, tuple[sp.Expr, ...]]:
+        """Symbols that stand for parts of vectors of the body, and each vector in its own axes: none."""
+        return {}
+
+    @property
+    def bounded(self) -> tuple[sp.Symbol, ...]:
+        """Symbols that are of order one at every pose: none."""
+        return ()
+
+    @property
     def origin(self) -> sp.Matrix:
         return sp.Matrix(self.q[:2])
 

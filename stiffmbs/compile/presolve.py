@@ -78,8 +78,6 @@ def parts_of(model: ModelData, whole: System, apart: bool = True) -> tuple[Part,
     apart : bool
         Whether independent mechanisms may be solved apart.
     """
-    if len(counters_of(whole)) < whole.n_counters:  # requests count turns of the whole
-        return ()
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
     welded = weld(model, held)
     system = _compiled(welded, whole) if welded else whole

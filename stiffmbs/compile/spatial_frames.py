@@ -164,6 +164,16 @@ class SpatialBodyFrame:
         return (*self.u, *self.omega)
 
     @property
+    def vectors(self) -> dict[sp.Symbol, tuple[sp.Expr, ...]]:
+        """Symbols that stand for parts of vectors of the body, and each vector in its own axes."""
+        return {part: own for own, parts in self._carried.items() for part in parts}
+
+    @property
+    def bounded(self) -> tuple[sp.Symbol, ...]:
+        """Symbols that are of order one at every pose."""
+        return self.turn
+
+    @property
     def origin(self) -> sp.Matrix:
         """The centre of mass."""
         return sp.Matrix(self.q[:3])

@@ -179,6 +179,15 @@ class System:
         raise IndexError(f"the set {term_set} has no value {at}")
 
     @cached_property
+    def timed(self) -> np.ndarray:
+        """Which equations have time in them, shape (n_c,)."""
+        rows = np.zeros(self.n_c, dtype=bool)
+        for group in self.groups:
+            last = group.first_row + group.count * group.record.n_equations
+            rows[group.first_row : last] = np.tile(np.array(group.record.timed, dtype=bool), group.count)
+        return rows
+
+    @cached_property
     def first_limit(self) -> int:
         """Where the limits of all forces begin among the values of the set ``switch``."""
         return sum(group.count * group.entries("switch") for group in self.groups)

@@ -123,6 +123,10 @@ class ModelData(Described):
         for name, formula in self.requests.items():
             yield name, Request(formula=formula)
 
+    def counted_angles(self) -> Iterator[tuple[str, Request]]:
+        """The angles over whole turns that requests evaluated after the run ask for, compiled, by their text."""
+        yield from ()
+
     @abstractmethod
     def inertial(self, bodies: Mapping[str, Any]) -> Iterable[tuple[str, Force]]:
         """The forces that bodies have by themselves, such as their weights, with the bodies' names."""
@@ -139,6 +143,7 @@ class ModelData(Described):
         """Every joint, force, request and weight with its name (a weight has its body's)."""
         yield from self.drawn_elements()
         yield from self.requested()
+        yield from self.counted_angles()
         yield from self.inertial(self.bodies)
 
     def drawn_elements(self) -> Iterator[tuple[str, Element]]:

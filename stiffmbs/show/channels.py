@@ -24,10 +24,12 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
         for state, names in zip(states, labels, strict=True):
             for offset, name in enumerate(names):
                 channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
-    channels |= requests(system, rows.values)
+    requested = requests(system, rows.values)
+    counted = {name: requested.pop(name) for name, _ in model.counted_angles()}
+    channels |= requested
     channels |= reactions(system, rows.values)
     kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
     channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
     channels["energy.total"] = kinetic + potential
     channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
-    return channels | outputs(model, rows.t, channels)
+    return channels | outputs(model, rows.t, channels, counted)

@@ -14,11 +14,22 @@ from ..describe.model_data import ModelData
 from ..describe.scene import notes_of
 from ..describe.settings import RunSettings
 from ..errors import AssemblyError, SolverError
-from ..solve.initial import initial_values
+from ..solve.initial import InitialValues, initial_values
+from ..solve.moves import Move
 from ..solve.pieces import Piece
 from .presolve import presolve_sentences, unknowns
-from .redundancy import contradiction_sentences, overconstraint_sentences, pose_sentences, singular_sentence
+from .redundancy import (
+    contradiction_sentences,
+    known_near_start,
+    overconstraint_sentences,
+    pose_sentences,
+    singular_sentence,
+)
 from .run import Examined, examined, presolved
+from .unconnected import unconnected_sentence
+
+MOST_MOVES = 50
+"""Bodies that are named of those which assembly moves; `Report.moved` has all."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +58,8 @@ class Report:
         Of the formulation SI2: of all bodies and equations, and of what is solved for.
     presolve : tuple of str
         What is left out of the solution because it follows from the rest, a sentence each.
+    moved : tuple of Move
+        What assembly changes of the bodies as described.
     messages : tuple of str
         All else that there is to say, a sentence each.
     sound : bool
@@ -64,6 +77,7 @@ class Report:
     extra_freedoms: int
     unknowns: tuple[int, int]
     presolve: tuple[str, ...]
+    moved: tuple[Move, ...]
     messages: tuple[str, ...]
     sound: bool
 
@@ -121,15 +135,25 @@ def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, 
     redundancy, system = found.redundancy, found.redundancy.system
     cases = tuple(overconstraints(redundancy))
     against = tuple(contradiction_sentences(redundancy))
-    held_twice = [] if against else [sentence for case in cases for sentence in overconstraint_sentences(case)]
+    held_twice = (
+        []
+        if against
+        else [
+            sentence
+            for case in cases
+            for sentence in overconstraint_sentences(case, known_near_start(case, redundancy))
+        ]
+    )
     problems = [*against, *held_twice]
     problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
     mechanics, pieces, free = found.mechanics(), tuple[Piece, ...](), list[OwnFreedom]()
+    start: InitialValues | None = None
     if not against:
         try:
             start = initial_values(mechanics, found.grid.start)
             free = own_freedoms(mechanics, found.grid.start)
             pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+            problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
         except (AssemblyError, SolverError) as error:
             problems += [] if redundancy.extra_freedoms else [str(error)]
     return Report(
@@ -137,21 +161,28 @@ def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, 
         rank=redundancy.rank, redundant=redundancy.redundant, not_unique=redundancy.not_unique, overconstraints=cases,
         contradictions=against, extra_freedoms=redundancy.extra_freedoms,
         unknowns=unknowns(system, pieces, mechanics), presolve=tuple(presolve_sentences(system, pieces, mechanics)),
-        messages=(*problems, *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
+        moved=start.moved if start else (),
+        messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
     )  # fmt: skip
+
+
+def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
+    """What assembly changes, where it is no problem."""
+    if start and not start.moved_far and (sentence := start.position_sentence(MOST_MOVES)):
+        yield sentence
 
 
 def _freedom_sentences(found: Examined, system: System, free: Sequence[OwnFreedom]) -> Iterator[str]:
     if found.redundancy.degrees_of_freedom == 0:
         yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
     for freedom in free:
-        yield f"{freedom.body} can {freedom.motion} by itself between {listed(freedom.joints)}, which moves no other body"
-    touched = {
-        body
-        for group in system.groups if group.kind.element.kind
-        for body in group.bodies.ravel()
-    }  # fmt: skip
-    alone = [name for k, name in enumerate(system.bodies) if k not in touched]
-    if alone:
-        what = "is" if len(alone) == 1 else "are"
-        yield f"{listed(alone)} {what} connected to nothing: no joint and no force but weight acts there"
+        yield _own_freedom_sentence(freedom)
+    yield from unconnected_sentence(system)
+
+
+def _own_freedom_sentence(freedom: OwnFreedom) -> str:
+    body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
+    if not freedom.held_by:
+        return f"{body} can {motion} by itself between {between}, which moves no other body"
+    hold = "holds" if len(freedom.held_by) == 1 else "hold"
+    return f"joints alone would let {body} {motion} by itself between {between}: {listed(freedom.held_by)} {hold} it"

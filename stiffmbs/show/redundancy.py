@@ -9,9 +9,18 @@ from ..analyse.finding import LoopFinding
 from ..analyse.loop_equations import AGREES, CLOSED
 from ..analyse.overconstraint import Overconstraint, listed, overconstraints
 from ..analyse.redundancy import Redundancy
+from ..analyse.unproven import unproven
 from ..compile.system import System
 from ..errors import AssemblyError
 from .undetermined import channel_words, directed_words
+
+STOPS_WHERE = "stops where formulas or tables no longer hold the same"
+
+
+def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
+    """Whether equations are known to be redundant near the start alone."""
+    rows = {redundancy.system.equations[row] for row in unproven(redundancy)}
+    return not rows.isdisjoint(case.redundant)
 
 
 def refuse_contradictions(redundancy: Redundancy) -> None:
@@ -26,9 +35,17 @@ def refuse_contradictions(redundancy: Redundancy) -> None:
         raise AssemblyError(sentence)
 
 
-def overconstraint_sentences(case: Overconstraint) -> Iterator[str]:
-    """An overconstraint in sentences: reason, what gives way, what is not unique, remedy."""
-    yield f"{case.reason}; a run leaves out {_given_way(case)}, which does not change the motion"
+def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> Iterator[str]:
+    """An overconstraint in sentences: reason, what gives way, what is not unique, remedy.
+
+    Parameters
+    ----------
+    case : Overconstraint
+    near_start : bool
+        Whether it is known near the start alone, as formulas or tables take part.
+    """
+    what_then = f"and {STOPS_WHERE}" if near_start else "which does not change the motion"
+    yield f"{case.reason}; a run leaves out {_given_way(case)}, {what_then}"
     if case.undetermined:
         shared = ["what they carry together is unique"] if case.shared else []
         directed = "; ".join([*directed_words(case.undetermined), *shared])
@@ -104,7 +121,8 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:
     """What a run tells: the equations that it leaves out, and the channels without a unique value."""
     for case in overconstraints(redundancy):
-        yield f"{case.reason}; left out: {_given_way(case)}"
+        where = f"; the run {STOPS_WHERE}" if known_near_start(case, redundancy) else ""
+        yield f"{case.reason}; left out: {_given_way(case)}{where}"
     if redundancy.undetermined:
         words = channel_words(redundancy.undetermined)
         yield f"rigid bodies do not determine {words}: one of many possible values is shown"

@@ -32,6 +32,7 @@ from .growth import senseless
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
 from .solution import Solution
+from .unconnected import unconnected_sentence
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ def run(
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    trajectory = job.integrate(watch)
+    trajectory = _sound_part(job, job.integrate(watch))
     project = near_constraints(job.settings)
     rows, left_out = reported(job.mechanics, trajectory, project)
     if not len(rows.t):
@@ -180,6 +181,23 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     )  # fmt: skip
 
 
+def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
+    """A trajectory up to where a mechanism locks, for equations that were left out, or for prescribed velocities."""
+    system = job.mechanics.system
+    if not job.redundancy.redundant and system.holonomic.all():
+        return trajectory
+    from .locked import locked
+
+    found = locked(job.mechanics, job.redundancy, trajectory)
+    if found is None:
+        return trajectory
+    outputs, sentence = found
+    return replace(
+        trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
+        message=sentence,
+    )  # fmt: skip
+
+
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
     """How the run ended, and the sentence for it: also stopped where states have no accelerations and reactions."""
     if len(rows.t) == len(trajectory.t):
@@ -195,6 +213,7 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
         from .redundancy import note_sentences
 
         yield from note_sentences(job.redundancy)
+    yield from unconnected_sentence(job.mechanics.system)
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:

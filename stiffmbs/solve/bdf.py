@@ -21,6 +21,7 @@ from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
 from .native_engine import NativeEngine
 from .newton import newton_tolerance, stiffness_at
+from .precision import governed_by_rounding, too_fine
 from .relaxation import relax
 from .restart import restarted
 from .sundae import SundaeEngine
@@ -35,6 +36,9 @@ INDISTINCT = 4 * float(np.finfo(float).eps)
 """Part of a time within which IDA takes another one for the same."""
 WORTH_TELLING = 1e-2
 """Change of a velocity at a corner, in parts of the largest, that is told."""
+
+SHORT = 8
+"""Stretches of a run before its counters are looked at: reading them costs as much as some steps."""
 
 
 def solve(
@@ -69,14 +73,15 @@ def integrated(
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
-        for reached in integrator.run(start, grid):
+        for stretch, reached in enumerate(integrator.run(start, grid)):
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
             watch(reached.t)
             integrator.reached = reached
-            if reached.failure:
-                likely = suspect(integrator.mechanics, reached.t, *integrator.split(reached.y))
-                outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {reached.failure}{likely}"
-            elif pays and not pays(reached):
+            failure = _failure(integrator, reached) if reached.failure or stretch > SHORT else ""
+            if failure:
+                outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {failure}"
+                break
+            if pays and not pays(reached):
                 break
             elif reached.t < grid.end:
                 state = integrator.split(reached.y)
@@ -87,6 +92,16 @@ def integrated(
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {**integrator.statistics(), "seconds": time.perf_counter() - begun}
     return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history(), integrator.note())
+
+
+def _failure(integrator: Integrator, reached: Reached) -> str:
+    """Why a run ends where it has come; empty where it goes on."""
+    q, u = integrator.split(reached.y)
+    if governed_by_rounding(integrator.statistics()):
+        reason = too_fine(integrator.mechanics.system, integrator.settings, q)
+        if reason:
+            return reason
+    return reached.failure and reached.failure + suspect(integrator.mechanics, reached.t, q, u)
 
 
 def _just_after(t: float) -> float:

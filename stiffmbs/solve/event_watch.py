@@ -39,7 +39,7 @@ class EventWatch:
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning if n else np.empty(0, dtype=np.int64)
-        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "left_low", "left_high")  # fmt: skip
+        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high")  # fmt: skip
         self._arrays = {
             "n": n, "n_switches": n_switches, "waits": np.zeros(n_switches, dtype=np.int64) if waits is None else waits,
             "first_edge": first_edge, "edges": edges, "period": period, **{name: np.zeros(n) for name in work}, "found": self.found,

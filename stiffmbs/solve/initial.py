@@ -2,45 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..compile.system import System
 from ..errors import AssemblyError
 from .failures import FAILURES
 from .mechanics import POSITION_TOLERANCE, Mechanics
+from .moves import Move, moves, position_words, velocity_words
 from .native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
 from .nearest_turns import take_nearest_turns
 
-PLACES, RATES = ("m", "rad"), ("m/s", "rad/s")
-"""Units of centres of mass and of turns, on the level of positions and on that of velocities."""
-WORTH_TELLING = 1e-9
-"""Moves of a coordinate (m, rad, m/s, rad/s) below this are not mentioned."""
-MUCH_LESS = 1e-3
-"""Part of the largest move below which one of another unit is not mentioned."""
-
-
-@dataclass(frozen=True)
-class Move:
-    """A change that assembly made.
-
-    Attributes
-    ----------
-    body, coordinate : str
-        Such as ``bar`` and ``vx``; a turn in space is an ``angle``, a change of its rate one of ``omega``.
-    unit : str
-    change : float
-    """
-
-    body: str
-    coordinate: str
-    unit: str
-    change: float
-
-    def __str__(self) -> str:
-        return f"{self.body}.{self.coordinate} by {self.change:.3g} {self.unit}"
+MOST_TOLD = 3
+"""Bodies that a run's note names, those with the largest moves."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +26,9 @@ class InitialValues:
     q, u, acceleration, lam : ndarrays
         Coordinates, velocities, accelerations and multipliers that satisfy the constraints on every level.
     moved : tuple of Move
-        Of every coordinate or velocity that had to be changed noticeably.
+        What was changed of each body noticeably.
+    size : float
+        Of the mechanism as described, m.
     """
 
     q: np.ndarray
@@ -60,24 +36,34 @@ class InitialValues:
     acceleration: np.ndarray
     lam: np.ndarray
     moved: tuple[Move, ...]
+    size: float = 1.0
 
     def sentence(self) -> str:
-        """What was moved, in words: the largest moves of points and turns, and of their rates; empty where nothing was."""
-        levels = [list(_largest(self.moved, units)) for units in (PLACES, RATES)]
-        told = [move for level in levels for move in level]
-        if not told:
+        """What was changed, in words: the largest moves of bodies, and of their velocities; empty where nothing was."""
+        levels = [words(self.moved, self.size, MOST_TOLD) for words in (position_words, velocity_words)]
+        return self._changed(" and ".join(filter(None, levels)))
+
+    def position_sentence(self, most: int) -> str:
+        """The bodies that were moved, in words, up to so many by name; empty where none was."""
+        return self._changed(position_words(self.moved, self.size, most))
+
+    def _changed(self, told: str) -> str:
+        return f"to satisfy the joints at the start, assembly changed {told}{self._too_far()}" if told else ""
+
+    @property
+    def moved_far(self) -> tuple[Move, ...]:
+        """The moves that correct no drawing: one of the numbers behind them is wrong, or the scene is not drawn closed."""
+        return tuple(move for move in self.moved if move.is_large(self.size))
+
+    def _too_far(self) -> str:
+        far = self.moved_far
+        if not far:
             return ""
-        words = " and ".join(", ".join(map(str, level)) for level in levels if level)
-        others = len({move.body for move in self.moved} - {move.body for move in told})
-        less = f" ({others} other {'bodies' if others > 1 else 'body'} by less)" if others else ""
-        return f"to satisfy the joints at the start, assembly changed {words}{less}"
-
-
-def _largest(moves: Sequence[Move], units: tuple[str, str]) -> Iterator[Move]:
-    """Of both units the largest move, that which is far smaller in numbers than the other left out."""
-    own = [max((m for m in moves if m.unit == unit), key=lambda m: abs(m.change), default=None) for unit in units]
-    largest = max((abs(move.change) for move in own if move), default=0.0)
-    yield from (move for move in own if move and abs(move.change) >= MUCH_LESS * largest)
+        bodies = f"{len(far)} bodies move" if len(far) > 1 else f"{far[0].body} moves"
+        return (
+            f": {bodies} by more than a quarter of the mechanism's size ({self.size:.3g} m) or 45 deg; "
+            "look for a wrong point of a marker, position or angle"
+        )
 
 
 def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
@@ -107,13 +93,11 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
     status, acceleration = mechanics.accelerate(t)
     if status < 0:
         raise AssemblyError(_sentence(mechanics, status, t))
-    of_body = system.of_body
-    of_position = _moves(system, system.move(q0, state.q), (*of_body.positions[: of_body.linear], "angle"), PLACES)
-    of_velocity = _moves(
-        system, np.where(system.open_rates, 0.0, state.u - u0), (*of_body.velocities[: of_body.linear], "omega"), RATES
+    change = np.where(system.open_rates, 0.0, state.u - u0)
+    moved = moves(system, system.move(q0, state.q), change)
+    return InitialValues(
+        state.q.copy(), state.u.copy(), acceleration, state.lam[: system.n_c].copy(), moved, system.size
     )
-    moved = (*of_position, *of_velocity)
-    return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam[: system.n_c].copy(), moved)
 
 
 def _close_open_rates(mechanics: Mechanics, t: float) -> None:
@@ -127,16 +111,6 @@ def _close_open_rates(mechanics: Mechanics, t: float) -> None:
     by_energy = state.matrix("motion", "J")[np.ix_(rows, ways)] / np.sqrt(system.mass[ways])
     follow, *_ = np.linalg.lstsq(by_energy, -state.vector("motion", "V")[rows], rcond=None)
     state.u[ways] += follow / np.sqrt(system.mass[ways])
-
-
-def _moves(system: System, change: np.ndarray, labels: tuple[str, ...], units: tuple[str, str]) -> Iterator[Move]:
-    """The changes that are worth telling, from all, shape (n_u,); a turn in space is told by its angle."""
-    straight = system.of_body.linear
-    for body, own in zip(system.bodies, change.reshape(-1, system.of_body.n_u), strict=True):
-        turn = float(own[-1]) if len(own) == straight + 1 else float(np.linalg.norm(own[straight:]))
-        for label, much in zip(labels, (*own[:straight].tolist(), turn), strict=True):
-            if abs(much) > WORTH_TELLING:
-                yield Move(body, label, units[label == labels[-1]], much)
 
 
 def _sentence(mechanics: Mechanics, status: int, t: float) -> str:

@@ -20,6 +20,8 @@ LARGEST_SURPRISE = 0.05
 """Part of a step's own length by which the positions found may miss the predicted ones."""
 LARGEST_TURN = 0.5
 """Part of its length by which the velocity found may miss the predicted one."""
+LARGEST_ROTATION = 2.0
+"""Angle, rad, that a body turns in one step at the most: the pose found tells no whole turns."""
 SHORTEST = 1e-10
 """Part of the duration below which a step that still fails means that the mechanism locks."""
 MOST_MOVES = 12
@@ -88,6 +90,8 @@ class _Motion:
         state.q[:], state.u[:] = start.q, start.u
         self._polish(t)
         self.q, self.u = state.q.copy(), state.u.copy()
+        self._counters = slice(mechanics.system.n_q - mechanics.system.n_counters, mechanics.system.n_q)
+        self._turning = self._rates_of_counters(t)
 
     def go_to(self, end: float) -> None:
         """Follow the motion to a later time, in as many steps as it takes."""
@@ -115,7 +119,11 @@ class _Motion:
         """Try one step; whether positions and velocities came out near their prediction."""
         state, mechanics = self._mechanics.state, self._mechanics
         step = h * self.u + h * h / 2 * self.a
+        self._status = 0
+        if np.abs(step * mechanics.system.per_velocity(0.0, 1.0)).max() > LARGEST_ROTATION:
+            return False
         predicted_q, predicted_u = mechanics.system.of_body.moved(self.q, step), self.u + h * self.a
+        predicted_q[self._counters] += h * self._turning
         state.q[:], state.u[:] = predicted_q, predicted_u
         moves = mechanics.assemble(t, most=MOST_MOVES)
         self._status = min(moves, 0)
@@ -136,11 +144,21 @@ class _Motion:
         """Make the state at hand, with its accelerations, the one that is reached; whether it has them."""
         state = self._mechanics.state
         self._polish(t)
+        turning = self._rates_of_counters(t)
+        state.q[self._counters] = self.q[self._counters] + (t - self.t) / 2 * (self._turning + turning)
         state.count_anew(t)
         self._status, acceleration = self._mechanics.accelerate(t)
         if self._status == 0:
             self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration
+            self._turning = turning
         return self._status == 0
+
+    def _rates_of_counters(self, t: float) -> np.ndarray:
+        """How fast the counters of turns run at the state at hand, rad/s."""
+        state = self._mechanics.state
+        if self._mechanics.system.n_counters:
+            state.evaluate("acceleration", t)
+        return self._mechanics.position_rates(state.q, state.u)[self._counters]
 
     def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
         own = np.linalg.norm(h * self.u) + np.linalg.norm(h * h / 2 * self.a)

@@ -8,7 +8,7 @@ from ..compile.equations import Equations
 from ..compile.system import System
 from ..describe.settings import RunSettings
 
-WHICH_TURN = 0.1
+WHICH_TURN = 1e-3
 """Absolute tolerance of the counters of turns, rad: far below the half turn that they must tell apart."""
 
 

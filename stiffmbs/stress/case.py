@@ -74,3 +74,11 @@ def told(message: str, names: tuple[str, ...], error: float = nan, allowed: floa
     if error > allowed:
         return Verdict(Outcome.WRONG, error, allowed, f"wrong before it stopped: {message}")
     return Verdict(Outcome.TOLD, error, allowed, message)
+
+
+def tried(judge: Callable[[], Verdict]) -> Verdict:
+    """What comes of a case or trial; an exception is wrong, as no user should have seen it."""
+    try:
+        return judge()
+    except Exception as error:
+        return Verdict(Outcome.WRONG, detail=f"{type(error).__name__}: {error}")

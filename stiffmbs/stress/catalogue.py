@@ -11,7 +11,7 @@ from typing import Any
 
 from ..errors import InputError
 from . import families as package
-from .case import Case, Outcome, Verdict
+from .case import Case, Verdict, tried
 
 
 @dataclass(frozen=True)
@@ -61,12 +61,5 @@ def outcomes(cases: Iterable[tuple[str, Case]]) -> Iterator[Row]:
     """Try the cases one after the other."""
     for family, case in cases:
         begun = time.perf_counter()
-        verdict = _tried(case)
+        verdict = tried(case.judge)
         yield Row(family, case, verdict, time.perf_counter() - begun)
-
-
-def _tried(case: Case) -> Verdict:
-    try:
-        return case.judge()
-    except Exception as error:  # whatever it is, no user should have seen it
-        return Verdict(Outcome.WRONG, detail=f"{type(error).__name__}: {error}")

@@ -12,7 +12,7 @@ from .curve import Curve
 class PointOnCurve(Curve[Marker]):
     """Point-follower: the point of marker i stays on a curve fixed to marker j.
 
-    In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta.  The curve is a slot
+    In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta (-pi .. pi).  The curve is a slot
     ``y`` = Y(x), with y - Y(x) = 0, or a cam ``radius`` = R(theta), with rho - R(theta) = 0.  R has to repeat after
     every turn, so that it does not matter where the arctangent jumps, nor how often the cam has turned.
     Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
@@ -31,4 +31,4 @@ class PointOnCurve(Curve[Marker]):
             return [d.dot(e.j.normal) - e.y(d.dot(e.j.axis))]
         from sympy import atan2
 
-        return [e.distance(e.i.point, e.j.point) - e.radius(atan2(d[1], d[0]) - e.j.angle)]
+        return [e.distance(e.i.point, e.j.point) - e.radius(atan2(d.dot(e.j.normal), d.dot(e.j.axis)))]

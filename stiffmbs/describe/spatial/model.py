@@ -22,7 +22,7 @@ from .drawn import DrawnMarker
 from .forces.turning import turnings
 from .marker import Placement
 from .orientation import matrix, product, rotated
-from .output import Output, check_output
+from .output import COUNTED_ANGLES, Output, check_output
 from .output_field import Requested
 
 JOINTS = kinds(joints, Joint)
@@ -65,6 +65,12 @@ class SpatialData(ModelData):
                 yield name, formula
             else:
                 yield from ((f"{name}.{component}", output) for component, output in formula.items())
+
+    def counted_angles(self) -> Iterator[tuple[str, Request]]:
+        """The angles az(i, j) in requests: only the integration sees every turn, however far apart output points are."""
+        angles = (term for _, output in self.outputs() for term in output.terms if term.function in COUNTED_ANGLES)
+        for term in dict.fromkeys(angles):
+            yield str(term), Request(formula=str(term))  # type: ignore[arg-type]
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights and the gyroscopic torques of their turning."""

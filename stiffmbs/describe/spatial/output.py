@@ -24,6 +24,8 @@ ANGLES = ("psi", "theta", "phi", "q0", "q1", "q2", "q3")
 MEASURES = tuple(dict.fromkeys((*SPACE.position_measures, *SPACE.velocity_measures, *ACCELERATIONS, *ANGLES)))
 """Between two markers, those of `ALONG_AXES` perhaps along the axes of a third."""
 ALONG_AXES = (*SPACE.along_axes, "accx", "accy", "accz", "wdtx", "wdty", "wdtz")
+COUNTED_ANGLES = ("ax", "ay", "az")
+"""The angles that count whole turns."""
 ACTIONS = ("fx", "fy", "fz", "fm", "tx", "ty", "tz", "tm")
 """Force and torque of a joint or force on its first body, or on its second (``hinge.j``), along ground axes or those of a
 marker: ``fx(hinge)``, ``tz(hinge.j, bar.end)``; fm and tm are their sizes."""
@@ -53,6 +55,11 @@ class Term:
     element: str
     on_second: bool
     markers: tuple[MarkerReference, ...]
+
+    def __str__(self) -> str:
+        """As in a formula: ``az(bar.end, ground)``."""
+        element = [f"{self.element}.j" if self.on_second else self.element] if self.element else []
+        return f"{self.function}({', '.join([*element, *(marker.label for marker in self.markers)])})"
 
 
 def placeholder(k: int) -> str:

@@ -10,6 +10,7 @@ from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state, weighted
 from stiffmbs.solve.native.within_step import (
     DIFFERENCE,
+    LOOKED_AT,
     first_event,
     keep_row,
     noted,
@@ -66,6 +67,19 @@ def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
 
 
 @compiled
+def _look_between(x, c, s):
+    """Values of all event functions at `LOOKED_AT`, on the cubic through states and rates at both ends."""
+    w = watch_view(x.watch)
+    h, theta = x.span[0], LOOKED_AT
+    rest = 1.0 - theta
+    begins, ends = x.k, shifted(x.k, c.stages * x.n)
+    for i in range(x.n):
+        straight = rest * rest * (1.0 + 2.0 * theta) * x.y_before[i] + theta * theta * (3.0 - 2.0 * theta) * x.y[i]
+        x.difference[i] = straight + theta * rest * h * (rest * begins[i] - theta * ends[i])
+    noted(w.m, _values(x, s, x.difference, x.t_before[0] + theta * h), w.n)
+
+
+@compiled
 def _stages_have_changed(x, c, s):
     """Whether a stage has seen another law than the start and the end of the step; its weights may hide that from the error."""
     for row in range(1, c.stages):
@@ -86,6 +100,7 @@ def _event_within(x, c, s, m):
     small = DIFFERENCE * h
     _note_event_functions(x, s, x.y_before, x.k, x.t_before[0], small, w.value_before, w.rate_before)
     _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t[0], -small, w.value_after, w.rate_after)
+    _look_between(x, c, s)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
     if _stages_have_changed(x, c, s):

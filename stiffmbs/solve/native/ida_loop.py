@@ -12,6 +12,7 @@ from stiffmbs.solve.native.watched import watched
 from stiffmbs.solve.native.within_step import (
     BEGUN,
     DIFFERENCE,
+    LOOKED_AT,
     READY,
     clear,
     first_event,
@@ -167,6 +168,11 @@ def _looked_within(c, flag):
         shift_ends(w)
         return flag
     _note_rates(c, c.mark[RETURNED], -DIFFERENCE * h, w.value_after, w.rate_after)
+    place = begun + LOOKED_AT * h
+    if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
+        return flag
+    load(s, e, c.output, _array(c, c.yp))
+    noted(w.m, evaluate(s, SWITCH, place), w.n)
     load(s, e, _array(c, c.y), _array(c, c.yp))
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):

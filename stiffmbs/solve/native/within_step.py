@@ -22,16 +22,23 @@ READY, BEGUN = range(2)
 """Marks: whether values at the start of the step are known, and that start's time."""
 MARGIN = 0.1
 """Part of the range of a function's bounds that is added to those between the ends."""
-LOOKED_AT = 0.4142135623730951
-"""Place within a part of a step where a cubic is compared with the function: no round fraction of a period."""
+LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
+"""Places within a part of a step where a cubic is compared with the function: no round fractions of a period."""
 FITS, NOISE = 0.02, 1e-11
 """Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
 state that rounding takes of values and rates."""
+WELL, MOST_MISSED = 0.03, 1e300
+"""Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
+power; what counts for a function without a number."""
 LEAST_PART, MOST_PARTS = 1e-4, 5000
 DIFFERENCE = 1e-3
 """Part of a step, or of a part of one, over which rates are taken."""
 BISECTIONS, BEHIND = 50, 1e-9
 """The event is put behind the change by this part of the step, so that the new law holds there."""
+UNKNOWN = 8.0
+"""Times that a function may be further from the cubic than where it was looked at."""
+STEEP = 8.0
+"""Times that a rate at an end must be larger than the change between the ends for the function to be one that turns round."""
 CLEAR = 4.0
 """Times that a function must be further from zero than its change in a step to be taken for far from it."""
 TURNED, HARDLY_TURNED = 1.0, 0.3
@@ -87,10 +94,12 @@ def _left_out(w, k):
 
 
 @compiled
-def _bound(start, start_rate, end, end_rate, side):
+def _bound(start, start_rate, end, end_rate, missed, side):
     """A bound from below (`side` -1) or above (1) on what has these values and rates (times the length) at the ends of a part.
 
-    That of the cubic's Bezier points, and of the tangents' meeting point, beyond which no convex function goes.
+    That of the cubic's Bezier points, and of the tangents' meeting point, beyond which no convex function goes.  Rates that
+    the change between the ends does not show belong to a function that turns round, maybe often: it may go either way.  So may
+    one that is `missed` by the cubic between the ends.
     """
     p, q = start + start_rate / 3.0, end - end_rate / 3.0
     low, high = min(p, q), max(p, q)
@@ -99,17 +108,23 @@ def _bound(start, start_rate, end, end_rate, side):
         if 0.0 < place < 1.0:
             meeting = start + start_rate * place
             low, high = min(low, meeting), max(high, meeting)
-    margin = MARGIN * (max(high, start, end) - min(low, start, end))
+    steepest = max(abs(start_rate), abs(end_rate))
+    if steepest > STEEP * abs(end - start):
+        low, high = min(low, start, end) - 0.5 * steepest, max(high, start, end) + 0.5 * steepest
+    margin = MARGIN * (max(high, start, end) - min(low, start, end)) + UNKNOWN * missed
     return min(low - margin, start, end) if side < 0 else max(high + margin, start, end)
 
 
 @compiled
-def _reaches(w, k, start, start_rate, end, end_rate):
+def _reaches(w, k, start, start_rate, end, end_rate, missed):
     """Whether a function may come into a zone that is none of those at the ends of the step."""
     one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
     if abs(one - other) > 1:
         return True
-    low, high = _bound(start, start_rate, end, end_rate, -1), _bound(start, start_rate, end, end_rate, 1)
+    low, high = (
+        _bound(start, start_rate, end, end_rate, missed, -1),
+        _bound(start, start_rate, end, end_rate, missed, 1),
+    )
     return zone(w, k, low) < min(one, other) or zone(w, k, high) > max(one, other)
 
 
@@ -145,14 +160,26 @@ def shift_ends(w):
 
 
 @compiled
+def _cubic(start, start_rate, end, end_rate, x):
+    """The cubic with these values and rates (times the length) at 0 and 1."""
+    y = 1.0 - x
+    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (y * start_rate - x * end_rate)
+
+
+@compiled
 def suspicious(w, h, q_before, q_after):
-    """Whether the values and rates at both ends of a step of length h leave room for an event inside."""
+    """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, leave room for an event."""
     if _turned(w, q_before, q_after, TURNED):
         return True
     for k in range(w.n):
-        if not _left_out(w, k) and _reaches(
-            w, k, w.value_before[k], h * w.rate_before[k], w.value_after[k], h * w.rate_after[k]
-        ):
+        start, start_rate, end, end_rate = (
+            w.value_before[k],
+            h * w.rate_before[k],
+            w.value_after[k],
+            h * w.rate_after[k],
+        )
+        missed = abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT))
+        if not _left_out(w, k) and _reaches(w, k, start, start_rate, end, end_rate, missed):
             return True
     return False
 
@@ -196,25 +223,21 @@ def _values(w, s, begun, h, place):
 
 
 @compiled
-def _cubic(start, start_rate, end, end_rate, x):
-    """The cubic with these values and rates (times the length) at 0 and 1."""
-    y = 1.0 - x
-    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (y * start_rate - x * end_rate)
-
-
-@compiled
-def _described(w, part, noise):
-    """Whether cubics describe the functions that may have an event within a part of the step, but for noise."""
+def _mismatch(w, part, noise):
+    """By how much cubics miss the functions that may have an event within a part of the step, in parts of what is allowed."""
+    worst = 0.0
     for k in range(w.n):
         if _left_out(w, k):
             continue
         start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
-        if not _reaches(w, k, start, start_rate, end, end_rate):
+        first = abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT))
+        second = abs(w.m2[k] - _cubic(start, start_rate, end, end_rate, ALSO_AT))
+        if not _reaches(w, k, start, start_rate, end, end_rate, max(first, second)):
             continue
-        seen = max(start, end, w.m[k]) - min(start, end, w.m[k])
-        if not abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT)) <= FITS * seen + noise:
-            return False
-    return True
+        seen = max(start, end, w.m[k], w.m2[k]) - min(start, end, w.m[k], w.m2[k])
+        missed = max(first, second) / (FITS * seen + noise)
+        worst = max(worst, missed) if isfinite(missed) else MOST_MISSED
+    return worst
 
 
 @compiled
@@ -254,8 +277,8 @@ def _first_within(w, s, begun, h, low, part):
         if _left_out(w, k):
             continue
         start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
-        there = _visits(w, k, w.m[k], low, low + LOOKED_AT * part)
-        if not there and _reaches(w, k, start, start_rate, end, end_rate):
+        there = _visits(w, k, w.m[k], low, low + LOOKED_AT * part) or _visits(w, k, w.m2[k], low, low + ALSO_AT * part)
+        if not there and _reaches(w, k, start, start_rate, end, end_rate, 0.0):
             for which in range(2):
                 place = _extremum(start, start_rate, end, end_rate, which)
                 if place < 1.0 and not there:
@@ -287,6 +310,16 @@ def _change(w, s, begun, h, k):
 
 
 @compiled
+def _longest_part(w):
+    """A half, or less where a body turns far: rates at the ends of a part must tell of its turning."""
+    last = shifted(w.row, (w.n_nodes - 1) * w.n_state)
+    turned = 0.0
+    for k in range(w.n_angles):
+        turned = max(turned, abs(last[w.angle[k]] - w.row[w.angle[k]]))
+    return max(min(0.5, TURNED / max(turned, TURNED)), LEAST_PART)
+
+
+@compiled
 def first_event(w, s, begun, h):
     """The place, from 0 to 1, of the first event within a step from `begun` that the nodes describe; 2 for none."""
     noted(w.a, w.value_before, w.n)
@@ -294,7 +327,8 @@ def first_event(w, s, begun, h):
         w.a_rate[k] = h * w.rate_before[k]
         w.left_high[k] = -1.0
     low = 0.0
-    part = 0.5
+    longest = _longest_part(w)
+    part = longest
     parts = 0
     noise = 0.0
     for i in range(w.n_state):
@@ -305,9 +339,10 @@ def first_event(w, s, begun, h):
         noted(w.b, _values(w, s, begun, h, end), w.n)
         noted_rates(w.b_rate, w.b, _values(w, s, begun, h, end - DIFFERENCE * part), -DIFFERENCE * part, w.n)
         noted(w.m, _values(w, s, begun, h, low + LOOKED_AT * part), w.n)
+        noted(w.m2, _values(w, s, begun, h, low + ALSO_AT * part), w.n)
         parts += 1
-        fits = _described(w, part, noise)
-        if not fits and part > LEAST_PART and parts < MOST_PARTS:
+        missed = _mismatch(w, part, noise)
+        if missed > 1.0 and part > LEAST_PART and parts < MOST_PARTS:
             part *= 0.5
             continue
         place = _first_within(w, s, begun, h, low, part)
@@ -316,5 +351,5 @@ def first_event(w, s, begun, h):
         noted(w.a, w.b, w.n)
         noted(w.a_rate, w.b_rate, w.n)
         low = end
-        part = 2.0 * part if fits else part
+        part = min(2.0 * part, longest) if missed < WELL else part
     return 2.0

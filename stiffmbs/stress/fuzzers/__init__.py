@@ -1,1 +1,1 @@
-"""Random cases without end: each module has `WHAT` and `trial(seed)`."""
+"""Fuzzers, one per file: `WHAT` says what a trial tries, `trial` makes one random case from a seed and judges it."""

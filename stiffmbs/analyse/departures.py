@@ -1,0 +1,86 @@
+"""Where on the way equations cease to hold that were left out, as they held the same as others near the start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.state import LEFT_OPEN
+from ..solve.mechanics import Mechanics
+from ..solve.trajectory import Trajectory
+
+SAMPLES, LEAST = 20, 4000
+"""Poses to look at between two outputs, the second one included, and at least on the whole way."""
+BESIDE = 10.0
+"""Violations of equations left out, in parts of the largest of the others at a pose between outputs, that interpolation makes."""
+MOST_ASSEMBLIES = 500
+"""Poses between outputs that are brought to the constraints."""
+
+
+@dataclass(frozen=True)
+class Departure:
+    """An equation left out that does not hold.
+
+    Attributes
+    ----------
+    output : int
+        The last output before.
+    t : float
+        When, s.
+    row : int
+    """
+
+    output: int
+    t: float
+    row: int
+
+
+def departure(mechanics: Mechanics, rows: Sequence[int], way: Trajectory) -> Departure | None:
+    """The first instant at which rows left out do not hold where the others do.
+
+    Poses between outputs are interpolated; where rows left out are violated by more than that explains, the pose is brought to
+    the constraints.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+        Its state is changed.
+    rows : sequence of int
+        Rows left out.
+    way : Trajectory
+    """
+    system, state = mechanics.system, mechanics.state
+    source, row = system.term("position", "C").source, system.term("position", "C").row
+    place = np.empty(system.n_c, dtype=np.int64)
+    place[row] = source
+    left_out, kept = place[list(rows)], place[system.active & system.holonomic]
+    allowed, assemblies = LEFT_OPEN * min(1.0, system.size), 0
+    for output, t, q in _poses(mechanics, way):
+        state.q[:] = q
+        state.count_anew(t)
+        state.evaluate("position", t)
+        values = np.abs(state.values["position"])
+        gaps = values[left_out]
+        if not gaps.max() > allowed + BESIDE * values[kept].max(initial=0.0):
+            continue
+        assemblies += 1
+        if mechanics.assemble(t) < 0:
+            return Departure(output, t, rows[int(np.argmax(gaps))])
+        if assemblies == MOST_ASSEMBLIES:
+            return None
+    return None
+
+
+def _poses(mechanics: Mechanics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
+    """The outputs, and poses between them on cubics that have their velocities: the output before, the time, s, and the pose."""
+    of_body, bodies = mechanics.system.of_body, mechanics.system.of_body.n_q * len(mechanics.system.bodies)
+    count = max(SAMPLES, LEAST // len(way.t))
+    parts = np.arange(1, count + 1) / count
+    for k in range(len(way.t) - 1):
+        h, q = way.t[k + 1] - way.t[k], way.q[k]
+        move = of_body.move(q[:bodies], way.q[k + 1][:bodies])
+        for s in parts:
+            step = (3 - 2 * s) * s**2 * move + s * (1 - s) * h * ((1 - s) * way.u[k] - s * way.u[k + 1])
+            yield k, float(way.t[k] + s * h), of_body.moved(q, step)

@@ -1,0 +1,126 @@
+"""What the derivatives of constraint equations depend on, told by their symbols (SymPy).
+
+A derivative is taken apart into summands, each a product of an element's numbers with a function of the pose.  A summand
+whose numbers are zero is zero at every pose, such as the arm of a pin in the centre of mass; a function of the pose
+never counts as zero for its values, as tanh and exp are exactly constant in floating point where they are saturated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import sympy as sp
+
+from .symbols import Symbols
+
+MOST = 100
+"""Summands to which a derivative is taken apart; a longer one stays whole."""
+LARGEST = 8
+"""Magnitude of a function of the pose, up to which it counts as of order one."""
+
+Factors = tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True)
+class Summand:
+    """A part of a derivative.
+
+    Attributes
+    ----------
+    factors : tuple of tuple of int
+        Its factors that are numbers of the element: each a number, or the numbers of a vector, which may appear in any mixture.
+    columns : tuple of int
+        The coordinates, among those of the element, that the rest depends on.
+    bounded : bool
+        Whether the rest is of order one at every pose, as sines and cosines are.
+    """
+
+    factors: Factors
+    columns: tuple[int, ...]
+    bounded: bool
+
+
+_Sum = dict[Factors, tuple[frozenset[int], bool]]
+"""Summands by their factors."""
+
+
+class Variation:
+    """Takes derivatives of one kind apart.
+
+    Parameters
+    ----------
+    symbols : Symbols
+        That they are written in.
+    """
+
+    def __init__(self, symbols: Symbols) -> None:
+        self._e = symbols.element
+        self._number: dict[sp.Basic, int] = {symbol: k for k, symbol in enumerate(symbols.numbers)}
+        self._vector = {part: own for frame in self._e.frames for part, own in frame.vectors.items()}
+        self._bounded = {symbol for frame in self._e.frames for symbol in frame.bounded}
+        self._cornered = bool(symbols.switches)
+        self._known: dict[sp.Expr, _Sum] = {}
+
+    def summands(self, x: sp.Expr) -> list[Summand]:
+        """The summands of an expression; none where it is zero."""
+        return [
+            Summand(factors, tuple(sorted(columns)), bounded) for factors, (columns, bounded) in self._sum(x).items()
+        ]
+
+    def removable(self, C: sp.Expr, differentiated: Iterable[int]) -> bool:
+        """Whether an equation follows from its derivatives at every pose: it has no time in it, and no corners or jumps.
+
+        It then depends on no coordinates but those that it has derivatives by.
+        """
+        timeless = not self._e.depends(C, [self._e.t])
+        return timeless and not self._cornered and set(self._e.columns_of(C)) <= set(differentiated)
+
+    def _sum(self, x: sp.Expr) -> _Sum:
+        if x not in self._known:
+            found = self._apart(x)
+            self._known[x] = found if len(found) <= MOST else self._whole(x)
+        return self._known[x]
+
+    def _apart(self, x: sp.Expr) -> _Sum:
+        match x:
+            case sp.Add():
+                return _added(self._sum(part) for part in x.args)
+            case sp.Mul():
+                return self._multiplied(x, x.args)
+            case sp.Pow(base=base, exp=sp.Integer() as n) if 1 < n <= 4:
+                return self._multiplied(x, [base] * int(n))
+            case sp.Symbol() if x in self._number:
+                return {((self._number[x],),): (frozenset(), True)}
+            case sp.Symbol() if x in self._vector and all(own in self._number for own in self._vector[x]):
+                own = tuple(self._number[number] for number in self._vector[x])
+                return {(own,): (frozenset(self._e.columns_of(x)), True)}
+            case sp.Symbol() if x in self._e.meanings:
+                return self._sum(self._e.meanings[x])
+        return {} if x == 0 else self._whole(x)
+
+    def _whole(self, x: sp.Expr) -> _Sum:
+        bounded = x in self._bounded or isinstance(x, sp.sin | sp.cos) or (x.is_number and abs(x) <= LARGEST)
+        return {(): (frozenset(self._e.columns_of(x)), bool(bounded))}
+
+    def _multiplied(self, x: sp.Expr, parts: Iterable[sp.Expr]) -> _Sum:
+        product: _Sum = {(): (frozenset(), True)}
+        for part in parts:
+            by = self._sum(part)
+            if len(product) * len(by) > MOST:
+                return self._whole(x)
+            product = _added(
+                {tuple(sorted((*f, *g))): (columns | others, bounded and also)}
+                for f, (columns, bounded) in product.items()
+                for g, (others, also) in by.items()
+            )
+        return product
+
+
+def _added(sums: Iterable[_Sum]) -> _Sum:
+    total: _Sum = {}
+    for found in sums:
+        for factors, (columns, bounded) in found.items():
+            others, also = total.get(factors, (frozenset(), True))
+            total[factors] = columns | others, bounded and also
+    return total

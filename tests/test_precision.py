@@ -1,0 +1,37 @@
+"""Tolerances below what the rounding of coordinates leaves are told for what they are."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import Body, Marker, Model, Revolute
+from stiffmbs.solve.trajectory import Outcome
+
+
+def pendulum(speed=0.0, at=0.0):
+    """A bar of 1 kg on a hinge at a place on the x axis, turning at a speed."""
+    model = Model("pendulum", gravity=(0, -9.81))
+    bar = model.add("bar", Body(mass=1, inertia=0.1, position=(at + 1, 0), velocity=(0, speed), omega=speed))
+    model.add("hinge", Revolute(i=bar.at(-1, 0), j=Marker(body="ground", point=(at, 0))))
+    return model
+
+
+@pytest.mark.long
+def test_a_fast_pendulum_at_a_tight_tolerance_is_told_its_rounding():
+    solution = stiffmbs.run(pendulum(1e4), duration=1.0, rtol=1e-10, points=11)
+    assert solution.outcome is Outcome.STOPPED
+    assert "rtol = 1e-10 asks for more digits than rounding leaves: bar.angle" in solution.message
+
+
+def test_a_pendulum_far_from_the_origin_is_told_its_rounding():
+    solution = stiffmbs.run(pendulum(at=1e6), duration=1.0, rtol=1e-10, points=11)
+    assert "bar.x = 1e+06 m is known to 6e-11 m only" in solution.message
+
+
+@pytest.mark.parametrize("speed, rtol", [(1e4, 1e-8), (1e3, 1e-9)])
+def test_tolerances_that_rounding_allows_are_kept(speed, rtol):
+    """Energy of the fast pendulum: omega^2 = omega_0^2 - 2 m g l sin(phi)/I."""
+    solution = stiffmbs.run(pendulum(speed), duration=0.05, rtol=rtol, points=11)
+    assert solution.outcome is Outcome.DONE
+    expected = np.sqrt(speed**2 - 2 * 9.81 * np.sin(solution["bar.angle"]) / 1.1)
+    assert np.allclose(solution["bar.omega"], expected, rtol=3e3 * rtol, atol=0)

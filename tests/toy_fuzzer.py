@@ -1,0 +1,26 @@
+"""A fuzzer whose trials hang, crash and go wrong, by their seeds."""
+
+import os
+import signal
+import time
+
+from stiffmbs.stress.case import Outcome, Verdict, measured
+
+WHAT = "nothing but failures"
+
+
+def trial(seed: int) -> Verdict:
+    match seed:
+        case 1:
+            time.sleep(1000)
+        case 2:
+            os.kill(os.getpid(), signal.SIGSEGV)
+        case 3:
+            os._exit(7)
+        case 4:
+            raise ZeroDivisionError("a step of zero")
+        case 5:
+            return measured(2.0, 1.0, "another mass")
+        case 6:
+            return Verdict(Outcome.TOLD, detail="refused")
+    return measured(0.5, 1.0)
