@@ -83,7 +83,7 @@ def integrated(
                 break
             if pays and not pays(reached):
                 break
-            elif reached.t < grid.end:
+            if reached.t < grid.end:
                 state = integrator.split(reached.y)
                 refuse_beyond_sense(integrator.mechanics, rows, reached.t, *state, integrator.steps())
     except SolverError as error:
