@@ -20,6 +20,7 @@ from ..errors import InputError
 from .counted_angle import counting_rate
 from .frames import SymbolicElement
 from .kind import Kind
+from .losses import power_of_force, power_of_joint
 from .symbols import Symbols, symbols_of
 from .variation import Summand, Variation
 
@@ -65,6 +66,9 @@ class Derived:
         What the expressions are written in.
     terms : dict
         By the names of `stiffmbs.compile.terms.TERM_AXES`.
+    losses : list of int or None
+        Numbers of an element that must be zero for it to keep energy (`stiffmbs.compile.losses`); None where nothing
+        makes that certain.
     variation : list of list of Summand
         For each entry of C_q what it depends on.
     removable : list of bool
@@ -77,6 +81,7 @@ class Derived:
     n_holonomic: int
     symbols: Symbols
     terms: dict[str, Sequence[Entry | LateEntry]]
+    losses: list[int] | None
     variation: list[list[Summand]] = field(default_factory=list)
     removable: list[bool] = field(default_factory=list)
     timed: list[bool] = field(default_factory=list)
@@ -95,7 +100,7 @@ def derive(kind: Kind) -> Derived:
         derived = _derived_joint(kind, symbols)
     elif issubclass(kind.element, Request):
         value = sp.sympify(kind.element.value(symbols.element))
-        derived = Derived(0, 0, symbols, {"request": [Entry(value, 0)]})
+        derived = Derived(0, 0, symbols, {"request": [Entry(value, 0)]}, [])
     else:
         assert issubclass(kind.element, Force)
         derived = _derived_force(kind, symbols)
@@ -120,13 +125,14 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
     force = e.work_by_velocities(zip(lam, V, strict=True))
     turning = e.rate(V)
+    power = power_of_joint(e, V, lam)
     terms = {
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
         "gamma": -turning,
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(kind, e, -force),
-        "switch": sp.Matrix(symbols.switches),
+        "switch": sp.Matrix(symbols.switches), "power": sp.Matrix([power]),
         "argument": _arguments(symbols),
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
@@ -139,7 +145,8 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
     variation = Variation(symbols)
     return Derived(
-        V.rows, C.rows, symbols, entries, [variation.summands(entry.expression) for entry in entries["C_q"]],
+        V.rows, C.rows, symbols, entries, [] if power == 0 else None,
+        [variation.summands(entry.expression) for entry in entries["C_q"]],
         [variation.removable(C[r], [entry.column for entry in entries["C_q"] if entry.row == r]) for r in range(C.rows)],
         [e.depends(equation, [e.t]) for equation in (*C, *rates)],
     )  # fmt: skip
@@ -149,17 +156,18 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     e = symbols.element
     f = e.work_by_velocities(kind.element.powers(e))  # type: ignore[attr-defined]
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
+    power, losses = power_of_force(kind, symbols)
     terms = {
         "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),
         "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
         "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
         "switch": sp.Matrix([*symbols.switches, *kind.element.switches(e)]),  # type: ignore[attr-defined]
         "limit": sp.Matrix(kind.element.limits(e)),  # type: ignore[attr-defined]
-        "argument": _arguments(symbols),
+        "argument": _arguments(symbols), "power": sp.Matrix([power]),
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
-    return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()})
+    return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()}, losses)
 
 
 def _arguments(symbols: Symbols) -> sp.Matrix:

@@ -60,6 +60,14 @@ class Group:
         """Numbers of the coordinates that count turns for each element, shape (count, counters)."""
         return self.index[:, self.index.shape[1] - self.record.n_counters :]
 
+    @property
+    def keeps_energy(self) -> bool:
+        """Whether none of the elements brings anything into kinetic + potential energy, wherever it moves."""
+        if self.record.losses is None:
+            return False
+        first = self.index[:, 2 * self.kind.n_bodies]
+        return not self.numbers[first[:, None] + np.array(self.record.losses, dtype=np.int64)[None, :]].any()
+
     def placed(self, term: str, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Source, row and column of a term's entries, element after element.
 

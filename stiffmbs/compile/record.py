@@ -44,6 +44,8 @@ class KindRecord:
         For each term the (row, column) of its entries in the element's own block.
     sources : dict
         For each usual term set the source of its kernel; absent where the kind contributes nothing.
+    losses : list of int or None
+        Numbers of an element that must be zero for it to keep energy; None where nothing makes that certain.
     variation : list
         For each entry of C_q its summands: factors, columns and whether bounded (`stiffmbs.compile.variation.Summand`).
     removable : list of bool
@@ -59,6 +61,7 @@ class KindRecord:
     laws: list[tuple[str, int]]
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
+    losses: list[int] | None
     variation: list[list[tuple[list[list[int]], list[int], bool]]]
     removable: list[bool]
     timed: list[bool]
@@ -128,7 +131,7 @@ def _derived(kind: Kind) -> KindRecord:
     }
     return KindRecord(
         derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
-        len(derived.symbols.element.angles), [law.of for law in derived.symbols.laws], patterns, sources,
+        len(derived.symbols.element.angles), [law.of for law in derived.symbols.laws], patterns, sources, derived.losses,
         [[(list(map(list, part.factors)), list(part.columns), part.bounded) for part in parts] for parts in derived.variation],
         derived.removable, derived.timed,
     )  # fmt: skip

@@ -119,6 +119,11 @@ class System:
             return "a count of turns"
         return f"{self.bodies[k // len(labels)]}.{labels[k % len(labels)]}"
 
+    @property
+    def keeps_energy(self) -> bool:
+        """Whether kinetic + potential energy is constant for certain: no drive, damper, friction or force without a potential."""
+        return all(group.keeps_energy for group in self.groups)
+
     @cached_property
     def joint_start(self) -> np.ndarray:
         """The first row of each joint's equations, and the end of the last."""

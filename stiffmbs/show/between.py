@@ -59,15 +59,15 @@ def more_instants(first: Solution) -> np.ndarray:
     found = reported
     ends = own[(own > reported[0]) & (own < reported[-1])]
     if len(found) + len(ends) <= room:
-        found = np.union1d(found, _apart(ends, found))
+        found = np.union1d(found, apart(ends, found))
     parts = PARTS_OF_IMPLICIT_STEPS if len(first.history.order) else PARTS
     if parts * len(found) > room:
         return found
     within = found[:-1, None] + np.diff(found)[:, None] * np.arange(1, parts) / parts
-    return np.union1d(found, _apart(within.ravel(), found))
+    return np.union1d(found, apart(within.ravel(), found))
 
 
-def _apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:
+def apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:
     """Those of the instants that no rounding makes the same as others."""
     k = np.clip(np.searchsorted(found, more), 1, len(found) - 1)
     nearest = np.minimum(np.abs(found[k] - more), np.abs(more - found[k - 1]))

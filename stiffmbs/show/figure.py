@@ -6,6 +6,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..describe.figure import Figure
 from ..errors import InputError
 from .files import refuse_path, written_whole
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 ENDINGS = (".png", ".svg", ".pdf")
+LARGEST = 1e100
+"""Beyond it matplotlib finds no ticks for an axis."""
 
 
 def check_figure(path: Path) -> None:
@@ -51,12 +55,18 @@ def drawn(solution: Solution, figure: Figure | None) -> Sheet:
     return sheet
 
 
+def _drawable(values: np.ndarray) -> np.ndarray:
+    """Values without those of a diverged run that an axis cannot hold."""
+    return np.where(np.abs(values) < LARGEST, values, np.nan)
+
+
 def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
     """Draw a figure on an empty sheet of matplotlib's; errors as for `drawn`."""
     x = solution.time if figure.x == "time" else solution[figure.x]
     axes: Any = sheet.add_subplot(projection="3d" if figure.z else None)
     for channel in figure.y:
-        axes.plot(x, solution[channel], *([solution[figure.z]] if figure.z else []), label=channel)
+        others = [solution[figure.z]] if figure.z else []
+        axes.plot(*(_drawable(values) for values in (x, solution[channel], *others)), label=channel)
     axes.set_xlabel("time (s)" if figure.x == "time" else figure.x)
     if figure.z:
         axes.set_ylabel(figure.y[0])

@@ -16,6 +16,7 @@ import numpy as np
 from ..describe.figure import Figure
 from ..describe.scene import Scene
 from ..errors import InputError
+from .balance_notes import balance_words
 from .check import check
 from .counters import solver_words
 from .digits import with_bar
@@ -65,6 +66,7 @@ def write_report(path: Path, scene: Scene, solution: Solution) -> None:
     written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
 
 
+@np.errstate(all="ignore")  # of a diverged run sums overflow
 def report_page(scene: Scene, solution: Solution) -> str:
     """The page as HTML, figures and all."""
     from jinja2 import Environment
@@ -79,7 +81,7 @@ def report_page(scene: Scene, solution: Solution) -> str:
     points = len(solution.time) + len(solution.step_times)
     return template.render(
         solution=solution, check=check(scene), settings=_settings(scene), peaks=_peaks(solution),
-        start=float(solution.time[0]), end=float(solution.time[-1]), drift=solution.energy_drift(),
+        start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
         counted=solver_words(solution.solver), violation=float(np.nanmax(solution.channels["constraint.position"])),
     )  # fmt: skip

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..analyse.balance import energy_balance
 from ..analyse.redundancy import Redundancy, examine
 from ..compile.compile_model import compile_model
 from ..compile.presolve import parts_of
@@ -25,9 +26,11 @@ from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.pieces import Piece, leave_out_coordinates, piece_of, solve_pieces
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
+from .balance_notes import balance_notes
 from .channels import channels_of
 from .far_away import refuse_far_away
 from .gaps import reported
+from .growth import senseless
 from .no_number import no_number_sentences
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
@@ -160,6 +163,7 @@ def run(
     return solved(prepare(model, settings, **changes), watch)
 
 
+@np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
     trajectory = _sound_part(job, job.integrate(watch))
@@ -171,12 +175,16 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     if project:
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
-    channels = channels_of(job.data, job.mechanics.system, rows)
-    notes = (*_notes(job, trajectory), *left_out, *no_number_sentences(rows.t, channels))
+    system, channels = job.mechanics.system, channels_of(job.data, job.mechanics.system, rows)
+    energies = channels["energy.kinetic"], channels["energy.potential"]
+    balance = energy_balance(system, rows.t, *energies, rows.values, trajectory.step_times)
+    wrong = tuple(senseless(job.mechanics, rows, job.settings))
+    wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
+    wrong = (*wrong, *no_number_sentences(rows.t, channels))
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
-        message=message, notes=notes, solver=statistics,
-        history=trajectory.history, not_unique=job.redundancy.not_unique,
+        message=message, notes=(*_notes(job, trajectory), *left_out, *wrong), solver=statistics,
+        history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..analyse.balance import Balance
 from ..errors import InputError
 from ..solve.storage import release
 from ..solve.trajectory import History, Outcome
@@ -45,6 +46,8 @@ class Solution(Mapping[str, np.ndarray]):
         How far channels may lie from the truth, where the run was verified.
     verification : tuple of str
         What the run was compared with, a sentence each.
+    balance : Balance
+        Of energy and work.
     """
 
     name: str
@@ -55,6 +58,7 @@ class Solution(Mapping[str, np.ndarray]):
     notes: tuple[str, ...]
     solver: dict[str, Any]
     history: History
+    balance: Balance
     not_unique: tuple[str, ...] = ()
     requested: frozenset[str] = frozenset()
     presolve: tuple[str, ...] = ()

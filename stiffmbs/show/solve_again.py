@@ -60,6 +60,8 @@ class Again:
         Why it did not come to the end; empty where it did.
     remark : str
         What the solver says of its steps; empty for nothing.
+    blind : str
+        What its steps go over though the first run has seen it; empty for nothing.
     at : ndarray of int
         Which of its instants are those of the first run.
     """
@@ -69,6 +71,7 @@ class Again:
     obstacle: str
     at: np.ndarray
     remark: str = ""
+    blind: str = ""
 
     def reported(self, channel: str) -> np.ndarray:
         """A channel at the instants of the first run, as far as they were reached."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..solve.trajectory import Outcome
+from .balance_notes import balance_words
 from .counters import solver_words
 from .error_bars import UNKNOWN
 from .force_table import NOT_UNIQUE, force_table
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
+@np.errstate(all="ignore")  # of a diverged run sums overflow
 def as_json(scene: str, solution: Solution) -> str:
     """The one-line JSON object of ``stiffmbs run --json``."""
     return _line(
@@ -34,6 +36,7 @@ def as_json(scene: str, solution: Solution) -> str:
             "presolve": list(solution.presolve),
             "time": {"start": float(solution.time[0]), "end": float(solution.time[-1])},
             "solver": solution.solver,
+            "balance": solution.balance.as_dict(),
             "not_unique": list(solution.not_unique),
             **({"verification": list(solution.verification)} if solution.verification else {}),
             "channels": _with_errors(solution),
@@ -78,6 +81,7 @@ def _finite(content: Any) -> Any:
             return content
 
 
+@np.errstate(all="ignore")  # of a diverged run sums overflow
 def print_summary(scene: str, solution: Solution, results: str, console: Console) -> None:
     """What was solved, the range of every joint force, energy drift, solver statistics, where the results lie."""
     say = partial(console.print, highlight=False, markup=False, emoji=False)  # names may hold anything
@@ -97,7 +101,7 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
         say(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values")
     total = solution.channels["energy.total"]
     say(
-        f"energy: {total[0]:.9g} J at the start, changes by at most {solution.energy_drift():.3g} J; "
+        f"energy: {total[0]:.9g} J at the start, {balance_words(solution.balance)}; "
         f"constraints hold to {np.nanmax(solution.channels['constraint.position']):.2g} in position, "
         f"{np.nanmax(solution.channels['constraint.velocity']):.2g} in velocity",
     )

@@ -11,6 +11,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from .beyond_sense import refuse_beyond_sense
 from .chattering import Chattering
 from .engine import Engine, Reached
 from .error_control import CHOSEN, ErrorControl
@@ -83,6 +84,9 @@ def integrated(
                 break
             if pays and not pays(reached):
                 break
+            if reached.t < grid.end:
+                state = integrator.split(reached.y)
+                refuse_beyond_sense(integrator.mechanics, rows, reached.t, *state, integrator.steps())
     except SolverError as error:
         outcome, message = Outcome.STOPPED, str(error)
     except KeyboardInterrupt:
@@ -187,7 +191,7 @@ class Integrator:
                 for reached in self._leg(t, stop, grid):
                     yield reached if not reached.failure else self._explained(reached)
                     if reached.t < stop and not (reached.fired or reached.failure):
-                        chattering.look(reached.t, *self.split(reached.y), self._steps())
+                        chattering.look(reached.t, *self.split(reached.y), self.steps())
                 if reached.failure:
                     return
                 if reached.fired:
@@ -196,7 +200,7 @@ class Integrator:
                 if t < grid.end:
                     q, u = self.split(reached.y)
                     if self._held.any:
-                        self._held.note(t, q, u, self._steps(), reached.fired)
+                        self._held.note(t, q, u, self.steps(), reached.fired)
                     if t >= stop:  # min(2*t, 1) still rises at its corner: what follows is told behind it
                         t = _just_after(t)
                     start = restarted(self.mechanics, t, q, u)
@@ -205,7 +209,8 @@ class Integrator:
                     self._events += before < stop
                     self._corners += before >= stop
 
-    def _steps(self) -> int:
+    def steps(self) -> int:
+        """Taken so far."""
         return int(self.engine.statistics()["steps"])
 
     def _explained(self, reached: Reached) -> Reached:

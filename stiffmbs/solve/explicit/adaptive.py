@@ -11,6 +11,7 @@ import numpy as np
 from ...compile.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
+from ..beyond_sense import refuse_beyond_sense
 from ..chattering import Chattering
 from ..initial import InitialValues
 from ..limits import refuse_beyond_limits
@@ -111,6 +112,8 @@ class AdaptiveRun:
             status = advance(stop, most, held, self._grid.times is None, work.at)
             work.collect(self._rows)
             self._watch(work.t)
+            if work.t < self._grid.end:
+                refuse_beyond_sense(self._mechanics, self._rows, work.t, work.q, work.u, work.count("steps"))
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
