@@ -136,6 +136,12 @@ ITERATION: Layout = {
 }  # fmt: skip
 """What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`)."""
 
+ERROR_NORM: Layout = {
+    "n": INT, "mark": FLOATS, "iteration": FLOATS, "state": INTS, "equations": INTS, "array_of": INT, "solve": INT,
+    "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
+}  # fmt: skip
+"""What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`)."""
+
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     """The table for a layout: addresses of arrays, and numbers as they are.

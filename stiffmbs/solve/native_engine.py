@@ -73,6 +73,7 @@ class NativeEngine:
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
         self._ida.balance_within(stiffness.long_step, max(stiffness.bearable, NUMBERS_END / self._rtol))
+        self._ida.slaved(stiffness.slaved)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
 

@@ -55,9 +55,9 @@ iteration_view = view_of("Iteration", ITERATION)
 
 
 @compiled
-def _size(c, correction, weights):
+def weighted_size(c, vector, weights):
     """Root mean square in units of the tolerance."""
-    values = floats(call_address(c.array_of, correction))
+    values = floats(call_address(c.array_of, vector))
     weight = floats(call_address(c.array_of, weights))
     squares = 0.0
     for k in range(c.n):
@@ -123,7 +123,7 @@ def _later(c, size, enough):
 def converged(solver, total, correction, enough, weights, table):
     """SUNNonlinSolConvTestFn: whether what the iteration leaves is at most `enough`, in units of the tolerance, or what short steps bear."""
     c = iteration_view(table)
-    size = _size(c, correction, weights)
+    size = weighted_size(c, correction, weights)
     call_int(c.iteration_of, (solver, shifted(c.count, DONE)))
     if c.count[DONE] == 0:
         call_int(c.cj_of, (c.memory, shifted(c.mark, CJ)))

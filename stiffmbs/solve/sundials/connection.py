@@ -11,6 +11,7 @@ from ...compile.layout import NATIVE_IDA, packed
 from ...compile.routines import Routine
 from ...compile.state import State
 from .balance import ENOUGH, LONG, Balance
+from .error_norm import ErrorNorm
 from .iteration import Iteration
 from .matrices import Matrix
 from .session import Session
@@ -52,6 +53,7 @@ class Connection:
         What the loop leaves behind.
     balance : Balance
     iteration : Iteration
+    error_norm : ErrorNorm
     n_switches : int
     sides, waits : ndarrays, shape (n_switches,)
         As in `stiffmbs.solve.native.watched`.
@@ -82,6 +84,9 @@ class Connection:
             state.load(term_set)
         self._table = self._packed()
         self.table = self._table.ctypes.data
+        self.error_norm = ErrorNorm(n)
+        tables = self._state_table, self._equations_table
+        self.error_norm.take_place(session, self.y_vector, tables, self._assembled, self.iteration.mark)
         self._initialise()
 
     def _packed(self) -> np.ndarray:

@@ -159,6 +159,10 @@ class NativeIda:
         """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
         self._ida.balance_within(long_step, part)
 
+    def slaved(self, rate: float) -> None:
+        """Set the rate, 1/s, at which strong damping makes velocities follow the forces (`stiffmbs.solve.native.error_norm`); 0 for none."""
+        self._ida.error_norm.slaved(rate)
+
     def forget(self) -> None:
         """Forget counters, history and pivots, as if it had never begun."""
         self._begun = False

@@ -1,0 +1,54 @@
+"""The norm of IDA's error estimates, with errors that strong damping takes away within the step left out.
+
+A light body in a strong damper has no velocity of its own: M u' = f(q) - c u leaves u = f(q) / c after a time M / c.
+Differences of u, from which the error is estimated, then show neither the error in u, which follows that in q, nor
+where a step or an order is changed: u jumps as the error in q does, over the step.  IDA fails every second step,
+and stays at order 1.  So the estimate d is multiplied by what a step of implicit Euler does with it,
+    (dF/dy + cj dF/dy') e = cj dF/dy' d,
+with the iteration matrix and the factors that Newton's iteration has.  For y' = f this is (I - f_y / cj)^-1 d: errors in
+directions with fast decay are damped, and what they do to other unknowns counts; slow directions keep theirs.
+
+References
+----------
+L. F. Shampine, L. S. Baca, Error estimators for stiff differential equations, J. Comput. Appl. Math. 11 (1984) 197-207.
+E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, ch. IV.8, eq. (8.19).
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.layout import ERROR_NORM
+from stiffmbs.compile.native.access import compiled, equations_view, floats, ints, state_view, view_of
+from stiffmbs.solve.native.calls import call_address, call_int
+from stiffmbs.solve.native.iteration import AT_CJ, CJ, weighted_size
+
+OK = 0
+OPERATIONS, TABLE = 1, 53
+"""Words of a SUNDIALS vector, and of its table of operations: where the latter is, and the place of N_VBufPack, which IDA never calls and
+which holds the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
+SLAVED = 0
+"""Mark: a bound on cj, 1/s, below which estimates are filtered."""
+
+error_norm_view = view_of("ErrorNorm", ERROR_NORM)
+
+
+@compiled
+def _filtered(c, estimate):
+    """Multiply an estimate by (dF/dy + cj dF/dy')^-1 cj dF/dy', with cj of the matrix; False where that fails."""
+    e = equations_view(c.equations)
+    s = state_view(c.state)
+    values = floats(s.values[e.residual_set])
+    d = floats(call_address(c.array_of, estimate))
+    cj = c.iteration[AT_CJ]
+    for k in range(e.n):
+        c.change[k] = 0.0
+    for k in range(e.n_with_y, e.n_with_yp):
+        c.change[e.r_row[k]] += cj * e.r_factor[k] * values[e.r_source[k]] * d[e.r_operand[k]]
+    return call_int(c.solve, (c.solver, c.matrix, c.at_filtered, c.at_change, 0.0)) == OK
+
+
+def error_norm(estimate, weights):
+    """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where steps are long against a slaved velocity's decay."""
+    c = error_norm_view(ints(ints(estimate[OPERATIONS])[TABLE]))
+    if c.iteration[CJ] < c.mark[SLAVED] and _filtered(c, estimate):
+        return weighted_size(c, c.at_filtered, weights)
+    return weighted_size(c, estimate, weights)
