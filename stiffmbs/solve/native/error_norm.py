@@ -25,8 +25,9 @@ OK = 0
 OPERATIONS, TABLE = 1, 53
 """Words of a SUNDIALS vector, and of its table of operations: where the latter is, and the place of N_VBufPack, which IDA never calls and
 which holds the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
-SLAVED = 0
-"""Mark: a bound on cj, 1/s, below which estimates are filtered."""
+LONG, SHORT, FILTERS = range(3)
+"""Marks: cj, 1/s, below which steps are long, so that estimates are filtered from there on; cj above which they are so short that this ends;
+whether they are filtered."""
 
 error_norm_view = view_of("ErrorNorm", ERROR_NORM)
 
@@ -46,9 +47,22 @@ def _filtered(c, estimate):
     return call_int(c.solve, (c.solver, c.matrix, c.at_filtered, c.at_change, 0.0)) == OK
 
 
+@compiled
+def _filters(c):
+    """Whether estimates are filtered: from the first long step on, until steps are much shorter.
+
+    Where a run has come to creep, its steps are short; so what turns the filter on does not turn it off.
+    """
+    if c.iteration[CJ] < c.mark[LONG]:
+        c.mark[FILTERS] = 1.0
+    elif c.iteration[CJ] > c.mark[SHORT]:
+        c.mark[FILTERS] = 0.0
+    return c.mark[FILTERS] > 0.0 and c.iteration[CJ] < float("inf")
+
+
 def error_norm(estimate, weights):
-    """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where steps are long against a slaved velocity's decay."""
+    """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the damping asks for it."""
     c = error_norm_view(ints(ints(estimate[OPERATIONS])[TABLE]))
-    if c.iteration[CJ] < c.mark[SLAVED] and _filtered(c, estimate):
+    if _filters(c) and _filtered(c, estimate):
         return weighted_size(c, c.at_filtered, weights)
     return weighted_size(c, estimate, weights)

@@ -143,6 +143,7 @@ class Connection:
         """Drop the history, and the pivots that the linear solver has found."""
         self.history.forget()
         self.balance.forget()
+        self.error_norm.forget()
         if self._assembled.found is not None:
             self._assembled.found[:] = 0
 

@@ -12,9 +12,10 @@ from .operations import take_norm
 from .session import Session
 
 NORM = Routine("stiffmbs.solve.native.error_norm", "error_norm", "float64(int64*, int64)")
-WITHIN = 10.0
-"""cj, in parts of the rate of a slaved velocity, up to which estimates are filtered: also in steps as short as its decay, where the run
-would stay once it has come there.  Measured on light nodes between springs: 1 and 100 do as well, 0.03 lets some runs creep."""
+LONG, SHORT, FILTERS = range(3)
+"""Marks, as in `stiffmbs.solve.native.error_norm`."""
+BEGIN, END = 1.0, 100.0
+"""cj, in parts of the rate of a slaved velocity, below which the filter begins, and above which it ends."""
 
 
 class ErrorNorm:
@@ -28,7 +29,7 @@ class ErrorNorm:
 
     def __init__(self, n: int) -> None:
         self._n = n
-        self._mark, self._change, self._filtered = np.zeros(1), np.zeros(n), np.zeros(n)
+        self._mark, self._change, self._filtered = np.zeros(3), np.zeros(n), np.zeros(n)
 
     def take_place(
         self, session: Session, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray
@@ -65,5 +66,12 @@ class ErrorNorm:
             return
 
     def slaved(self, rate: float) -> None:
-        """Set the rate, 1/s, at which strong damping makes velocities follow the forces; 0 where there is no such damping."""
-        self._mark[0] = WITHIN * rate
+        """Set the rate, 1/s, at which strong damping makes velocities follow the forces; 0 where there is no such damping.
+
+        An infinite one has all estimates filtered.
+        """
+        self._mark[LONG], self._mark[SHORT] = BEGIN * rate, END * rate
+
+    def forget(self) -> None:
+        """Do not filter until the next long step."""
+        self._mark[FILTERS] = 0.0
