@@ -95,6 +95,7 @@ class NativeEngine:
         ida = self._ida
         if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
             self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
+        ida.look_after(self._order.wait(ida.history.count))
 
     def _filter(self) -> None:
         """Have error estimates filtered where velocities are slaved, and all where a stiff vibration makes steps fail or holds the order down."""

@@ -27,9 +27,10 @@ STUCK, STEADY = 1.0, 3.0
 WITHIN_PERIODS = 30.0
 """Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
 start with longer ones would stir up vibrations that have long been damped."""
-FIRST_LOOK, RELAPSE, STRETCH, LONGER = 2000, 250, 1000, 4
+FIRST_LOOK, RELAPSE, STRETCH, LONGER = 2000, 2000, 2000, 4
 """Steps before the first look, each later one after twice as many; steps between looks at a held order; steps with the
 order held at first, and how many times as many after each relapse."""
+GAIN = 5.0
 TIGHTEST = 1e-7
 """Relative tolerance below which the order is left alone: who asks for less wants to see the vibration, and order 2 would
 cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
@@ -71,6 +72,10 @@ class OrderWatch:
         """Whether it is time for a look, after so many steps of the run."""
         return steps >= self._next and self._rtol >= TIGHTEST
 
+    def wait(self, steps: int) -> int:
+        """How many steps from now on the next look is due; one more where it was due, as then no more is known now."""
+        return self._next - steps if self._rtol >= TIGHTEST and self._next > steps else FIRST_LOOK
+
     def changed(self, samples: np.ndarray, steps: int) -> bool:
         """Look at the last steps; whether the highest order is to change.
 
@@ -99,7 +104,7 @@ class OrderWatch:
     def _frees(self, pace: float, t: float, steps: int) -> bool:
         """Whether the order held has not paid, or has been held for long enough."""
         self._next = steps + RELAPSE
-        pays = pace > self._pace
+        pays = pace > GAIN * self._pace
         if pays and steps < self._held[-1][1] + self._stretch:
             return False
         self._stretch *= LONGER
