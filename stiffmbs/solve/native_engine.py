@@ -12,7 +12,7 @@ from ..describe.settings import RunSettings
 from .engine import Reached
 from .error_control import ErrorControl
 from .newton import NUMBERS_END, Stiffness
-from .order_watch import HIGHEST, OrderWatch
+from .order_watch import OrderWatch
 from .storage import blocks, release, room
 from .sundials.ida import NativeIda
 from .sundials.matrices import Matrix, Sparse
@@ -99,7 +99,7 @@ class NativeEngine:
 
     def _filter(self) -> None:
         """Have error estimates filtered where velocities are slaved, and all where a stiff vibration makes steps fail or holds the order down."""
-        all_of_them = self._fails_often or self._order.order < HIGHEST
+        all_of_them = self._fails_often or self._order.held
         self._ida.slaved(np.inf if all_of_them else self._stiffness.slaved)
 
     def _ease_newton(self, seen: dict[str, int]) -> None:

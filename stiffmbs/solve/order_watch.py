@@ -53,16 +53,22 @@ class OrderWatch:
     """
 
     def __init__(self, equations: Equations, settings: RunSettings) -> None:
-        self._rtol = settings.rtol
+        self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
+        self._watches = settings.rtol >= TIGHTEST and settings.max_order is None
         self._atol = independent_tolerances(equations, settings)
         self.forget()
 
     def forget(self) -> None:
         """Begin a new run."""
-        self.order, self._next, self._stretch = HIGHEST, FIRST_LOOK, STRETCH
+        self.order, self._next, self._stretch = self._highest, FIRST_LOOK, STRETCH
         self._held: list[tuple[float, int]] = []
         self._held_steps = 0
         self._mark, self._pace, self._fastest = (0.0, 0), 0.0, 0.0
+
+    @property
+    def held(self) -> bool:
+        """Whether the order is held down."""
+        return self.order < self._highest
 
     def begin(self, t: float, steps: int, fastest: float) -> None:
         """The integrator starts, or starts anew, where vibrations have rates up to `fastest`, 1/s."""
@@ -70,11 +76,11 @@ class OrderWatch:
 
     def due(self, steps: int) -> bool:
         """Whether it is time for a look, after so many steps of the run."""
-        return steps >= self._next and self._rtol >= TIGHTEST
+        return steps >= self._next and self._watches
 
     def wait(self, steps: int) -> int:
-        """How many steps from now on the next look is due; one more where it was due, as then no more is known now."""
-        return self._next - steps if self._rtol >= TIGHTEST and self._next > steps else FIRST_LOOK
+        """How many steps from now on the next look is due."""
+        return self._next - steps if self._watches and self._next > steps else FIRST_LOOK
 
     def changed(self, samples: np.ndarray, steps: int) -> bool:
         """Look at the last steps; whether the highest order is to change.
@@ -90,7 +96,7 @@ class OrderWatch:
             return False
         t, (since, before) = float(samples[-1, 0]), self._mark
         pace, self._mark = (t - since) / (steps - before), (t, steps)
-        if self.order == HELD:
+        if self.held:
             return self._frees(pace, t, steps)
         local = float(samples[-1, 0] - samples[0, 0]) / (STEPS_APART * (len(samples) - 1))
         steady = pace < STEADY * local and local * self._fastest < WITHIN_PERIODS
@@ -136,7 +142,7 @@ class OrderWatch:
         """What was done, for the user, after so many steps of the run; empty for nothing."""
         if not self._held:
             return ""
-        held = self._held_steps + (steps - self._held[-1][1] if self.order == HELD else 0)
+        held = self._held_steps + (steps - self._held[-1][1] if self.held else 0)
         first, before = self._held[0]
         return (
             f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: with orders 3 to 5, "
