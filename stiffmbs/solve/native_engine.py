@@ -22,12 +22,7 @@ from .trajectory import History
 ROWS_OF_STEPS = 1000
 """Room for rows in one call that reports every step."""
 MANY_FAILURES, EASED, EASIEST = 0.2, 100.0, 0.33
-"""Part of the steps of a call in which Newton's iteration may fail before less is asked of it, by that factor, up to that part;
-in which the error test may fail before its estimates are filtered."""
-COUNTED = "steps", "convergence_failures", "error_test_failures"
-"""Counters whose growth within a call of the loop is looked at."""
-ENOUGH_STEPS = 50
-"""Steps of a call from which failures are counted: a start fails often."""
+"""Part of the steps in which Newton's iteration may fail before less is asked of it, by that factor, up to that part."""
 RENEWED_UP_TO = 2000
 """Unknowns up to which SuperLU_MT makes the iteration matrix anew as often as the error control asks (a third fewer residuals
 than with IDA's own 0.25).  Bands and fixed orders, which chains and trees have, do at any size: there it costs a few residuals."""
@@ -67,8 +62,7 @@ class NativeEngine:
         self._ida.forget()
         self._order.forget()
         self._newton = 0.0
-        self._fails_often = False
-        self._counted = dict.fromkeys(COUNTED, 0)
+        self._counted = {"steps": 0, "convergence_failures": 0}
 
     def leave_out(self, waits: np.ndarray) -> None:
         """Do not look at each switch for so many steps."""
@@ -79,32 +73,25 @@ class NativeEngine:
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
         self._ida.balance_within(stiffness.long_step, max(stiffness.bearable, NUMBERS_END / self._rtol))
-        self._filter()
+        self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
 
     def _adapt(self) -> None:
-        """Between two calls: what is asked of Newton's iteration, the error test, and the highest order, follow what was seen."""
-        now = self._ida.statistics()
-        seen = {name: now[name] - self._counted[name] for name in COUNTED}
-        self._counted = now
-        self._ease_newton(seen)
-        if seen["error_test_failures"] > MANY_FAILURES * seen["steps"] and seen["steps"] > ENOUGH_STEPS:
-            self._fails_often = True
-            self._filter()
+        """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
+        self._ease_newton()
         ida = self._ida
         if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
             self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
         ida.look_after(self._order.wait(ida.history.count))
 
-    def _filter(self) -> None:
-        """Have error estimates filtered where velocities are slaved, and all where a stiff vibration makes steps fail or holds the order down."""
-        all_of_them = self._fails_often or self._order.held
-        self._ida.slaved(np.inf if all_of_them else self._stiffness.slaved)
-
-    def _ease_newton(self, seen: dict[str, int]) -> None:
+    def _ease_newton(self) -> None:
         """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""
-        if seen["convergence_failures"] > MANY_FAILURES * seen["steps"] and self._newton < EASIEST:
+        counted = self._ida.statistics()
+        steps = counted["steps"] - self._counted["steps"]
+        failures = counted["convergence_failures"] - self._counted["convergence_failures"]
+        self._counted = counted
+        if failures > MANY_FAILURES * steps and self._newton < EASIEST:
             eased = min(EASIEST, EASED * self._newton)
             self.begin(
                 self._ida.t, self._ida.y.copy(), self._ida.yp.copy(), eased, self._stiffness

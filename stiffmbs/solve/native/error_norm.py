@@ -17,7 +17,7 @@ E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996,
 from __future__ import annotations
 
 from stiffmbs.compile.layout import ERROR_NORM
-from stiffmbs.compile.native.access import compiled, equations_view, floats, ints, state_view, view_of
+from stiffmbs.compile.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
 from stiffmbs.solve.native.calls import call_address, call_int
 from stiffmbs.solve.native.iteration import AT_CJ, CJ, weighted_size
 
@@ -25,9 +25,13 @@ OK = 0
 OPERATIONS, TABLE = 1, 53
 """Words of a SUNDIALS vector, and of its table of operations: where the latter is, and the place of N_VBufPack, which IDA never calls and
 which holds the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
-LONG, SHORT, FILTERS = range(3)
-"""Marks: cj, 1/s, below which steps are long, so that estimates are filtered from there on; cj above which they are so short that this ends;
-whether they are filtered."""
+TROUBLE, ALWAYS = range(2)
+"""Marks: failures of the error test, each counted less with each step since then; above 0 where all estimates are filtered."""
+STEPS, FAILURES, KNOWN_STEPS, KNOWN_FAILURES, UNTIL = range(5)
+"""Counts: steps and failures of the error test; the same when they were last looked at; the step up to which estimates are filtered."""
+FADES, TROUBLED, LASTS = 0.8, 2.5, 1000
+"""What a step leaves of the count of failures, that from which estimates are filtered, and for how many steps.  A run that creeps fails in each
+step, or in two of three, which counts up to 5 or 3.3."""
 
 error_norm_view = view_of("ErrorNorm", ERROR_NORM)
 
@@ -48,21 +52,30 @@ def _filtered(c, estimate):
 
 
 @compiled
-def _filters(c):
-    """Whether estimates are filtered: from the first long step on, until steps are much shorter.
-
-    Where a run has come to creep, its steps are short; so what turns the filter on does not turn it off.
-    """
-    if c.iteration[CJ] < c.mark[LONG]:
-        c.mark[FILTERS] = 1.0
-    elif c.iteration[CJ] > c.mark[SHORT]:
-        c.mark[FILTERS] = 0.0
-    return c.mark[FILTERS] > 0.0 and c.iteration[CJ] < float("inf")
+def _look(c):
+    """Count failures, and steps since then."""
+    call_int(c.steps_of, (c.memory, shifted(c.count, STEPS)))
+    call_int(c.failures_of, (c.memory, shifted(c.count, FAILURES)))
+    steps, failures = c.count[STEPS] - c.count[KNOWN_STEPS], c.count[FAILURES] - c.count[KNOWN_FAILURES]
+    if steps == 0 and failures == 0:
+        return
+    c.count[KNOWN_STEPS] += steps
+    c.count[KNOWN_FAILURES] += failures
+    if steps < 0:  # counters begin anew with each start
+        c.mark[TROUBLE] = 0.0
+        c.count[UNTIL] = 0
+    for _ in range(steps):
+        c.mark[TROUBLE] *= FADES
+    c.mark[TROUBLE] += max(failures, 0)
+    if c.mark[TROUBLE] > TROUBLED:
+        c.count[UNTIL] = c.count[STEPS] + LASTS
 
 
 def error_norm(estimate, weights):
-    """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the damping asks for it."""
+    """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the error test fails often."""
     c = error_norm_view(ints(ints(estimate[OPERATIONS])[TABLE]))
-    if _filters(c) and _filtered(c, estimate):
+    _look(c)
+    wanted = c.mark[ALWAYS] > 0.0 or c.count[STEPS] < c.count[UNTIL]
+    if wanted and c.iteration[CJ] < float("inf") and _filtered(c, estimate):
         return weighted_size(c, c.at_filtered, weights)
     return weighted_size(c, estimate, weights)

@@ -86,7 +86,7 @@ class Connection:
         self.table = self._table.ctypes.data
         self.error_norm = ErrorNorm(n)
         tables = self._state_table, self._equations_table
-        self.error_norm.take_place(session, self.y_vector, tables, self._assembled, self.iteration.mark)
+        self.error_norm.take_place(session, self.memory, self.y_vector, tables, self._assembled, self.iteration.mark)
         self._initialise()
 
     def _packed(self) -> np.ndarray:

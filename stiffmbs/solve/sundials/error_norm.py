@@ -12,10 +12,8 @@ from .operations import take_norm
 from .session import Session
 
 NORM = Routine("stiffmbs.solve.native.error_norm", "error_norm", "float64(int64*, int64)")
-LONG, SHORT, FILTERS = range(3)
+TROUBLE, ALWAYS = range(2)
 """Marks, as in `stiffmbs.solve.native.error_norm`."""
-BEGIN, END = 1.0, 100.0
-"""cj, in parts of the rate of a slaved velocity, below which the filter begins, and above which it ends."""
 
 
 class ErrorNorm:
@@ -29,10 +27,11 @@ class ErrorNorm:
 
     def __init__(self, n: int) -> None:
         self._n = n
-        self._mark, self._change, self._filtered = np.zeros(3), np.zeros(n), np.zeros(n)
+        self._mark, self._count = np.zeros(2), np.zeros(5, dtype=np.int64)
+        self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
-        self, session: Session, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray
+        self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray
     ) -> None:  # fmt: skip
         """Have IDA, which copies its vectors from this one, measure its error estimates by this norm.
 
@@ -41,6 +40,8 @@ class ErrorNorm:
         Parameters
         ----------
         session : Session
+        memory : int
+            IDA's.
         y_vector : int
         tables : tuple of ndarray
             Those of the state and of the equations, for compiled code.
@@ -53,7 +54,9 @@ class ErrorNorm:
         self._table = packed(
             ERROR_NORM,
             {
-                "n": self._n, "mark": self._mark, "iteration": iteration, "state": state, "equations": equations,
+                "n": self._n, "memory": memory, "mark": self._mark, "count": self._count,
+                "steps_of": libraries.address("IDAGetNumSteps"), "failures_of": libraries.address("IDAGetNumErrTestFails"),
+                "iteration": iteration, "state": state, "equations": equations,
                 "array_of": libraries.address("N_VGetArrayPointer"), "solve": libraries.address("SUNLinSolSolve"),
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "at_change": session.vector(self._change), "change": self._change,
@@ -65,13 +68,10 @@ class ErrorNorm:
         except Unavailable:
             return
 
-    def slaved(self, rate: float) -> None:
-        """Set the rate, 1/s, at which strong damping makes velocities follow the forces; 0 where there is no such damping.
-
-        An infinite one has all estimates filtered.
-        """
-        self._mark[LONG], self._mark[SHORT] = BEGIN * rate, END * rate
+    def filter_always(self, asked: bool) -> None:
+        """Have all estimates filtered, or those alone that follow many failures."""
+        self._mark[ALWAYS] = float(asked)
 
     def forget(self) -> None:
-        """Do not filter until the next long step."""
-        self._mark[FILTERS] = 0.0
+        """Forget failures of an earlier run."""
+        self._mark[:], self._count[:] = 0.0, 0

@@ -164,9 +164,9 @@ class NativeIda:
         """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
         self._ida.balance_within(long_step, part)
 
-    def slaved(self, rate: float) -> None:
-        """Set the rate, 1/s, at which strong damping makes velocities follow the forces (`stiffmbs.solve.native.error_norm`); 0 for none."""
-        self._ida.error_norm.slaved(rate)
+    def filter_always(self, asked: bool) -> None:
+        """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""
+        self._ida.error_norm.filter_always(asked)
 
     def forget(self) -> None:
         """Forget counters, history and pivots, as if it had never begun."""
@@ -230,7 +230,9 @@ class NativeIda:
             self._check_rows(rows, len(times))
         self._ida.ask("IDASetStopTime", stop)
         derivatives = 0 if yp_out is None else yp_out.ctypes.data
-        self._run(ADVANCE, len(times), times.ctypes.data, stop, min(self._pace, self._look), y_out.ctypes.data, derivatives)
+        self._run(
+            ADVANCE, len(times), times.ctypes.data, stop, min(self._pace, self._look), y_out.ctypes.data, derivatives
+        )
         return int(self._ida.count[SERVED]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
