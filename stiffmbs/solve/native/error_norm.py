@@ -25,13 +25,17 @@ OK = 0
 OPERATIONS, TABLE = 1, 53
 """Words of a SUNDIALS vector, and of its table of operations: where the latter is, and the place of N_VBufPack, which IDA never calls and
 which holds the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
-TROUBLE, ALWAYS = range(2)
-"""Marks: failures of the error test, each counted less with each step since then; above 0 where all estimates are filtered."""
-STEPS, FAILURES, KNOWN_STEPS, KNOWN_FAILURES, UNTIL = range(5)
-"""Counts: steps and failures of the error test; the same when they were last looked at; the step up to which estimates are filtered."""
-FADES, TROUBLED, LASTS = 0.8, 2.5, 1000
-"""What a step leaves of the count of failures, that from which estimates are filtered, and for how many steps.  A run that creeps fails in each
-step, or in two of three, which counts up to 5 or 3.3."""
+TROUBLE, ALWAYS, LOOKED = range(3)
+"""Marks: failures of the error test, each counted less with each step since then; above 0 where all estimates are filtered; cj when failures
+were last looked for."""
+STEPS, FAILURES, KNOWN_STEPS, KNOWN_FAILURES, UNTIL, ORDER = range(6)
+"""Counts: steps and failures of the error test; the same when they were last looked at; the step up to which estimates are filtered; the order
+of the last step."""
+FADES_LOW, FADES, LOW = 0.99, 0.8, 2
+"""What a step leaves of the count of failures, at orders up to the lowest two and above: at these a run creeps."""
+TROUBLED, LASTS = 7.0, 1000
+"""Count of failures from which estimates are filtered, and for how many steps.  A run that creeps fails in each step, or in one of seven, which
+counts up to 100 or 15; Andrews' mechanism, where the filter only costs, counts up to 6."""
 
 error_norm_view = view_of("ErrorNorm", ERROR_NORM)
 
@@ -54,6 +58,7 @@ def _filtered(c, estimate):
 @compiled
 def _look(c):
     """Count failures, and steps since then."""
+    c.mark[LOOKED] = c.iteration[CJ]
     call_int(c.steps_of, (c.memory, shifted(c.count, STEPS)))
     call_int(c.failures_of, (c.memory, shifted(c.count, FAILURES)))
     steps, failures = c.count[STEPS] - c.count[KNOWN_STEPS], c.count[FAILURES] - c.count[KNOWN_FAILURES]
@@ -64,8 +69,10 @@ def _look(c):
     if steps < 0:  # counters begin anew with each start
         c.mark[TROUBLE] = 0.0
         c.count[UNTIL] = 0
+    call_int(c.order_of, (c.memory, shifted(c.count, ORDER)))
+    fades = FADES_LOW if c.count[ORDER] <= LOW else FADES
     for _ in range(steps):
-        c.mark[TROUBLE] *= FADES
+        c.mark[TROUBLE] *= fades
     c.mark[TROUBLE] += max(failures, 0)
     if c.mark[TROUBLE] > TROUBLED:
         c.count[UNTIL] = c.count[STEPS] + LASTS
@@ -74,7 +81,8 @@ def _look(c):
 def error_norm(estimate, weights):
     """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the error test fails often."""
     c = error_norm_view(ints(ints(estimate[OPERATIONS])[TABLE]))
-    _look(c)
+    if c.iteration[CJ] != c.mark[LOOKED]:  # as it does with every failure
+        _look(c)
     wanted = c.mark[ALWAYS] > 0.0 or c.count[STEPS] < c.count[UNTIL]
     if wanted and c.iteration[CJ] < float("inf") and _filtered(c, estimate):
         return weighted_size(c, c.at_filtered, weights)

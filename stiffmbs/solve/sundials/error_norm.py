@@ -27,7 +27,7 @@ class ErrorNorm:
 
     def __init__(self, n: int) -> None:
         self._n = n
-        self._mark, self._count = np.zeros(2), np.zeros(5, dtype=np.int64)
+        self._mark, self._count = np.zeros(3), np.zeros(6, dtype=np.int64)
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
@@ -56,6 +56,7 @@ class ErrorNorm:
             {
                 "n": self._n, "memory": memory, "mark": self._mark, "count": self._count,
                 "steps_of": libraries.address("IDAGetNumSteps"), "failures_of": libraries.address("IDAGetNumErrTestFails"),
+                "order_of": libraries.address("IDAGetLastOrder"),
                 "iteration": iteration, "state": state, "equations": equations,
                 "array_of": libraries.address("N_VGetArrayPointer"), "solve": libraries.address("SUNLinSolSolve"),
                 "solver": assembled.solver, "matrix": assembled.matrix,
