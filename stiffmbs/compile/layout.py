@@ -137,7 +137,7 @@ ITERATION: Layout = {
 """What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`)."""
 
 ERROR_NORM: Layout = {
-    "n": INT, "memory": INT, "steps_of": INT, "failures_of": INT, "order_of": INT, "mark": FLOATS, "count": INTS, "iteration": FLOATS, "state": INTS, "equations": INTS, "array_of": INT, "solve": INT,
+    "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT, "mark": FLOATS, "count": INTS, "iteration": FLOATS, "state": INTS, "equations": INTS, "solve": INT,
     "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
 }  # fmt: skip
 """What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`)."""

@@ -18,13 +18,12 @@ from __future__ import annotations
 
 from stiffmbs.compile.layout import ERROR_NORM
 from stiffmbs.compile.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
-from stiffmbs.solve.native.calls import call_address, call_int
-from stiffmbs.solve.native.iteration import AT_CJ, CJ, weighted_size
+from stiffmbs.solve.native.calls import call_address, call_float, call_int
+from stiffmbs.solve.native.iteration import AT_CJ, CJ
 
 OK = 0
 OPERATIONS, TABLE = 1, 53
-"""Words of a SUNDIALS vector, and of its table of operations: where the latter is, and the place of N_VBufPack, which IDA never calls and
-which holds the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
+"""Words of a SUNDIALS vector and of its table of operations: that table; N_VBufPack, which IDA never calls and in whose place stands the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
 TROUBLE, ALWAYS, LOOKED = range(3)
 """Marks: failures of the error test, each counted less with each step since then; above 0 where all estimates are filtered; cj when failures
 were last looked for."""
@@ -85,5 +84,5 @@ def error_norm(estimate, weights):
         _look(c)
     wanted = c.mark[ALWAYS] > 0.0 or c.count[STEPS] < c.count[UNTIL]
     if wanted and c.iteration[CJ] < float("inf") and _filtered(c, estimate):
-        return weighted_size(c, c.at_filtered, weights)
-    return weighted_size(c, estimate, weights)
+        return call_float(c.norm, (c.at_filtered, weights))
+    return call_float(c.norm, (estimate, weights))

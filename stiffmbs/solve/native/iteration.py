@@ -55,9 +55,9 @@ iteration_view = view_of("Iteration", ITERATION)
 
 
 @compiled
-def weighted_size(c, vector, weights):
+def _size(c, correction, weights):
     """Root mean square in units of the tolerance."""
-    values = floats(call_address(c.array_of, vector))
+    values = floats(call_address(c.array_of, correction))
     weight = floats(call_address(c.array_of, weights))
     squares = 0.0
     for k in range(c.n):
@@ -123,7 +123,7 @@ def _later(c, size, enough):
 def converged(solver, total, correction, enough, weights, table):
     """SUNNonlinSolConvTestFn: whether what the iteration leaves is at most `enough`, in units of the tolerance, or what short steps bear."""
     c = iteration_view(table)
-    size = weighted_size(c, correction, weights)
+    size = _size(c, correction, weights)
     call_int(c.iteration_of, (solver, shifted(c.count, DONE)))
     if c.count[DONE] == 0:
         call_int(c.cj_of, (c.memory, shifted(c.mark, CJ)))

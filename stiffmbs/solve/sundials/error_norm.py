@@ -26,7 +26,6 @@ class ErrorNorm:
     """
 
     def __init__(self, n: int) -> None:
-        self._n = n
         self._mark, self._count = np.zeros(3), np.zeros(6, dtype=np.int64)
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
@@ -51,14 +50,15 @@ class ErrorNorm:
             Marks of Newton's iteration (`stiffmbs.solve.native.iteration`).
         """
         libraries, (state, equations) = session.libraries, tables
+        functions = {
+            "norm": "N_VWrmsNorm_Serial", "array_of": "N_VGetArrayPointer", "solve": "SUNLinSolSolve",
+            "steps_of": "IDAGetNumSteps", "failures_of": "IDAGetNumErrTestFails", "order_of": "IDAGetLastOrder",
+        }  # fmt: skip
         self._table = packed(
             ERROR_NORM,
             {
-                "n": self._n, "memory": memory, "mark": self._mark, "count": self._count,
-                "steps_of": libraries.address("IDAGetNumSteps"), "failures_of": libraries.address("IDAGetNumErrTestFails"),
-                "order_of": libraries.address("IDAGetLastOrder"),
-                "iteration": iteration, "state": state, "equations": equations,
-                "array_of": libraries.address("N_VGetArrayPointer"), "solve": libraries.address("SUNLinSolSolve"),
+                "memory": memory, **{name: libraries.address(function) for name, function in functions.items()},
+                "mark": self._mark, "count": self._count, "iteration": iteration, "state": state, "equations": equations,
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "at_change": session.vector(self._change), "change": self._change,
                 "at_filtered": session.vector(self._filtered), "filtered": self._filtered,

@@ -74,13 +74,10 @@ def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> No
     Unavailable
         When the vector does not look as expected.
     """
-    address = session.libraries.address
-    operations = list(_words(vector, 3))[OPERATIONS]
-    if list(_words(vector, 3))[2] != session.context.value:
-        raise Unavailable("the SUNDIALS libraries lay out vectors in another way")
+    operations = list(_words(vector, OPERATIONS + 1))[OPERATIONS]
     words = list(_words(operations, TABLE + 1))
-    own = address("N_VWrmsNorm_Serial")
-    if words.count(own) != 1 or words[TABLE] != address("N_VBufPack_Serial"):
+    own = session.libraries.address("N_VWrmsNorm_Serial")
+    if words.count(own) != 1 or words[TABLE] != session.libraries.address("N_VBufPack_Serial"):
         raise Unavailable("the SUNDIALS libraries lay out vectors in another way")
     _write(operations, words.index(own), norm)
     _write(operations, TABLE, table.ctypes.data)
