@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -15,6 +16,8 @@ from ..describe.spatial.body import Body as SpatialBody
 
 GROUND = -1
 AXES = "xyz"
+WIDTH = 1e-7
+"""Half the width of differences, m and m/s."""
 
 
 @dataclass(frozen=True)
@@ -96,9 +99,15 @@ class Network:
                 force[spring.j] += pull
         return np.concatenate([v.ravel(), (force / np.array(self.masses)[:, None]).ravel()])
 
+    def _tangent(self, t: float, state: np.ndarray) -> np.ndarray:
+        """Derivatives of the rates by central differences: one-sided ones are too coarse for light masses."""
+        shifts = WIDTH * np.eye(state.size)
+        return np.stack([(self.rates(t, state + d) - self.rates(t, state - d)) / (2 * WIDTH) for d in shifts], axis=1)
+
+    @cache  # noqa: B019: a handful of networks
     def solved(self, duration: float, rtol: float, method: str) -> tuple[np.ndarray, int]:
         """Positions at the end, shape (masses, dimensions), and steps, by an integrator of SciPy."""
         start = np.concatenate([np.ravel(self.positions), np.ravel(self.velocities)])
-        found = solve_ivp(self.rates, (0.0, duration), start, method=method, rtol=rtol, atol=rtol)
+        found = solve_ivp(self.rates, (0.0, duration), start, method=method, rtol=rtol, atol=rtol, jac=self._tangent)
         end: np.ndarray = found.y[: start.size // 2, -1]
         return end.reshape(len(self.masses), self.dimensions), len(found.t) - 1
