@@ -21,7 +21,8 @@ def test_a_light_node_in_a_damper_does_not_creep(mass, rtol, monkeypatch):
     plain = solved(node(mass, drag=0.010000001).model(), rtol)  # another model: a job's engine is kept
     assert filtered.solver["steps"] < 0.2 * plain.solver["steps"]
     assert filtered.solver["error_test_failures"] < 50
-    assert filtered["m0.y"][-1] == pytest.approx(plain["m0.y"][-1], abs=20 * rtol)
+    expected, _ = node(mass).solved(1.0, 1e-9, "Radau")
+    assert filtered["m0.y"][-1] == pytest.approx(expected[0][1], abs=10 * rtol)
 
 
 def test_other_libraries_do_without_the_filter(monkeypatch):

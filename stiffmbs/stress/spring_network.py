@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -61,9 +62,10 @@ class Network:
     def model(self) -> ModelBuilder:
         """The network as bodies and force elements, named m0, m1, ..."""
         planar = self.dimensions == 2
-        kinds, model = (plane, plane.Model("Network")) if planar else (space, space.Model("Network"))
+        kinds: Any = plane if planar else space
+        model: ModelBuilder = kinds.Model("Network")
         for k, (mass, x, v) in enumerate(zip(self.masses, self.positions, self.velocities, strict=True)):
-            body = Body(mass=mass, inertia=1, position=x, velocity=v) if planar else SpatialBody(
+            body: Any = Body(mass=mass, inertia=1, position=x, velocity=v) if planar else SpatialBody(
                 mass=mass, inertia=(1, 1, 1), position=x, velocity=v
             )  # fmt: skip
             model.add(f"m{k}", body)
@@ -104,7 +106,7 @@ class Network:
         shifts = WIDTH * np.eye(state.size)
         return np.stack([(self.rates(t, state + d) - self.rates(t, state - d)) / (2 * WIDTH) for d in shifts], axis=1)
 
-    @cache  # noqa: B019: a handful of networks
+    @cache  # noqa: B019
     def solved(self, duration: float, rtol: float, method: str) -> tuple[np.ndarray, int]:
         """Positions at the end, shape (masses, dimensions), and steps, by an integrator of SciPy."""
         start = np.concatenate([np.ravel(self.positions), np.ravel(self.velocities)])
