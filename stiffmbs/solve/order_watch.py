@@ -25,7 +25,7 @@ order 3 to 5 do resolve is some thousands of tolerances away from it."""
 NEGLIGIBLE = 150.0
 """Distance from it, in units of the tolerance, up to which a vibration is not worth following: the orders that follow it
 damp it too (from 64 to 44 in 1000 steps of order 5).  A smaller tolerance keeps it."""
-STUCK, STEADY = 1.0, 3.0
+STUCK, STEADY = 4.0, 3.0
 """Steps whose states are nearer to it are short for another reason, and so are those much shorter than since the last look."""
 WITHIN_PERIODS = 30.0
 """Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
