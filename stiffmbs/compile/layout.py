@@ -140,6 +140,12 @@ ITERATION: Layout = {
 }  # fmt: skip
 """What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`)."""
 
+ERROR_NORM: Layout = {
+    "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT, "mark": FLOATS, "count": INTS, "iteration": FLOATS, "state": INTS, "equations": INTS, "solve": INT,
+    "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
+}  # fmt: skip
+"""What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`)."""
+
 
 WATCH: Layout = {
     "n": INT, "n_switches": INT, "waits": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,

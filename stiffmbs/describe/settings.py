@@ -48,6 +48,9 @@ class RunSettings(Described):
         Whether ``projected`` returns to the constraints after each step.
     max_step : float
         Largest step of ``bdf`` and the adaptive schemes, s; 0 for none.
+    max_order : int, optional
+        Highest order of the formulas of ``bdf``, 1 to 5.  Without it 5, and 2 for a while where orders 3 to 5 creep along a stiff, little
+        damped vibration (`stiffmbs.solve.order_watch`); with it the order is never held down.
     presolve : bool
         Whether the solver is given a smaller problem with the same results where the model allows it.
     give_way : tuple of str
@@ -73,6 +76,9 @@ class RunSettings(Described):
     step: si.PositiveTime = Field(1e-3, description="step of the fixed schemes, s")
     projection: bool = Field(True, description="whether projected returns to the constraints after each step")
     max_step: si.TimeOrZero = Field(0.0, description="largest step of bdf and the adaptive schemes, s; 0 for none")
+    max_order: Annotated[int, Field(ge=1, le=5)] | None = Field(
+        None, description="highest order of bdf's formulas, 1 to 5; without it 5, and 2 for a while where that pays"
+    )
     presolve: bool = Field(True, description="whether unknowns that others determine are left out of the solution")
     give_way: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
 

@@ -227,6 +227,8 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
+    if job.settings.max_order is not None and job.settings.solver in ("projected", "kinematic"):
+        yield f"max_order = {job.settings.max_order} has no effect: it is the highest order of bdf's formulas, found solver '{job.settings.solver}'"
     fixed = job.settings.solver == "projected" and job.settings.scheme not in ADAPTIVE
     if fixed and job.mechanics.system.n_values("switch"):
         yield (

@@ -131,7 +131,7 @@ def _through_callbacks(mechanics: Mechanics, settings: RunSettings) -> tuple[Equ
     """The driver by scikit-sundae's callbacks."""
     equations = _natural(mechanics, settings)
     tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # Newton's iteration stays as IDA has it
-    return equations, SundaeEngine(equations, mechanics.state, *tolerances, settings.max_step)
+    return equations, SundaeEngine(equations, mechanics.state, *tolerances, settings.max_step, settings.max_order or 5)
 
 
 class Integrator:

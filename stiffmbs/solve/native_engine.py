@@ -73,6 +73,7 @@ class NativeEngine:
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
         self._ida.balance_within(stiffness.long_step, max(stiffness.bearable, NUMBERS_END / self._rtol))
+        self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
 
@@ -82,6 +83,7 @@ class NativeEngine:
         ida = self._ida
         if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
             self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
+        ida.look_after(self._order.wait(ida.history.count))
 
     def _ease_newton(self) -> None:
         """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""

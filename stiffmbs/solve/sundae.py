@@ -133,9 +133,13 @@ class SundaeEngine:
         Of each unknown; huge for those that are left out of the error test.
     max_step : float
         s; 0 for none.
+    max_order : int
+        Of the BDF formula, 1 to 5.
     """
 
-    def __init__(self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float) -> None:
+    def __init__(
+        self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float, max_order: int = 5
+    ) -> None:
         from sksundae.ida import IDA as SundialsIda
 
         self.equations = equations
@@ -151,7 +155,7 @@ class SundaeEngine:
             warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
             self._ida = SundialsIda(
                 self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
-                max_num_steps=STEPS_AT_ONCE, max_step=max_step, **options,
+                max_num_steps=STEPS_AT_ONCE, max_step=max_step, max_order=max_order, **options,
             )  # fmt: skip
         self._before = {"residuals": 0, "jacobians": 0}
         self._since = {"residuals": 0, "jacobians": 0}

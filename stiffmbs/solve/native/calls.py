@@ -21,6 +21,14 @@ def call_int(code: Code, function: Operand, arguments: tuple[Value, ...]) -> Val
 
 
 @builtin
+def call_float(code: Code, function: Operand, arguments: tuple[Value, ...]) -> Value:
+    """Call a C function of the given address that returns a double; `arguments` is a tuple."""
+    address = code.put_value("ints", f"inttoptr {code.integer(function).typed} to ptr")
+    given = ", ".join(argument.typed for argument in arguments)
+    return code.put_value("float", f"call double {address.text}({given})")
+
+
+@builtin
 def call_address(code: Code, function: Operand, argument: Value) -> Value:
     """Call a C function of one pointer that returns a pointer; both as addresses."""
     address = code.put_value("ints", f"inttoptr {code.integer(function).typed} to ptr")

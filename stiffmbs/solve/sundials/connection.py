@@ -12,6 +12,7 @@ from ...compile.routines import Routine
 from ...compile.state import State
 from ..event_watch import EventWatch
 from .balance import ENOUGH, LONG, Balance
+from .error_norm import ErrorNorm
 from .iteration import Iteration
 from .matrices import Matrix
 from .session import Session
@@ -53,6 +54,7 @@ class Connection:
         What the loop leaves behind.
     balance : Balance
     iteration : Iteration
+    error_norm : ErrorNorm
     n_switches : int
     sides, waits : ndarrays, shape (n_switches,)
         As in `stiffmbs.solve.native.watched`.
@@ -85,6 +87,9 @@ class Connection:
             state.load(term_set)
         self._table = self._packed()
         self.table = self._table.ctypes.data
+        self.error_norm = ErrorNorm(n)
+        tables = self._state_table, self._equations_table
+        self.error_norm.take_place(session, self.memory, self.y_vector, tables, self._assembled, self.iteration.mark)
         self._initialise()
 
     def _packed(self) -> np.ndarray:
@@ -141,6 +146,7 @@ class Connection:
         """Drop the history, and the pivots that the linear solver has found."""
         self.history.forget()
         self.balance.forget()
+        self.error_norm.forget()
         if self._assembled.found is not None:
             self._assembled.found[:] = 0
 

@@ -111,6 +111,7 @@ class NativeIda:
         self._statistics = Statistics(session.libraries, ida.memory)
         self._flag, self._begun = 0, False
         self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
+        self._look = self._pace
         ida.set_tolerances(rtol, atol)
         self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
         if suppressed is not None:
@@ -147,6 +148,10 @@ class NativeIda:
         """Have `advance` and `steps` return after so many steps at the latest."""
         self._pace = min(self._pace, steps)
 
+    def look_after(self, steps: int) -> None:
+        """Have the next call of `advance` or `steps` return after so many steps at the latest."""
+        self._look = max(steps, 1)
+
     def leave_out(self, waits: np.ndarray) -> None:
         """Do not look at each switch for so many steps from the next beginning on."""
         self._ida.waits[:] = waits
@@ -158,6 +163,10 @@ class NativeIda:
     def balance_within(self, long_step: float, part: float) -> None:
         """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
         self._ida.balance_within(long_step, part)
+
+    def filter_always(self, asked: bool) -> None:
+        """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""
+        self._ida.error_norm.filter_always(asked)
 
     def forget(self) -> None:
         """Forget counters, history and pivots, as if it had never begun."""
@@ -222,7 +231,9 @@ class NativeIda:
             self._check_rows(rows, len(times))
         self._ida.ask("IDASetStopTime", stop)
         derivatives = 0 if yp_out is None else yp_out.ctypes.data
-        self._run(ADVANCE, len(times), times.ctypes.data, stop, self._pace, y_out.ctypes.data, derivatives)
+        self._run(
+            ADVANCE, len(times), times.ctypes.data, stop, min(self._pace, self._look), y_out.ctypes.data, derivatives
+        )
         return int(self._ida.count[SERVED]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
@@ -236,7 +247,7 @@ class NativeIda:
         """
         self._check_rows(y_out, len(t_out))
         self._ida.ask("IDASetStopTime", stop)
-        self._run(STEPS, min(self._pace, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data)
+        self._run(STEPS, min(self._pace, self._look, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data)
         return int(self._ida.count[SERVED]), self._status()
 
     def _check_rows(self, rows: np.ndarray, count: int) -> None:

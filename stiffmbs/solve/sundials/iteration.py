@@ -11,8 +11,8 @@ from .session import Session
 CONVERGED = Routine(
     "stiffmbs.solve.native.iteration", "converged", "int32(int64, int64, int64, float64, int64, int64*)"
 )
-GROWTH = 4
-"""A mark, as in `stiffmbs.solve.native.iteration`."""
+CJ, GROWTH = 0, 4
+"""Marks, as in `stiffmbs.solve.native.iteration`."""
 
 
 class Iteration:
@@ -27,12 +27,15 @@ class Iteration:
     ----------
     count : ndarray of int
         As in `stiffmbs.solve.native.iteration`.
+    mark : ndarray
+        The same.
     """
 
     def __init__(self, n: int) -> None:
         self._n = n
         self.count = np.zeros(4, dtype=np.int64)
-        self._mark = np.zeros(6)
+        self.mark = np.zeros(6)
+        self.mark[CJ] = np.inf
 
     def solver(self, session: Session, memory: int, y_vector: int) -> int:
         """The solver; IDA, whose memory is given, gives it its own test when it is attached: `take_over` comes after that."""
@@ -41,7 +44,7 @@ class Iteration:
         self._table = packed(
             ITERATION,
             {
-                "n": self._n, "mark": self._mark, "count": self.count, "memory": memory,
+                "n": self._n, "mark": self.mark, "count": self.count, "memory": memory,
                 "array_of": libraries.address("N_VGetArrayPointer"), "cj_of": libraries.address("IDAGetCurrentCj"),
                 "iteration_of": libraries.address("SUNNonlinSolGetCurIter"),
             },
@@ -49,8 +52,8 @@ class Iteration:
         return session.keep(made, libraries.SUNNonlinSolFree, "a nonlinear solver")
 
     def begin(self) -> None:
-        """Forget the rates that were measured, as the integrator starts, or starts anew."""
-        self._mark[GROWTH] = -1.0
+        """Forget the rates that were measured, and the last step, as the integrator starts, or starts anew."""
+        self.mark[[CJ, GROWTH]] = np.inf, -1.0
 
     def take_over(self, session: Session, solver: int) -> None:
         """Put the test in place."""

@@ -12,6 +12,8 @@ import numpy as np
 from .libraries import Libraries, Unavailable
 from .session import Session
 
+OPERATIONS, TABLE = 1, 53
+"""The words of a vector and of its operations that `stiffmbs.solve.native.error_norm` reads."""
 LONGEST = 16
 """Words of a solver, or of its table of operations, that are looked through."""
 CONTENT = 0
@@ -50,6 +52,35 @@ def take_place(session: Session, solver: int, size: int, functions: Mapping[str,
             _write(table, k, replaced[address])
     _write(solver, CONTENT, content.ctypes.data)
     session.before_freed(lambda: _write(solver, CONTENT, own[CONTENT]))
+
+
+def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> None:
+    """Put a norm in place of N_VWrmsNorm in a vector's operations, and so in those of its later copies.
+
+    The operation has no argument for a table of its own: its address takes the place of N_VBufPack, which IDA does not use.
+
+    Parameters
+    ----------
+    session : Session
+    vector : int
+        The N_Vector.
+    norm : int
+        The address of the function.
+    table : ndarray of int
+        What the function works on.
+
+    Raises
+    ------
+    Unavailable
+        When the vector does not look as expected.
+    """
+    operations = list(_words(vector, OPERATIONS + 1))[OPERATIONS]
+    words = list(_words(operations, TABLE + 1))
+    own = session.libraries.address("N_VWrmsNorm_Serial")
+    if words.count(own) != 1 or words[TABLE] != session.libraries.address("N_VBufPack_Serial"):
+        raise Unavailable("the SUNDIALS libraries lay out vectors in another way")
+    _write(operations, words.index(own), norm)
+    _write(operations, TABLE, table.ctypes.data)
 
 
 @cache

@@ -1,0 +1,88 @@
+"""The norm of IDA's error estimates, with errors that strong damping takes away within the step left out.
+
+A light body in a strong damper has no velocity of its own: M u' = f(q) - c u leaves u = f(q) / c after a time M / c.
+Differences of u, from which the error is estimated, then show neither the error in u, which follows that in q, nor
+where a step or an order is changed: u jumps as the error in q does, over the step.  IDA fails every second step,
+and stays at order 1.  So the estimate d is multiplied by what a step of implicit Euler does with it,
+    (dF/dy + cj dF/dy') e = cj dF/dy' d,
+with the iteration matrix and the factors that Newton's iteration has.  For y' = f this is (I - f_y / cj)^-1 d: errors in
+directions with fast decay are damped, and what they do to other unknowns counts; slow directions keep theirs.
+
+References
+----------
+L. F. Shampine, L. S. Baca, Error estimators for stiff differential equations, J. Comput. Appl. Math. 11 (1984) 197-207.
+E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, ch. IV.8, eq. (8.19).
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.layout import ERROR_NORM
+from stiffmbs.compile.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
+from stiffmbs.solve.native.calls import call_address, call_float, call_int
+from stiffmbs.solve.native.iteration import AT_CJ, CJ
+
+OK = 0
+OPERATIONS, TABLE = 1, 53
+"""Words of a SUNDIALS vector and of its table of operations: that table; N_VBufPack, which IDA never calls and in whose place stands the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
+TROUBLE, ALWAYS, LOOKED = range(3)
+"""Marks: failures of the error test, each counted less with each step since then; above 0 where all estimates are filtered; cj when failures
+were last looked for."""
+STEPS, FAILURES, KNOWN_STEPS, KNOWN_FAILURES, UNTIL, ORDER = range(6)
+"""Counts: steps and failures of the error test; the same when they were last looked at; the step up to which estimates are filtered; the order
+of the last step."""
+FADES_LOW, FADES, LOW = 0.99, 0.8, 2
+"""What a step leaves of the count of failures, at orders up to the lowest two and above: at these a run creeps."""
+TROUBLED, LASTS = 7.0, 1000
+"""Count of failures from which estimates are filtered, and for how many steps.  A run that creeps fails in each step, or in one of seven, which
+counts up to 100 or 15; Andrews' mechanism, where the filter only costs, counts up to 6."""
+
+error_norm_view = view_of("ErrorNorm", ERROR_NORM)
+
+
+@compiled
+def _filtered(c, estimate):
+    """Multiply an estimate by (dF/dy + cj dF/dy')^-1 cj dF/dy', with cj of the matrix; False where that fails."""
+    e = equations_view(c.equations)
+    s = state_view(c.state)
+    values = floats(s.values[e.residual_set])
+    d = floats(call_address(c.array_of, estimate))
+    cj = c.iteration[AT_CJ]
+    for k in range(e.n):
+        c.change[k] = 0.0
+    for k in range(e.n_with_y, e.n_with_yp):
+        c.change[e.r_row[k]] += cj * e.r_factor[k] * values[e.r_source[k]] * d[e.r_operand[k]]
+    return call_int(c.solve, (c.solver, c.matrix, c.at_filtered, c.at_change, 0.0)) == OK
+
+
+@compiled
+def _look(c):
+    """Count failures, and steps since then."""
+    c.mark[LOOKED] = c.iteration[CJ]
+    call_int(c.steps_of, (c.memory, shifted(c.count, STEPS)))
+    call_int(c.failures_of, (c.memory, shifted(c.count, FAILURES)))
+    steps, failures = c.count[STEPS] - c.count[KNOWN_STEPS], c.count[FAILURES] - c.count[KNOWN_FAILURES]
+    if steps == 0 and failures == 0:
+        return
+    c.count[KNOWN_STEPS] += steps
+    c.count[KNOWN_FAILURES] += failures
+    if steps < 0:  # counters begin anew with each start
+        c.mark[TROUBLE] = 0.0
+        c.count[UNTIL] = 0
+    call_int(c.order_of, (c.memory, shifted(c.count, ORDER)))
+    fades = FADES_LOW if c.count[ORDER] <= LOW else FADES
+    for _ in range(steps):
+        c.mark[TROUBLE] *= fades
+    c.mark[TROUBLE] += max(failures, 0)
+    if c.mark[TROUBLE] > TROUBLED:
+        c.count[UNTIL] = c.count[STEPS] + LASTS
+
+
+def error_norm(estimate, weights):
+    """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the error test fails often."""
+    c = error_norm_view(ints(ints(estimate[OPERATIONS])[TABLE]))
+    if c.iteration[CJ] != c.mark[LOOKED]:  # as it does with every failure
+        _look(c)
+    wanted = c.mark[ALWAYS] > 0.0 or c.count[STEPS] < c.count[UNTIL]
+    if wanted and c.iteration[CJ] < float("inf") and _filtered(c, estimate):
+        return call_float(c.norm, (c.at_filtered, weights))
+    return call_float(c.norm, (estimate, weights))
