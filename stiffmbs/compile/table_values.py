@@ -37,7 +37,7 @@ def spline_data(table: Table) -> np.ndarray:
 
 def curve(table: Table) -> Curve:
     """The values of a table, as kernels compute them: outside its points it goes on straight, or repeats."""
-    count, x, pieces = _parts(table)
+    count, x, pieces = parts_of(table)
 
     def values(arguments: np.ndarray) -> np.ndarray:
         at = np.asarray(arguments, dtype=float)
@@ -53,7 +53,7 @@ def curve(table: Table) -> Curve:
     return values
 
 
-def _parts(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
+def parts_of(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
     """Number of points, the points, and the coefficients of each piece, highest first."""
     data = spline_data(table)
     count = int(data[0])

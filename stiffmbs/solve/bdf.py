@@ -158,7 +158,7 @@ class Integrator:
         """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
         t = grid.start
         self._jumps.clear()
-        for stop in (*self.mechanics.corner_times(grid.start, grid.end).tolist(), grid.end):
+        for stop in (*self.mechanics.input_features(grid.start, grid.end).corners.tolist(), grid.end):
             while _just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
                 self._held.begin(t, start.q, start.u)

@@ -6,7 +6,6 @@ import time
 
 import numpy as np
 
-from ..compile.corners import corner_times
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .failures import FAILURES
@@ -46,7 +45,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start))
-    corners = iter((*corner_times(system, grid.start, grid.end), np.inf))
+    corners = iter((*mechanics.input_features(grid.start, grid.end).corners, np.inf))
     corner = next(corners)
     rows.append(times[0], motion.q, motion.u)
     try:

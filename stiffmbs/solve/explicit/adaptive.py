@@ -65,7 +65,7 @@ class AdaptiveRun:
         self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
-        self._corners = mechanics.corner_times(grid.start, grid.end)
+        self._corners = mechanics.input_features(grid.start, grid.end).corners
         self._chatter, self._events = Chatter(system), 0
 
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:
