@@ -27,8 +27,6 @@ ROUNDING = 1e-10
 """Error of the cubic, in parts of the input's values, that is always allowed."""
 SHORTEST = 1e-11
 """Length of a piece, in parts of the times themselves, that is cut no further."""
-FIRST_PIECES = 16
-"""Pieces to begin with, and more at the corners."""
 MOST_PIECES, MANY_PIECES = 2**13, 512
 """Pieces of one input that are cut further: from there on only those that need it most are; and so many that it is
 worth to see whether they need be so many."""
@@ -122,9 +120,7 @@ def input_features(system: System, start: float, end: float) -> InputFeatures:
     """
     inputs = inputs_of(system)
     corners = corner_times(inputs, start, end)
-    legs = np.concatenate([[start], corners, [end]])
-    edges = _with_few_more(legs)
-    bounds = [_Cut(each, edges).bounds() for each in inputs]
+    bounds = [_Cut(each, np.concatenate([[start], corners, [end]])).bounds() for each in inputs]
     return InputFeatures(corners, *_together(bounds, corners, start, end))
 
 
@@ -179,23 +175,26 @@ class _Cut:
 
     def bounds(self) -> _Bounds:
         """The pieces; cut again where the first of them were cut for a change that was seen too small."""
-        first = _Pieces(self._edges[:-1], self._edges[1:], np.zeros(len(self._edges) - 1))
+        whole = _Pieces(self._edges[:-1], self._edges[1:], np.zeros(len(self._edges) - 1))
         with np.errstate(all="ignore"):
-            found = self._cut(first)
+            found = self._cut(whole, first=True)
             if len(found.starts) > MANY_PIECES:
-                found = self._cut(first)
+                found = self._cut(whole, first=True)
         order = np.argsort(found.starts)
         return _Bounds(found.starts[order], found.lengths[order])
 
-    def _cut(self, pieces: _Pieces, most: int = MOST_PIECES) -> _Bounds:
+    def _cut(self, pieces: _Pieces, first: bool) -> _Bounds:
         done: list[tuple[np.ndarray, np.ndarray]] = []
         while len(pieces.low):
             pieces = self._looked_at(pieces)
             h, lengths = pieces.length, self._longest(pieces)
             settled = (lengths >= h) | (h <= self._shortest)
-            if np.count_nonzero(~settled) > most:
+            if not first:
+                lengths = np.minimum(lengths, 2 * h)  # as the piece twice as long was too long
+            first = False
+            if np.count_nonzero(~settled) > MOST_PIECES:
                 settled |= h < URGENT * lengths
-            if np.count_nonzero(~settled) > most:
+            if np.count_nonzero(~settled) > MOST_PIECES:
                 lengths = self._estimated(pieces, lengths, ~settled)
                 settled[:] = True
             done.append((pieces.low[settled], np.maximum(lengths[settled], self._shortest)))
@@ -242,17 +241,9 @@ class _Cut:
         if len(chosen):
             sample = np.zeros_like(open_ones)
             sample[chosen[:: max(1, len(chosen) // SAMPLE)]] = True
-            of_some = self._cut(pieces.where(sample), most=MOST_PIECES).lengths
+            of_some = self._cut(pieces.where(sample), first=False).lengths
             lengths[chosen] = np.maximum(lengths[chosen], np.quantile(of_some, QUANTILE))
         return lengths
-
-
-def _with_few_more(legs: np.ndarray) -> np.ndarray:
-    """Ends of legs, and times between them that are no nearer to these than to each other."""
-    more = np.linspace(legs[0], legs[-1], FIRST_PIECES + 1)
-    k = np.clip(np.searchsorted(legs, more), 1, len(legs) - 1)
-    distance = np.minimum(np.abs(more - legs[k - 1]), np.abs(legs[k] - more))
-    return np.union1d(legs, more[distance > 0.25 * (more[1] - more[0])])
 
 
 def _width(x: np.ndarray) -> np.ndarray:

@@ -158,7 +158,9 @@ class Integrator:
         """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
         t = grid.start
         self._jumps.clear()
-        for stop in (*self.mechanics.input_features(grid.start, grid.end).corners.tolist(), grid.end):
+        features = self.mechanics.input_features(grid.start, grid.end)
+        self.engine.see_inputs(features)
+        for stop in (*features.corners.tolist(), grid.end):
             while _just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
                 self._held.begin(t, start.q, start.u)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..compile.equations import Equations
+from ..compile.input_features import InputFeatures
 from ..compile.layout import IDA, packed
 from ..compile.routines import Routine
 from ..compile.state import State
@@ -153,6 +154,7 @@ class SundaeEngine:
         self._before = {"residuals": 0, "jacobians": 0}
         self._since = {"residuals": 0, "jacobians": 0}
         self._interrupted = False
+        self._features = InputFeatures()
 
     def _sparse(self) -> dict[str, Any]:
         from scipy.sparse import csc_matrix
@@ -163,6 +165,10 @@ class SundaeEngine:
 
     def forget(self) -> None:
         """Each run has a driver of its own."""
+
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Stop where a longer step might miss what the inputs do; IDA goes on from there with its history."""
+        self._features = features
 
     def leave_out(self, waits: np.ndarray) -> None:
         """Do not look at each switch for so many steps."""
@@ -186,7 +192,7 @@ class SundaeEngine:
             if reached.fired or reached.failure:
                 return
         if not ends_there:
-            yield self._reached(self._ida.step(stop, method="normal", tstop=stop), False)
+            yield self._reached(self._to(stop, stop), False)
 
     def _several(self, times: np.ndarray, stop: float) -> Reached:
         """Integrate to the last of a few output times; to what ends it before."""
@@ -194,7 +200,7 @@ class SundaeEngine:
         last = self._last
         try:
             for time in times:
-                last = self._ida.step(time, method="normal", tstop=stop)
+                last = self._to(time, stop)
                 if last.status < 0 or last.status == ROOT_FOUND:
                     break
                 rows[served] = last.y[self._reported]
@@ -203,10 +209,22 @@ class SundaeEngine:
             self._interrupted = True
         return replace(self._reached(last, False), times=times[:served], rows=rows[:served])
 
+    def _to(self, time: float, stop: float) -> Any:
+        """Integrate to a time, over the stops that inputs ask for."""
+        t = float(self._last.t)
+        while (t := t + self._features.longest_step(t)) < time:
+            self._last = self._ida.step(t, method="normal", tstop=t)
+            if self._last.status < 0 or self._last.status == ROOT_FOUND:
+                return self._last
+        self._last = self._ida.step(time, method="normal", tstop=stop)
+        return self._last
+
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
         while True:
-            reached = self._reached(self._ida.step(stop, method="onestep", tstop=stop), True)
+            near = min(stop, float(self._last.t) + self._features.longest_step(float(self._last.t)))
+            self._last = self._ida.step(stop, method="onestep", tstop=near)
+            reached = self._reached(self._last, True)
             yield reached
             if reached.fired or reached.failure or reached.t >= stop:
                 return

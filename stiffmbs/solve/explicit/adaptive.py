@@ -45,7 +45,8 @@ class AdaptiveRun:
     """One integration with a scheme that estimates its error, from corner to corner and from event to event.
 
     Steps are not cut by output times: states there come from the scheme's interpolant.  They are cut by corners in
-    time, which long steps of a motion at rest would jump over, and where a force changes its law (a contact closes).
+    time, and by other features of the inputs, which long steps of a motion at rest would jump over, and where a force
+    changes its law (a contact closes).
 
     Attributes
     ----------
@@ -65,7 +66,9 @@ class AdaptiveRun:
         self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
-        self._corners = mechanics.input_features(grid.start, grid.end).corners
+        features = mechanics.input_features(grid.start, grid.end)
+        self._corners = features.corners
+        work.step_bound.follow(features)
         self._chatter, self._events = Chatter(system), 0
 
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:

@@ -10,6 +10,7 @@ from ...compile.layout import EXPLICIT, packed
 from ...describe.settings import RunSettings
 from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
+from ..step_bound import StepBound
 from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, Rows
 from .scheme import Scheme
@@ -31,6 +32,7 @@ class Integration:
         Most steps, and most rows, of one call.
     step_times : list of ndarray
         Ends of the steps of each call.
+    step_bound : StepBound
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class Integration:
         self._mechanics = mechanics
         self._scheme, self._eliminated = scheme, mechanics.eliminated
         self._end = scheme.stages
+        self.step_bound = StepBound()
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         n_switches = mechanics.system.n_values("switch")
@@ -53,7 +56,7 @@ class Integration:
             "scheme": scheme.table, "n": n,
             "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
             "rtol": np.array([settings.rtol]), "atol": atol,
-            "longest": np.array([settings.max_step or np.inf]),
+            "longest": np.array([settings.max_step or np.inf]), "step_bound": self.step_bound.table,
             "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
             "t": np.array([grid.start]), "t_before": np.array([grid.start]), "span": np.zeros(1),
             "n_switches": n_switches, "sides": np.zeros(n_switches),
