@@ -17,9 +17,9 @@ from .corners import corner_times
 from .inputs_of_time import Input, inputs_of
 from .system import System
 
-PIECES_OF_A_STEP = 4.0
+PIECES_OF_A_STEP = 7.0
 """Lengths of a piece that a step may have: half a turn of a sine."""
-PART = 1.5e-3
+PART = 3e-3
 """Error of the cubic, in parts of the input's change around the piece."""
 LEAST_PART = 1e-4
 """That change counts at least as so much of the input's change in the whole run."""
@@ -38,7 +38,7 @@ URGENT = 64
 """So many times longer than its bound a piece is to be cut beyond that number."""
 ALIKE = 2.0
 """Factor within which bounds of neighbouring pieces are taken for the same, the smaller one."""
-WINDOW = np.array([-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0])
+WINDOW = np.array([-0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.25])
 """Where the change around a piece is looked at, in lengths from its start."""
 
 
@@ -167,8 +167,7 @@ class _Cut:
 
     def __init__(self, given: Input, edges: np.ndarray) -> None:
         self._given, self._edges = given, edges
-        self._start, self._end = edges[0], edges[-1]
-        self._shortest = SHORTEST * max(abs(self._start), abs(self._end))
+        self._shortest = SHORTEST * max(abs(edges[0]), abs(edges[-1]))
         self._least, self._greatest = np.inf, -np.inf
         self._rounding = 0.0
         self.change, self.size, self.estimated = 0.0, 0.0, False
@@ -204,7 +203,8 @@ class _Cut:
 
     def _looked_at(self, pieces: _Pieces) -> _Pieces:
         """The pieces with the change that samples in and around them show."""
-        t = np.clip(pieces.low + WINDOW[:, None] * pieces.length, self._start, self._end)
+        leg = np.searchsorted(self._edges, (pieces.low + pieces.high) / 2) - 1
+        t = np.clip(pieces.low + WINDOW[:, None] * pieces.length, self._edges[leg], self._edges[leg + 1])
         seen = self._given.at(t.ravel()).reshape(t.shape)
         seen = np.where(np.isfinite(seen), seen, np.nan)
         least, greatest = np.fmin.reduce(seen), np.fmax.reduce(seen)

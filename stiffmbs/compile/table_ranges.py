@@ -107,7 +107,7 @@ class TableRanges:
         """The range of the k-th Taylor coefficient within pieces, over stretches from their starts."""
         a, b, c, d = self._pieces[piece].T
         if k == 3:
-            return np.array([a, a])
+            return np.array([np.minimum(a, 0.0), np.maximum(a, 0.0)])  # with 0, so that no cubic passes for smooth
         if k == 2:
             return np.sort(3 * a * z + b, axis=0)
         if k == 1:

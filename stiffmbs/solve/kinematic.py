@@ -6,12 +6,14 @@ import time
 
 import numpy as np
 
+from ..compile.input_features import InputFeatures
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .failures import FAILURES
 from .initial import InitialValues
 from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
+from .narrow_inputs import narrower_than_output
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
@@ -31,7 +33,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     Each step predicts q + h u + h^2/2 u' and corrects it by Newton; it is halved until positions and velocities come
     out near their prediction, so that the solution cannot jump to another branch.  A mechanism that locks (a dead
     centre under its drive) stops there with a message that names instant and pose.  At corners of the drives in time,
-    where velocities may jump, they are taken anew.
+    where velocities may jump, they are taken anew, and no step is longer than what the drives do in between.
 
     Raises
     ------
@@ -44,8 +46,9 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     rows = Rows(system.n_q, system.n_u, len(times))
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
-    motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start))
-    corners = iter((*mechanics.input_features(grid.start, grid.end).corners, np.inf))
+    features = mechanics.input_features(grid.start, grid.end)
+    motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start), features)
+    corners = iter((*features.corners, np.inf))
     corner = next(corners)
     rows.append(times[0], motion.q, motion.u)
     try:
@@ -62,7 +65,8 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": time.perf_counter() - begun}
-    return Trajectory(*rows.stored, outcome, message, statistics)
+    note = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
+    return Trajectory(*rows.stored, outcome, message, statistics, note=note)
 
 
 def _refuse_freedoms(mechanics: Mechanics) -> None:
@@ -78,8 +82,10 @@ def _refuse_freedoms(mechanics: Mechanics) -> None:
 class _Motion:
     """The state that is followed in time, with its velocities and accelerations."""
 
-    def __init__(self, mechanics: Mechanics, start: InitialValues, t: float, shortest: float) -> None:
-        self._mechanics, self._shortest = mechanics, shortest
+    def __init__(
+        self, mechanics: Mechanics, start: InitialValues, t: float, shortest: float, features: InputFeatures
+    ) -> None:
+        self._mechanics, self._shortest, self._features = mechanics, shortest, features
         self.t, self.steps, self.moves = t, 0, 0
         self._status = 0
         self.q, self.u, self.a = start.q, start.u, start.acceleration
@@ -92,7 +98,7 @@ class _Motion:
         """Follow the motion to a later time, in as many steps as it takes."""
         h = end - self.t
         while self.t < end:
-            h = min(h, end - self.t)
+            h = min(h, end - self.t, max(self._features.longest_step(self.t), 2 * self._shortest))
             last = end - self.t <= h
             if self._step(end if last else self.t + h, h):
                 h *= 2

@@ -16,6 +16,7 @@ from ...errors import SolverError
 from ..initial import InitialValues
 from ..limits import refuse_beyond_limits
 from ..mechanics import POSITION_TOLERANCE, Mechanics
+from ..narrow_inputs import narrower_than_steps
 from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
 from .integration import Integration
 from .scheme import Scheme
@@ -103,7 +104,9 @@ def solve_with_fixed_steps(
     statistics = {
         "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": time.perf_counter() - begun,
     }  # fmt: skip
-    return Trajectory(*rows.stored, outcome, message, statistics)
+    features = mechanics.input_features(grid.start, grid.end)
+    note = narrower_than_steps(features, settings.step, settings.scheme)
+    return Trajectory(*rows.stored, outcome, message, statistics, note=note)
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:
