@@ -16,6 +16,8 @@ from .ranges import (
     EVERYWHERE, Range, around_zero, hull, power_range, product, real_binomial, real_power_range, total,
 )  # fmt: skip
 
+ROUNDING = 1e-15
+"""Of a value at the middle of a stretch."""
 Outer = Callable[[int], Range]
 """The range of the k-th Taylor coefficient of a function of one variable, over the range of that."""
 
@@ -137,6 +139,14 @@ class Enclosure:
         """This one on some stretches, another one on the others."""
         highest = max(len(self.coefficients), len(other.coefficients))
         return Enclosure(tuple(np.where(here, self[k], other[k]) for k in range(highest)), self.order)
+
+    def narrowed(self, middle: np.ndarray, half: np.ndarray) -> Enclosure:
+        """The same with the values at the middles of the stretches known, and half of their lengths (mean value form)."""
+        low, high = self.value
+        reach = half * np.abs(self.slope).max(axis=0)
+        rounding = ROUNDING * np.abs(middle)
+        narrower = np.array([np.fmax(low, middle - reach - rounding), np.fmin(high, middle + reach + rounding)])
+        return Enclosure((narrower, *self.coefficients[1:]), self.order)
 
     def derivative(self) -> Enclosure:
         """Of f; one order less is known of it."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
@@ -20,6 +21,8 @@ from .enclosure import Enclosure
 from .system import System
 from .table_ranges import TableRanges
 
+WRITTEN = "written"
+"""The attribute of a node that keeps what it says."""
 TABLE = "table"
 """The name under which a field's own table of time is called."""
 
@@ -45,15 +48,19 @@ class Input:
 
     def at(self, t: np.ndarray, part: ast.expr | None = None) -> np.ndarray:
         """The values of the expression, or of a part of it, at many instants, shape (n,)."""
-        tables = {name: table.values for name, table in self.tables.items()}
-        values = _Evaluation(t, self.values, _OF_ARRAYS | tables).value(part or self.tree)
+        values = _Evaluation(t, self.values, self._of_arrays()).value(part or self.tree)
         return np.broadcast_to(np.asarray(values, dtype=float), t.shape)
 
     def within(self, low: np.ndarray, high: np.ndarray, order: int = 1, part: ast.expr | None = None) -> Enclosure:
         """Ranges of its values and Taylor coefficients over many stretches of time."""
         t = Enclosure.of_time(low, high, order)
+        middle = _Evaluation((low + high) / 2, self.values, self._of_arrays())
         tables = {name: _by_argument(table.values, table.enclosed) for name, table in self.tables.items()}
-        return t.constant(_Evaluation(t, self.values, _OF_ENCLOSURES | tables).value(part or self.tree))
+        evaluation = _Ranges(t, self.values, _OF_ENCLOSURES | tables, middle, (high - low) / 2)
+        return t.constant(evaluation.value(part or self.tree))
+
+    def _of_arrays(self) -> dict[str, Callable[..., Any]]:
+        return _OF_ARRAYS | {name: table.values for name, table in self.tables.items()}
 
 
 class _Evaluation:
@@ -72,7 +79,7 @@ class _Evaluation:
                 return self._t if name == TIME else self._values[name]
             case ast.Attribute(_, name):
                 return self._values[f"{UNIT}.{name}"]
-        key = ast.dump(node)
+        key = _written(node)
         if key not in self._known:
             self._known[key] = self._computed(node)
         return self._known[key]
@@ -86,6 +93,30 @@ class _Evaluation:
             case ast.Call(ast.Name(name), arguments):
                 return self._functions[name](*(self.value(argument) for argument in arguments))
         raise TypeError(f"no such part of a formula: {ast.dump(node)}")
+
+
+class _Ranges(_Evaluation):
+    """Enclosures of parts of a formula, made narrower by the values at the middle of each stretch (mean value form)."""
+
+    def __init__(
+        self, t: Enclosure, values: Mapping[str, float], functions: Mapping[str, Callable[..., Any]], middle: _Evaluation,
+        half: np.ndarray,
+    ) -> None:  # fmt: skip
+        super().__init__(t, values, functions)
+        self._middle, self._half = middle, half
+
+    def _computed(self, node: ast.expr) -> Any:
+        found = super()._computed(node)
+        return found.narrowed(self._middle.value(node), self._half) if isinstance(found, Enclosure) else found
+
+
+def _written(node: ast.expr) -> str:
+    """What a node says, the same for the same text; found once for each node."""
+    known: str | None = getattr(node, WRITTEN, None)
+    if known is None:
+        known = ast.dump(node)
+        setattr(node, WRITTEN, known)
+    return known
 
 
 def _number(value: Any) -> Any:
@@ -103,11 +134,40 @@ def inputs_of(system: System) -> list[Input]:
 
     for group in system.groups:
         for element in group.elements:
-            for tree, text, values, tables in _expressions(element):
+            for written, text, values, tables in _expressions(element):
+                tree = _WithoutRoots().visit(copy.deepcopy(written))
                 key = ast.dump(tree), tuple(sorted(values.items())), tuple((n, id(t)) for n, t in sorted(tables.items()))
                 if key not in found:
                     found[key] = Input(tree, text, values, {name: ranges_of(table) for name, table in tables.items()})
     return list(found.values())
+
+
+class _WithoutRoots(ast.NodeTransformer):
+    """Writes sqrt(x^2), sqrt(x*x) and (x^2)^0.5 as abs(x): they have its corner, which no range of a root shows."""
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        match node:
+            case ast.Call(ast.Name("sqrt"), [inner]) if (x := _squared(inner)) is not None:
+                return ast.Call(ast.Name("abs", ast.Load()), [x], [])
+        return node
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        self.generic_visit(node)
+        match node:
+            case ast.BinOp(inner, ast.Pow(), ast.Constant(0.5)) if (x := _squared(inner)) is not None:
+                return ast.Call(ast.Name("abs", ast.Load()), [x], [])
+        return node
+
+
+def _squared(node: ast.expr) -> ast.expr | None:
+    """What a node is the square of."""
+    match node:
+        case ast.BinOp(x, ast.Pow(), ast.Constant(2)):
+            return x
+        case ast.BinOp(x, ast.Mult(), y) if ast.dump(x) == ast.dump(y):
+            return x
+    return None
 
 
 def _expressions(element: Element) -> Iterator[tuple[ast.expr, str, Mapping[str, float], Mapping[str, Table]]]:

@@ -130,7 +130,9 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
-            return sp.sympify(evaluate(tree, names(variables), self.functions() | tables, sp.sympify))
+            functions = self.functions() | tables
+            found = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
+            return found.replace(sp.Abs, functions["abs"])  # which SymPy makes of sqrt(x^2)
 
         return function if n_variables else function()
 
