@@ -27,14 +27,15 @@ class Made:
         Of arrays of time.
     points : ndarray
         Where it bends or begins, and some within each of its features, s.
-    tables : dict
-        As in a scene.
+    tables, parameters : dict
+        As in a scene.  Numbers are parameters, so that inputs of one form are compiled once.
     """
 
     text: str
     of: Function
     points: np.ndarray
     tables: dict[str, Any] = field(default_factory=dict)
+    parameters: dict[str, float] = field(default_factory=dict)
 
     def mesh(self) -> np.ndarray:
         """Times that miss no feature."""
@@ -70,6 +71,17 @@ class _Maker:
     def __init__(self, rng: np.random.Generator, continuous: bool) -> None:
         self.rng, self.continuous = rng, continuous
         self.tables: dict[str, Any] = {}
+        self.parameters: dict[str, float] = {}
+
+    def number(self, value: float) -> str:
+        """The name of a parameter with this value."""
+        name = f"n{len(self.parameters)}"
+        self.parameters[name] = float(value)
+        return name
+
+    def made(self, text: str, of: Function, points: np.ndarray) -> Made:
+        """An input that uses the maker's tables and parameters."""
+        return Made(text, of, points, self.tables, self.parameters)
 
     def sum(self, depth: int) -> Made:
         """One feature, or two put together, and perhaps something slow."""
@@ -82,22 +94,22 @@ class _Maker:
         second = self.sum(depth - 1) if how != "product" else self.slow()
         if how == "sum":
             part = 10.0 ** self.rng.uniform(-1, 0)
-            return self.together(f"({first.text}) + {part:.17g}*({{}})", lambda a, b: a + part * b, first, second)
+            return self.together(f"({first.text}) + {self.number(part)}*({{}})", lambda a, b: a + part * b, first, second)
         if how == "product":
             return self.together(f"({first.text})*({{}})", lambda a, b: a * b, first, second)
         if how == "branch" and not self.continuous:
             c = self.rng.uniform(0, END)
-            joined = self.together(f"branch(t - {c:.17g}, {first.text}, 0, {{}})", lambda a, b: a, first, second)
-            return Made(
-                joined.text, lambda t: np.where(t < c, first.of(t), second.of(t)), np.append(joined.points, c), self.tables
+            joined = self.together(f"branch(t - {self.number(c)}, {first.text}, 0, {{}})", lambda a, b: a, first, second)
+            return self.made(
+                joined.text, lambda t: np.where(t < c, first.of(t), second.of(t)), np.append(joined.points, c)
             )
         choose = np.minimum if how == "min" else np.maximum
         joined = self.together(f"{'min' if how == 'min' else 'max'}({first.text}, {{}})", choose, first, second)
-        return Made(joined.text, joined.of, np.append(joined.points, _crossings(first, second)), self.tables)
+        return self.made(joined.text, joined.of, np.append(joined.points, _crossings(first, second)))
 
     def together(self, text: str, how: Callable[..., np.ndarray], first: Made, second: Made) -> Made:
         points = np.concatenate([first.points, second.points])
-        return Made(text.replace("{}", second.text), lambda t: how(first.of(t), second.of(t)), points, self.tables)
+        return self.made(text.replace("{}", second.text), lambda t: how(first.of(t), second.of(t)), points)
 
     def slow(self) -> Made:
         """Something smooth that does not vanish."""
@@ -106,14 +118,14 @@ class _Maker:
         if kind == "ramp":
             return self.simple(f"(0.2 + t/{END})", lambda t: 0.2 + t / END)
         if kind == "decay":
-            return self.simple(f"exp(-{w:.17g}*t)", lambda t: np.exp(-w * t))
+            return self.simple(f"exp(-{self.number(w)}*t)", lambda t: np.exp(-w * t))
         if kind == "rectified":
             zeros = (np.arange(0, 30) * np.pi - phase) / w
-            return Made(f"abs(sin({w:.17g}*t + {phase:.17g}))", lambda t: np.abs(np.sin(w * t + phase)), zeros, self.tables)
-        return self.simple(f"(1 + 0.5*sin({w:.17g}*t))", lambda t: 1 + 0.5 * np.sin(w * t))
+            return self.made(f"abs(sin({self.number(w)}*t + {self.number(phase)}))", lambda t: np.abs(np.sin(w * t + phase)), zeros)
+        return self.simple(f"(1 + 0.5*sin({self.number(w)}*t))", lambda t: 1 + 0.5 * np.sin(w * t))
 
     def simple(self, text: str, of: Function) -> Made:
-        return Made(text, of, np.empty(0), self.tables)
+        return self.made(text, of, np.empty(0))
 
     def feature(self) -> Made:
         """A pulse somewhere, or a table under some argument."""
@@ -122,9 +134,9 @@ class _Maker:
         c = self.rng.uniform(0.05, 0.95) * END
         w = 10.0 ** self.rng.uniform(-5, 0)
         sign = self.rng.choice([-1.0, 1.0])
-        z = f"((t - {c:.17g})/{w:.17g})"
-        ramp = f"t, {c:.17g}, 0, {c + w:.17g}, 1"
-        back = f"t, {c + 2 * w:.17g}, 0, {c + 3 * w:.17g}, 1"
+        z = f"((t - {self.number(c)})/{self.number(w)})"
+        ramp = f"t, {self.number(c)}, 0, {self.number(c + w)}, 1"
+        back = f"t, {self.number(c + 2 * w)}, 0, {self.number(c + 3 * w)}, 1"
         rise, fall = lambda t: np.clip((t - c) / w, 0, 1), lambda t: np.clip((t - c) / w - 2, 0, 1)
         cubic, quintic = lambda x: x * x * (3 - 2 * x), lambda x: x**3 * (10 - 15 * x + 6 * x * x)
         kinds: dict[str, tuple[str, Function]] = {
@@ -137,7 +149,7 @@ class _Maker:
             "step": (f"(step({ramp}) - step({back}))", lambda t: cubic(rise(t)) - cubic(fall(t))),
             "step5": (f"(step5({ramp}) - step5({back}))", lambda t: quintic(rise(t)) - quintic(fall(t))),
             "root": (f"(sqrt({z}^2) - sqrt(({z} - 1)^2) + 1)", lambda t: np.abs((t - c) / w) - np.abs((t - c) / w - 1) + 1),
-            "comb": (f"sin(pi*t/{4 * w + 0.1:.17g})^200", lambda t: np.sin(np.pi * t / (4 * w + 0.1)) ** 200),
+            "comb": (f"sin(pi*t/{self.number(4 * w + 0.1)})^200", lambda t: np.sin(np.pi * t / (4 * w + 0.1)) ** 200),
         }
         kind = str(self.rng.choice(list(kinds)))
         text, of = kinds[kind]
@@ -147,7 +159,7 @@ class _Maker:
             points = (centres[:, None] + period * np.linspace(-0.3, 0.3, 31)).ravel()
         else:
             points = c + w * np.concatenate([np.linspace(-8, 10, 145), *(s * np.geomspace(10, 1e7, 61) for s in (-1, 1))])
-        return Made(f"({sign:g}*{text})", lambda t: sign * of(t), points, self.tables)
+        return self.made(f"({sign:g}*{text})", lambda t: sign * of(t), points)
 
     def table(self) -> Made:
         """A table with a pulse, called with something that rises with time."""
@@ -168,22 +180,22 @@ class _Maker:
         knots = np.concatenate([_passed(argument, knot) for knot in x[1:-1]])
         around = (knots[:, None] + w * np.linspace(-1, 1, 9)).ravel()
         values = _curve(kind, x, y)
-        return Made(f"{name}({text})", lambda t: values(argument(t)), np.concatenate([knots, around]), self.tables)
+        return self.made(f"{name}({text})", lambda t: values(argument(t)), np.concatenate([knots, around]))
 
     def argument(self) -> tuple[str, Function]:
         """Something that does not fall with time."""
         c = self.rng.uniform(0.3, 0.95) * END
         kinds: list[tuple[str, Function]] = [
             ("t", lambda t: t),
-            (f"min(t, {c:.17g})", lambda t: np.minimum(t, c)),
-            (f"max(t - {c / 10:.17g}, 0)", lambda t: np.maximum(t - c / 10, 0)),
-            (f"t^2/{c:.17g}", lambda t: t**2 / c),
-            (f"{END}*step(t, 1, 0, {c:.17g}, 1)", lambda t: END * _ramp((t - 1) / (c - 1))),
+            (f"min(t, {self.number(c)})", lambda t: np.minimum(t, c)),
+            (f"max(t - {self.number(c / 10)}, 0)", lambda t: np.maximum(t - c / 10, 0)),
+            (f"t^2/{self.number(c)}", lambda t: t**2 / c),
+            (f"{END}*step(t, 1, 0, {self.number(c)}, 1)", lambda t: END * _ramp((t - 1) / (c - 1))),
             (f"{END}*(1 - exp(-t/2))", lambda t: END * (1 - np.exp(-t / 2))),
             (f"(t + 0.9*sin(t))", lambda t: t + 0.9 * np.sin(t)),
         ]
         if not self.continuous:
-            kinds.append((f"branch(t - {c / 2:.17g}, 0, {c / 2:.17g}, t)", lambda t: np.where(t < c / 2, 0.0, t)))
+            kinds.append((f"branch(t - {self.number(c / 2)}, 0, {self.number(c / 2)}, t)", lambda t: np.where(t < c / 2, 0.0, t)))
         return kinds[int(self.rng.integers(len(kinds)))]
 
 

@@ -34,21 +34,26 @@ def trial(seed: int) -> Verdict:
 
 
 def _scene(text: str, made: Made, **of_body: Any) -> Scene:
-    scene = {"gravity": [0, 0], "bodies": {"b": {"mass": 1, "inertia": 1}}, **of_body}
+    scene = {"gravity": [0, 0], "parameters": made.parameters, "bodies": {"b": {"mass": 1, "inertia": 1}}, **of_body}
     if made.tables:
         scene["tables"] = made.tables
     return read_scene(json.dumps(scene), source=f"'{text}'")
+
+
+def _given(made: Made) -> str:
+    return f"with {json.dumps(made.parameters)} and {json.dumps(made.tables)[:200]}"
 
 
 def _pushed(rng: np.random.Generator) -> Verdict:
     """A force on 1 kg at rest: momentum and way at output points are integrals of the force."""
     made = made_up(rng)
     size = IMPULSE / made.quadrature(0)[2]
-    text = f"{size:.17g}*({made.text})"
+    made.parameters["size"] = size
+    text = f"size*({made.text})"
     solver = str(rng.choice(["bdf", "auto", "dop853", "dopri5"]))
     how = {"solver": "projected", "scheme": solver} if solver.startswith("dop") else {"solver": solver}
     rtol = float(10.0 ** rng.integers(-9, -4))
-    detail = f"{solver}, rtol {rtol:.0e}: {text} {json.dumps(made.tables)[:200]}"
+    detail = f"{solver}, rtol {rtol:.0e}: {text} {_given(made)}"
     forces = {"f": {"type": "force", "i": "b", "force": [text, 0]}}
     try:
         solution = run(_scene(text, made, forces=forces), duration=END, points=POINTS, rtol=rtol, **how)
@@ -65,7 +70,7 @@ def _pushed(rng: np.random.Generator) -> Verdict:
 def _driven(rng: np.random.Generator) -> Verdict:
     """A drive in a kinematic run: right at output points, and peaks between them are told."""
     made = made_up(rng, continuous=True)
-    detail = f"kinematic: {made.text} {json.dumps(made.tables)[:200]}"
+    detail = f"kinematic: {made.text} {_given(made)}"
     joints = {
         "rail": {"type": "prismatic", "i": "b", "j": "ground"},
         "motor": {"type": "drive", "joint": "rail", "position": made.text},
