@@ -73,7 +73,7 @@ def asin(x: Enclosure) -> Enclosure:
 
     def outer(k: int) -> Range:
         if k == 0:
-            return np.arcsin(inside)
+            return np.where((x.value[1] < -1) | (x.value[0] > 1), np.nan, np.arcsin(inside))
         if k == 1:
             return real_power_range(P, -0.5)
         if k == 2:

@@ -132,7 +132,7 @@ class _Builder:
         def function(*variables: sp.Expr) -> sp.Expr:
             functions = self.functions() | tables
             found = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
-            return found.replace(sp.Abs, functions["abs"])  # which SymPy makes of sqrt(x^2)
+            return found.replace(sp.Abs, functions["abs"]) if found.has(sp.Abs) else found  # SymPy's sqrt(x^2)
 
         return function if n_variables else function()
 

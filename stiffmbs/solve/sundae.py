@@ -179,7 +179,7 @@ class SundaeEngine:
         for name, count in self._since.items():
             self._before[name] += count
         self.callbacks.begin(t)
-        self._last = self._ida.init_step(t, y, yp)
+        self._last, self._near = self._ida.init_step(t, y, yp), t
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
@@ -210,20 +210,26 @@ class SundaeEngine:
         return replace(self._reached(last, False), times=times[:served], rows=rows[:served])
 
     def _to(self, time: float, stop: float) -> Any:
-        """Integrate to a time, over the stops that inputs ask for."""
-        t = float(self._last.t)
-        while (t := t + self._features.longest_step(t)) < time:
-            self._last = self._ida.step(t, method="normal", tstop=t)
-            if self._last.status < 0 or self._last.status == ROOT_FOUND:
-                return self._last
-        self._last = self._ida.step(time, method="normal", tstop=stop)
+        """Integrate to a time, over the stops that inputs ask for on the way to `stop`."""
+        while self._near < time:
+            if self._last.t < self._near:
+                self._last = self._ida.step(self._near, method="normal", tstop=self._near)
+                if self._last.status < 0 or self._last.status == ROOT_FOUND:
+                    return self._last
+            self._near = self._next_stop(stop)
+        self._last = self._ida.step(time, method="normal", tstop=self._near)
         return self._last
+
+    def _next_stop(self, stop: float) -> float:
+        """Where a step from the last such stop on must end at the latest."""
+        return min(stop, self._near + self._features.longest_step(self._near))
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
         while True:
-            near = min(stop, float(self._last.t) + self._features.longest_step(float(self._last.t)))
-            self._last = self._ida.step(stop, method="onestep", tstop=near)
+            if self._last.t >= self._near:
+                self._near = self._next_stop(stop)
+            self._last = self._ida.step(stop, method="onestep", tstop=self._near)
             reached = self._reached(self._last, True)
             yield reached
             if reached.fired or reached.failure or reached.t >= stop:
