@@ -116,6 +116,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(kind, e, -force),
         "switch": sp.Matrix(symbols.switches),
+        "argument": _arguments(symbols),
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
     entries["A_q"] = [
@@ -138,10 +139,16 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
         "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
         "switch": sp.Matrix([*symbols.switches, *kind.element.switches(e)]),  # type: ignore[attr-defined]
         "limit": sp.Matrix(kind.element.limits(e)),  # type: ignore[attr-defined]
+        "argument": _arguments(symbols),
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
     return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()})
+
+
+def _arguments(symbols: Symbols) -> sp.Matrix:
+    """What laws are called with; each depends on the state, so that none is left out as zero."""
+    return sp.Matrix([law.argument for law in symbols.laws])
 
 
 def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:

@@ -105,7 +105,7 @@ EXPLICIT: Layout = {
     "mechanics": INTS, "eliminated": INTS, "eliminates": INT, "scheme": INTS, "n": INT, "project": INT, "tolerance": FLOATS,
     "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS, "step_bound": INTS,
     "t": FLOATS, "t_before": FLOATS, "span": FLOATS, "h": FLOATS, "last_error": FLOATS,
-    "n_switches": INT, "sides": FLOATS, "at_event": INTS,
+    "n_switches": INT, "n_events": INT, "sides": FLOATS, "at_event": INTS, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INTS,
@@ -122,7 +122,7 @@ NATIVE_IDA: Layout = {
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
     "mark": FLOATS, "count": INTS, "history": FLOATS, "samples": FLOATS, "balance_mark": FLOATS, "balance": INTS,
-    "iteration": INTS,
+    "iteration": INTS, "watch": INTS, "probe": FLOATS,
 }  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported."""
@@ -139,6 +139,16 @@ ITERATION: Layout = {
     "n": INT, "mark": FLOATS, "count": INTS, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
 }  # fmt: skip
 """What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`)."""
+
+
+WATCH: Layout = {
+    "n": INT, "n_switches": INT, "waits": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
+    "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
+    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
+    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "mark": FLOATS,
+}  # fmt: skip
+"""What the search for events within a step works on (`stiffmbs.solve.native.within_step`): the event functions with their
+edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes."""
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:

@@ -37,6 +37,9 @@ class KindRecord:
         Equations of each joint that it refers to.
     n_counters : int
         Angles of one element that count whole turns.
+    laws : list of (str, int)
+        What each of its arguments is given to: a function of `stiffmbs.compile.law_zones`, or ``table`` and the place of
+        its offset among the element's numbers.
     patterns : dict
         For each term the (row, column) of its entries in the element's own block.
     sources : dict
@@ -47,6 +50,7 @@ class KindRecord:
     n_holonomic: int
     joint_equations: list[int]
     n_counters: int
+    laws: list[tuple[str, int]]
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
 
@@ -106,7 +110,7 @@ def _derived(kind: Kind) -> KindRecord:
     }
     return KindRecord(
         derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
-        len(derived.symbols.element.angles), patterns, sources,
+        len(derived.symbols.element.angles), [law.of for law in derived.symbols.laws], patterns, sources,
     )  # fmt: skip
 
 

@@ -19,6 +19,31 @@ from .kind import OWN, Kind, Shape
 from .measures import measure, own_coordinate
 from .spline import Spline
 
+NARROW: dict[type[sp.Basic], str] = {
+    sp.exp: "exp", sp.cosh: "exp", sp.sinh: "exp", sp.tanh: "tanh", sp.atan: "atan",
+}  # fmt: skip
+"""Functions whose features are narrow where their argument is steep, and the zones that they have."""
+
+
+STEEP, LEAST_SQUARE = 10, 1e-200
+"""Whole powers from this one on, and those by a formula, are taken for exp(n log |x|): a high power of a sine is narrow.  The
+square of the least |x|."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A table or function with zones (`stiffmbs.compile.law_zones`) that a formula calls with something of the state.
+
+    Attributes
+    ----------
+    argument : expression
+    of : (str, int)
+        The zones' name; for ``table`` the place of its offset among the element's numbers, else 0.
+    """
+
+    argument: sp.Expr
+    of: tuple[str, int]
+
 
 @dataclass
 class Symbols:
@@ -34,12 +59,37 @@ class Symbols:
         Multipliers of each joint that is referred to.
     switches : list of expressions
         What changes its sign at the corners in the state of the formulas (``abs``, ``step``, ...).
+    laws : list of Law
     """
 
     element: SymbolicElement
     numbers: list[sp.Symbol] = field(default_factory=list)
     joint_lam: list[list[sp.Symbol]] = field(default_factory=list)
     switches: list[sp.Expr] = field(default_factory=list)
+    laws: list[Law] = field(default_factory=list)
+
+    def note_switch(self, corner: sp.Expr) -> None:
+        """Note what changes its sign at a corner, if that is in the state."""
+        if self.element.in_state(corner) and corner not in self.switches:
+            self.switches.append(corner)
+
+    def note_law(self, argument: sp.Expr, name: str, table: sp.Symbol | None = None) -> None:
+        """Note the argument of a table or function with narrow features, if that is in the state."""
+        law = Law(argument, (name, 0 if table is None else self.numbers.index(table)))
+        if self.element.in_state(argument) and law not in self.laws:
+            self.laws.append(law)
+
+    def note_functions(self, expression: sp.Expr) -> None:
+        """Note the functions with narrow features that an expression holds."""
+        for part in sp.preorder_traversal(expression):
+            if type(part) in NARROW:
+                self.note_law(part.args[0], NARROW[type(part)])
+            elif isinstance(part, sp.tan):
+                self.note_law(sp.cos(part.args[0]), "reciprocal")
+            elif isinstance(part, sp.Pow) and part.exp.is_Number and part.exp < 0:
+                self.note_law(part.base, "reciprocal")
+            elif isinstance(part, sp.Pow) and not (part.exp.is_Number and part.exp < STEEP):
+                self.note_law(part.exp * sp.log(part.base**2 + sp.Float(LEAST_SQUARE)) / 2, "exp")
 
 
 def symbols_of(kind: Kind) -> Symbols:
@@ -79,7 +129,7 @@ class _Builder:
                 return tuple(self.made(f"{name}{k}", part) for k, part in enumerate(shapes))
             case ("table",):
                 offset = self.fresh(name, integer=True)
-                return lambda x: Spline(x, offset, sp.Integer(0))
+                return lambda x: self.spline(offset, x)
             case ("formula", text, counts, measures):
                 return self.formula(name, text, counts, measures)
             case ("joint", element, fields, slot, coordinate):
@@ -112,7 +162,7 @@ class _Builder:
             for measure, shapes in measures
         ]
 
-        tables = {f"table{k}": partial(_spline, self.fresh(f"{name}_t", integer=True)) for k in range(n_tables)}
+        tables = {f"table{k}": partial(self.spline, self.fresh(f"{name}_t", integer=True)) for k in range(n_tables)}
 
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
             def value(word: str) -> sp.Expr:
@@ -131,20 +181,21 @@ class _Builder:
 
         def function(*variables: sp.Expr) -> sp.Expr:
             functions = self.functions() | tables
-            found = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
-            return found.replace(sp.Abs, functions["abs"]) if found.has(sp.Abs) else found  # SymPy's sqrt(x^2)
+            expression = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
+            if expression.has(sp.Abs):  # which SymPy makes of sqrt(x^2)
+                expression = expression.replace(sp.Abs, functions["abs"])
+            self.symbols.note_functions(expression)
+            return expression
 
         return function if n_variables else function()
 
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
         """The functions of formulas; those with corners note where they are, if it is in the state."""
-        e = self.symbols.element
 
         def noting(function: Callable[..., sp.Expr], corners: Callable[..., tuple[sp.Expr, ...]]) -> Any:
             def called(*arguments: sp.Expr) -> sp.Expr:
                 for corner in corners(*arguments):
-                    if e.in_state(corner):
-                        self.symbols.switches.append(corner)
+                    self.symbols.note_switch(corner)
                 return function(*arguments)
 
             return called
@@ -157,9 +208,10 @@ class _Builder:
             return own_coordinate(name.removeprefix(OWN), markers[0])
         return measure(name, self.symbols.element, markers)
 
-
-def _spline(table: sp.Symbol, x: sp.Expr) -> sp.Expr:
-    return Spline(x, table, sp.Integer(0))
+    def spline(self, table: sp.Symbol, x: sp.Expr) -> sp.Expr:
+        """The value of the table at an offset."""
+        self.symbols.note_law(sp.sympify(x), "table", table)
+        return Spline(x, table, sp.Integer(0))
 
 
 def step(x: sp.Expr, x0: sp.Expr, h0: sp.Expr, x1: sp.Expr, h1: sp.Expr) -> sp.Expr:

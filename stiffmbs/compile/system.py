@@ -178,6 +178,17 @@ class System:
         """Where the limits of all forces begin among the values of the set ``switch``."""
         return sum(group.count * group.entries("switch") for group in self.groups)
 
+    @cached_property
+    def n_switches(self) -> int:
+        """Number of switches and limits, which are the first values of the set ``switch``; arguments of laws follow."""
+        return self.first_limit + sum(group.count * group.entries("limit") for group in self.groups)
+
+    @cached_property
+    def turning(self) -> np.ndarray:
+        """The numbers of the coordinates that are angles; none in space."""
+        flat = self.of_body.n_q == self.of_body.n_u
+        return np.arange(self.of_body.linear, self.of_body.n_q * len(self.bodies) if flat else 0, self.of_body.n_q)
+
     def values_of(self, values: np.ndarray, term_set: str, element: str) -> dict[str, np.ndarray]:
         """The values that one element wrote for each term of a set."""
         found = {}

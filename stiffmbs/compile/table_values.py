@@ -45,7 +45,7 @@ def curve(table: Table) -> Curve:
             at = x[0] + np.mod(at - x[0], x[-1] - x[0])
         inside = np.clip(at, x[0], x[-1])
         k = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, count - 2)
-        a, b, c, d = pieces[k].T.reshape(4, *at.shape)
+        a, b, c, d = np.moveaxis(pieces[k], -1, 0)
         h = inside - x[k]
         slope = (3 * a * h + 2 * b) * h + c
         return ((a * h + b) * h + c) * h + d + slope * (at - inside)

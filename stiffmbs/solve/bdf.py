@@ -139,6 +139,10 @@ class Integrator:
             self._notes.append(
                 f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
             )
+            if mechanics.system.n_values("switch"):
+                self._notes.append(
+                    "contacts and other events that begin and end within one step are not seen this way; set max_step"
+                )
         self._jumps: list[str] = []
         self._events = self._corners = 0
         self._held = HeldSwitches(mechanics)

@@ -38,7 +38,7 @@ class HeldSwitches:
 
     def __init__(self, mechanics: Mechanics) -> None:
         self._mechanics = mechanics
-        n = mechanics.system.n_values("switch")
+        n = mechanics.system.n_switches
         self.waits, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         self._steps = 0
 

@@ -17,7 +17,7 @@ def refuse_beyond_limits(mechanics: Mechanics, t: float, q: np.ndarray, u: np.nd
         Names the element.
     """
     system, state = mechanics.system, mechanics.state
-    first, end = system.first_limit, system.n_values("switch")
+    first, end = system.first_limit, system.n_switches
     if first == end:
         return
     state.q[:], state.u[:] = q, u

@@ -58,7 +58,7 @@ class Callbacks:
         slots = rows * equations.n + columns if dense else None
         self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
         self._history[3] = HISTORY_ROOM
-        n_switches = state.system.n_values("switch")
+        n_switches = state.system.n_switches
         self._sides, self.waits = np.zeros(n_switches), np.zeros(n_switches, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
@@ -142,7 +142,7 @@ class SundaeEngine:
         self._linear_solver = f"{'dense' if dense else 'SuperLU_MT'}, {equations.n} unknowns"
         self.callbacks = Callbacks(equations, state, dense)
         options: dict[str, Any] = {"linsolver": "dense"} if dense else self._sparse()
-        n_switches = state.system.n_values("switch")
+        n_switches = state.system.n_switches
         if n_switches:
             options |= {"eventsfn": self.callbacks.switches, "num_events": n_switches}
         with warnings.catch_warnings():

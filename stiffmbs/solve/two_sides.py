@@ -102,4 +102,4 @@ def _values(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.
     state = mechanics.state
     state.q[:], state.u[:] = q, u
     state.evaluate("switch", t)
-    return state.values["switch"][: mechanics.system.n_values("switch")].copy()
+    return state.values["switch"][: mechanics.system.n_switches].copy()

@@ -192,7 +192,7 @@ class _Maker:
             (f"t^2/{self.number(c)}", lambda t: t**2 / c),
             (f"{END}*step(t, 1, 0, {self.number(c)}, 1)", lambda t: END * _ramp((t - 1) / (c - 1))),
             (f"{END}*(1 - exp(-t/2))", lambda t: END * (1 - np.exp(-t / 2))),
-            (f"(t + 0.9*sin(t))", lambda t: t + 0.9 * np.sin(t)),
+            ("(t + 0.9*sin(t))", lambda t: t + 0.9 * np.sin(t)),
         ]
         if not self.continuous:
             kinds.append((f"branch(t - {self.number(c / 2)}, 0, {self.number(c / 2)}, t)", lambda t: np.where(t < c / 2, 0.0, t)))

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...compile.layout import EXPLICIT, packed
 from ...describe.settings import RunSettings
+from ..event_watch import EventWatch
 from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
 from ..step_bound import StepBound
@@ -48,8 +49,8 @@ class Integration:
         self.step_bound = StepBound()
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
-        n_switches = mechanics.system.n_values("switch")
-        mechanics.state.load("switch")
+        n_switches = mechanics.system.n_switches
+        self._watch = EventWatch(mechanics.state)
         counters = ("at_event", "dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
         self._arrays: dict[str, Any] = {
             "mechanics": mechanics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
@@ -59,7 +60,8 @@ class Integration:
             "longest": np.array([settings.max_step or np.inf]), "step_bound": self.step_bound.table,
             "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
             "t": np.array([grid.start]), "t_before": np.array([grid.start]), "span": np.zeros(1),
-            "n_switches": n_switches, "sides": np.zeros(n_switches),
+            "n_switches": n_switches, "n_events": mechanics.system.n_values("switch"), "sides": np.zeros(n_switches),
+            "watch": self._watch.table,
             "h": np.array([settings.step]), "last_error": np.array([SMALLEST_ERROR]),
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
@@ -101,7 +103,7 @@ class Integration:
         return self._arrays["y"][self._n_q :]
 
     def begin(self, start: InitialValues) -> int:
-        """Go on from consistent values at the time reached; the first switch that has changed since the last step, or -1."""
+        """Go on from consistent values at the time reached; the first switch of the event that was met there, or -1."""
         self.q[:], self.u[:] = start.q, start.u
         rates = self._mechanics.position_rates(start.q, start.u)
         self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
@@ -110,10 +112,10 @@ class Integration:
         state, sides = self._mechanics.state, self._arrays["sides"]
         state.q[:], state.u[:] = start.q, start.u
         state.evaluate("switch", self.t)
-        found = state.values["switch"][: len(sides)]
-        changed = np.flatnonzero(np.sign(found) != np.sign(sides))
-        sides[:] = found
-        return int(changed[0]) if len(changed) else -1
+        sides[:] = state.values["switch"][: len(sides)]
+        met = np.flatnonzero(self._watch.found[: len(sides)])
+        self._watch.begin()
+        return int(met[0]) if len(met) else -1
 
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""

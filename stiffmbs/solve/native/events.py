@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled
+from stiffmbs.compile.native.access import compiled, shifted
 from stiffmbs.compile.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
+from stiffmbs.solve.native.error_estimate import error_of
 from stiffmbs.solve.native.interpolant import interpolated, prepare
-from stiffmbs.solve.native.stages import copied, load_state
+from stiffmbs.solve.native.stages import copied, load_state, weighted
+from stiffmbs.solve.native.within_step import (
+    DIFFERENCE,
+    first_event,
+    keep_row,
+    noted,
+    noted_rates,
+    suspicious,
+    watch_view,
+)
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: in parts of the step, and of the time."""
 MOST_RETAKEN, BISECTIONS = 8, 40
+MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT = 1.0, 0.2, 1, 2
+"""A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
+DOUBTED = 1e3
+"""The error that a step counts for where stages have seen a law that its end has not."""
 
 
 @compiled
@@ -20,19 +34,73 @@ def _values(x, s, y, t):
 
 
 @compiled
-def _changed(x, values):
+def _has_changed(x, values, k):
     """Whether a switch has left the side on which it was at the step's start; from zero it may go either way."""
+    return x.sides[k] * values[k] < 0.0 or (values[k] == 0.0 and x.sides[k] != 0.0)
+
+
+@compiled
+def _changed(x, values):
+    """Whether any switch has."""
     changed = False
     for k in range(x.n_switches):
-        if x.sides[k] * values[k] < 0.0 or (values[k] == 0.0 and x.sides[k] != 0.0):
+        if _has_changed(x, values, k):
             changed = True
     return changed
 
 
 @compiled
-def note_sides(x, s, y, t):
-    """Remember the values of all switches at the start of a step."""
-    copied(x.sides, _values(x, s, y, t), x.n_switches)
+def _note_changed(x, values):
+    """Keep which switches have."""
+    found = watch_view(x.watch).found
+    for k in range(x.n_switches):
+        found[k] = 1 if _has_changed(x, values, k) else 0
+
+
+@compiled
+def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
+    """Values and rates of all event functions at a state; rates are taken over a time `ahead`, which may be negative."""
+    w = watch_view(x.watch)
+    noted(value, _values(x, s, y, t), w.n)
+    for i in range(x.n):
+        x.difference[i] = y[i] + ahead * rates[i]
+    noted_rates(rate, value, _values(x, s, x.difference, t + ahead), ahead, w.n)
+
+
+@compiled
+def _stages_have_changed(x, c, s):
+    """Whether a stage has seen another law than the start and the end of the step; its weights may hide that from the error."""
+    for row in range(1, c.stages):
+        weighted(x, c, x.y_stage, row, x.span[0])
+        if _changed(x, _values(x, s, x.y_stage, x.t_before[0] + c.c[row] * x.span[0])):
+            return True
+    return False
+
+
+@compiled
+def _event_within(x, c, s, m):
+    """The time from the step's start to an event that begins and ends within it; 0 for none, a negative status, or the whole
+    length where stages show that there is one but not where."""
+    w = watch_view(x.watch)
+    h = x.span[0]
+    if not h > ROUNDINGS * abs(x.t[0]):
+        return 0.0
+    small = DIFFERENCE * h
+    _note_event_functions(x, s, x.y_before, x.k, x.t_before[0], small, w.value_before, w.rate_before)
+    _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t[0], -small, w.value_after, w.rate_after)
+    if not suspicious(w, h, x.y_before, x.y):
+        return 0.0
+    if _stages_have_changed(x, c, s):
+        return h
+    status = prepare(x, c, s, m)
+    if status < 0:
+        return float(status)
+    for node in range(w.n_nodes):
+        interpolated(x, c, w.node[node], x.y_stage)
+        load_state(s, x.y_stage)
+        keep_row(w, s, node)
+    event = first_event(w, s, x.t_before[0], h)
+    return event * h if ROUNDINGS * abs(x.t[0]) < event * h < h else 0.0
 
 
 @compiled
@@ -62,34 +130,82 @@ def _retaken(x, c, s, m, h):
 
 
 @compiled
-def end_at_event(x, c, s, m):
-    """Where a switch has changed within the last step, take the step again so that it ends just behind the change.
+def _go_past(x, c, s, ahead):
+    """Move the end of the step on by so little that rates do not change, beyond an event: no stage has seen the law there."""
+    rates = shifted(x.k, c.stages * x.n)
+    for i in range(x.n):
+        x.y[i] += ahead * rates[i]
+    x.t[0] += ahead
+    x.at_event[0] = 1
+
+
+@compiled
+def _taken_to_change(x, c, s, m, high, behind):
+    """Take the step again until it ends just before the first change of a switch; 0, a negative status, or `RETRIED`.
 
     The first guess comes from the interpolant of a step whose stages have seen both laws, the next ones from those of
-    steps that end where the guess says.  0 or a negative status.
+    steps that end where the guess says.
     """
-    if not _changed(x, _values(x, s, x.y, x.t[0])):
-        note_sides(x, s, x.y, x.t[0])
-        return 0
-    high = x.span[0]
-    behind = max(BEHIND * high, ROUNDINGS * abs(x.t[0]))
     changed = True
     for _ in range(MOST_RETAKEN):
         status = prepare(x, c, s, m)
         if status < 0:
             return status
         first = _first_change(x, c, s, high)
-        if changed and x.span[0] <= first + 2.0 * behind:
-            break
-        status = _retaken(x, c, s, m, min(first + behind, high))
+        if not changed and first <= x.span[0] + 2.0 * behind:
+            return 0
+        status = _retaken(x, c, s, m, max(first - behind, 0.5 * first))
         if status < 0:
             return status
         changed = _changed(x, _values(x, s, x.y, x.t[0]))
         if changed:
             high = x.span[0]
-    if not changed:
-        status = _retaken(x, c, s, m, high)
-        if status < 0:
-            return status
-    x.at_event[0] = 1
+    return RETRIED if changed else 0
+
+
+@compiled
+def _taken_to_event(x, c, s, m, h, behind):
+    """Take the step again up to the first event in it; 0, a negative status, `RETRIED`, or `NO_EVENT`."""
+    values = _values(x, s, x.y, x.t[0])
+    if _changed(x, values):
+        _note_changed(x, values)
+        return _taken_to_change(x, c, s, m, h, behind)
+    within = _event_within(x, c, s, m)
+    if within == 0.0:
+        return NO_EVENT
+    if within < 0.0:
+        return int(within)
+    return RETRIED if within == h else _retaken(x, c, s, m, max(within - behind, 0.5 * within))
+
+
+@compiled
+def end_at_event(x, c, s, m):
+    """Where a switch has changed within the last step, or has changed twice, take the step again up to the first change.
+
+    0, a negative status, or `RETRIED` where the step's shortened form cannot be trusted and is left.
+    """
+    h = x.span[0]
+    behind = max(BEHIND * h, ROUNDINGS * abs(x.t[0]))
+    status = _taken_to_event(x, c, s, m, h, behind)
+    if status == NO_EVENT:
+        copied(x.sides, _values(x, s, x.y, x.t[0]), x.n_switches)
+        return 0
+    if status < 0:
+        return status
+    error = error_of(x, c, x.span[0]) if status == 0 else DOUBTED
+    if not error <= MOST_ERROR:
+        return _left(x, c, error)
+    _go_past(x, c, s, 2.0 * behind)
     return 0
+
+
+@compiled
+def _left(x, c, error):
+    """Go back to the step's start, for a shorter one."""
+    x.h[0] = x.span[0] * max(LEAST_FACTOR, 0.9 * error ** -c.exponent[0])
+    copied(x.y, x.y_before, x.n)
+    copied(shifted(x.k, c.stages * x.n), x.k, x.n)
+    x.t[0] = x.t_before[0]
+    x.rejected[0] += 1
+    x.dense_ready[0] = 0
+    return RETRIED

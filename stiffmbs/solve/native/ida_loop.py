@@ -10,6 +10,17 @@ from stiffmbs.solve.native.calls import call_address, call_int, copy_bytes, int3
 from stiffmbs.solve.native.iteration import AGE, MADE
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 from stiffmbs.solve.native.watched import watched
+from stiffmbs.solve.native.within_step import (
+    BEGUN,
+    DIFFERENCE,
+    READY,
+    first_event,
+    keep_row,
+    noted,
+    noted_rates,
+    suspicious,
+    watch_view,
+)
 
 OK, RECOVERABLE = 0, 1
 """What a callback returns: after a recoverable failure IDA tries a smaller step."""
@@ -21,13 +32,16 @@ RETURNED, INTERNAL, SIZE, NEXT_SIZE = range(4)
 first), and of the one that it will try next."""
 STRETCHED = 1.01
 """The last step may be this much longer than inputs allow, so that no tiny one is left."""
-SERVED, RECORDED, ORDER, TINY, SINCE, NEXT = range(6)
+SERVED, RECORDED, ORDER, TINY, SINCE, NEXT, WITHIN = range(7)
 """Counts: output points served, steps in the history, order of the last step, tiny steps in succession, steps since the
-last sample, place of the next one."""
+last sample, place of the next one, whether the last event was found by the search within the step."""
 SAMPLES, STEPS_APART = 16, 4
 """The last states are kept as samples, one each few steps: the time and what is reported."""
 HISTORY_WIDTH = 3
 STALLED = -101
+START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
+"""Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning
+than this part of the time are not told from it."""
 MOST_TINY, TINY_STEP = 100, 2e-14
 """IDA would go on forever with steps below the precision of time: this many below this part of t are the end."""
 
@@ -105,6 +119,7 @@ def _stepped(c, toward, stop):
     """One step; returns IDA's flag and notes the step's end, order and size in the history."""
     before = c.mark[INTERNAL]
     _see_inputs(c, stop)
+    _watch_start(c, toward)
     flag = call_int(c.solve, (c.memory, toward, c.mark, c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.mark[RETURNED] < stop:
         flag = int32(OK)
@@ -118,7 +133,70 @@ def _stepped(c, toward, stop):
         c.history[row + 2] = c.mark[SIZE]
         c.count[RECORDED] += 1
         _sample(c)
-    return STALLED if flag >= 0 and _stalled(c) else flag
+    if flag >= 0 and _stalled(c):
+        return STALLED
+    return _looked_within(c, flag) if flag >= 0 else flag
+
+
+@compiled
+def _note_event_functions(c, t, ahead, value, rate):
+    """Values and rates of all event functions at the state in c.y; rates are taken over a time `ahead`, which may be negative."""
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    w = watch_view(c.watch)
+    y, yp = _array(c, c.y), _array(c, c.yp)
+    load(s, e, y, yp)
+    noted(value, evaluate(s, SWITCH, t), w.n)
+    for k in range(e.n):
+        c.probe[k] = y[k] + ahead * yp[k]
+    load(s, e, c.probe, yp)
+    noted_rates(rate, value, evaluate(s, SWITCH, t + ahead), ahead, w.n)
+
+
+@compiled
+def _watch_start(c, toward):
+    """Where the integrator starts anew, look at the event functions there."""
+    w = watch_view(c.watch)
+    c.count[WITHIN] = 0
+    if w.n > 0 and w.mark[READY] == 0.0:
+        w.mark[READY] = 1.0
+        w.mark[BEGUN] = c.mark[RETURNED]
+        ahead = max(START_DIFFERENCE * (toward - c.mark[RETURNED]), ROUNDINGS * abs(c.mark[RETURNED]))
+        _note_event_functions(c, c.mark[RETURNED], ahead, w.value_before, w.rate_before)
+        s = state_view(c.state)
+        keep_row(w, s, 0)
+
+
+@compiled
+def _looked_within(c, flag):
+    """Where an event has begun and ended within the last step, go back to its beginning; IDA's flag, or ROOT_RETURN."""
+    w = watch_view(c.watch)
+    begun = w.mark[BEGUN]
+    h = c.mark[RETURNED] - begun
+    if w.n == 0 or not h > ROUNDINGS * abs(begun):
+        return flag
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    _note_event_functions(c, c.mark[RETURNED], -DIFFERENCE * h, w.value_after, w.rate_after)
+    if suspicious(w, h, w.row, s.q):
+        for node in range(w.n_nodes):
+            if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
+                return flag
+            load(s, e, c.output, _array(c, c.yp))
+            keep_row(w, s, node)
+        event = begun + h * first_event(w, s, begun, h)
+        if begun + ROUNDINGS * abs(begun) < event < c.mark[RETURNED]:
+            call_int(c.interpolate, (c.memory, event, int32(0), c.y))
+            call_int(c.interpolate, (c.memory, event, int32(1), c.yp))
+            c.mark[RETURNED] = event
+            c.count[WITHIN] = 1
+            return int32(ROOT_RETURN)
+        load(s, e, _array(c, c.y), _array(c, c.yp))
+    keep_row(w, s, 0)
+    w.mark[BEGUN] = c.mark[RETURNED]
+    noted(w.value_before, w.value_after, w.n)
+    noted(w.rate_before, w.rate_after, w.n)
+    return flag
 
 
 @compiled

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import isfinite, sqrt
+from math import isfinite
 
 from stiffmbs.compile.native.access import compiled, explicit_view, mechanics_view, scheme_view, shifted, state_view
 from stiffmbs.solve.native.attempt import arrive, attempt
-from stiffmbs.solve.native.events import end_at_event
+from stiffmbs.solve.native.error_estimate import error_of
+from stiffmbs.solve.native.events import RETRIED, end_at_event
 from stiffmbs.solve.native.interpolant import store_rows, store_step
-from stiffmbs.solve.native.stages import add_stages, copied
+from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import NOT_FINITE
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 
@@ -22,30 +23,6 @@ STRETCHED = 1.01
 STIFF_PART, ENOUGH_STEPS, TOO_MANY_STEPS = 0.1, 10_000, 1e9
 """A run is given up when this part of its steps was held back by stability, after so many, with so many ahead for each
 number of the state: some ten minutes."""
-
-
-@compiled
-def _squares(x, c, row):
-    """The mean square of the difference to an embedded scheme, over the tolerance (without the factor h)."""
-    for i in range(x.n):
-        x.difference[i] = 0.0
-    add_stages(x, x.difference, shifted(c.errors, row * c.extended), c.stages + 1, 1.0)
-    total = 0.0
-    for i in range(x.n):
-        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
-        ratio = x.difference[i] / scale
-        total += ratio * ratio
-    return total / x.n
-
-
-@compiled
-def _error(x, c, h):
-    """The estimated error of the step over the tolerance."""
-    first = _squares(x, c, 0)
-    if c.n_errors == 1:
-        return h * sqrt(first)
-    both = first + 0.01 * _squares(x, c, 1)
-    return h * first / sqrt(both) if both != 0.0 else 0.0
 
 
 @compiled
@@ -100,7 +77,7 @@ def _step(x, c, s, m, end):
         if t + STRETCHED * h >= end:
             h = end - t
         status = attempt(x, c, s, m, h)
-        error = _error(x, c, h) if status == 0 else 0.0
+        error = error_of(x, c, h) if status == 0 else 0.0
         if not isfinite(error):
             status = NOT_FINITE
         if status == 0 and error <= 1.0:
@@ -142,10 +119,12 @@ def advance(end, steps, held, own_steps, explicit):
         if x.at_event[0]:
             return AT_EVENT
         status = _step(x, c, s, m, end)
-        if status >= 0 and x.n_switches:
+        if status >= 0 and x.n_events:
             status = end_at_event(x, c, s, m)
         if status < 0:
             return status
+        if status == RETRIED:
+            continue
         x.ends[x.steps[0] % x.room] = x.t[0]
         x.steps[0] += 1
         if own_steps:

@@ -10,6 +10,7 @@ from ...compile.equations import Equations
 from ...compile.layout import NATIVE_IDA, packed
 from ...compile.routines import Routine
 from ...compile.state import State
+from ..event_watch import EventWatch
 from ..step_bound import StepBound
 from .balance import ENOUGH, LONG, Balance
 from .iteration import Iteration
@@ -26,7 +27,7 @@ JACOBIAN = Routine(
 SWITCHES = Routine(MODULE, "switches", "int32(float64, int64, int64, float64*, int64*)")
 
 RETURNED, INTERNAL, SIZE, NEXT_SIZE = range(4)
-SERVED, RECORDED, ORDER, TINY, SINCE, NEXT = range(6)
+SERVED, RECORDED, ORDER, TINY, SINCE, NEXT, WITHIN = range(7)
 SAMPLES = 16
 """Marks and counts, as in `stiffmbs.solve.native.ida_loop`."""
 MOST_STEPS = 2048
@@ -57,6 +58,7 @@ class Connection:
     n_switches : int
     sides, waits : ndarrays, shape (n_switches,)
         As in `stiffmbs.solve.native.watched`.
+    watch : EventWatch
     history : StepLog
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
         Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
@@ -70,16 +72,17 @@ class Connection:
         n = equations.n
         self._session, self._state, self._equations = session, state, equations
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
-        self.y, self.yp, self.output = np.zeros(n), np.zeros(n), np.zeros(n)
-        self.mark, self.count = np.zeros(4), np.zeros(6, dtype=np.int64)
+        self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
+        self.mark, self.count = np.zeros(4), np.zeros(7, dtype=np.int64)
         self.history = StepLog()
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.balance, self.iteration, self.step_bound = Balance(n), Iteration(n), StepBound()
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
-        self.n_switches = equations.system.n_values("switch")
+        self.n_switches = equations.system.n_switches
         self.sides, self.waits = np.zeros(self.n_switches), np.zeros(self.n_switches, dtype=np.int64)
+        self.watch = EventWatch(state, self.waits)
         for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "switch"):
             state.load(term_set)
         self._table = self._packed()
@@ -106,7 +109,7 @@ class Connection:
                 "next_step_of": address("IDAGetCurrentStep"), "step_bound": self.step_bound.table,
                 "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS), "samples": self.samples,
                 "balance_mark": self.balance.mark, "balance": self.balance.table,
-                "iteration": self.iteration.count,
+                "iteration": self.iteration.count, "watch": self.watch.table, "probe": self._probe,
             },
         )  # fmt: skip
 

@@ -11,7 +11,7 @@ from ...compile.equations import Equations
 from ...compile.input_features import InputFeatures
 from ...compile.routines import Routine
 from ...compile.state import State
-from .connection import INTERNAL, MODULE, MOST_STEPS, NEXT, RETURNED, SERVED, SINCE, SIZE, TINY, Connection
+from .connection import INTERNAL, MODULE, MOST_STEPS, NEXT, RETURNED, SERVED, SINCE, SIZE, TINY, WITHIN, Connection
 from .matrices import Matrix
 from .session import Session
 from .statistics import Statistics
@@ -195,6 +195,7 @@ class NativeIda:
         self._ida.count[[TINY, SINCE]] = 0
         self._ida.samples[:] = np.nan
         self._ida.sides[:] = 0.0
+        self._ida.watch.begin()
         self._ida.iteration.begin()
         self.history.begin(t)
         self._begun, self._flag = True, 0
@@ -261,7 +262,12 @@ class NativeIda:
         return failure_sentence(self._flag)
 
     def roots(self) -> np.ndarray:
-        """After `Status.ROOT`: for each switch +1 or -1 where it rose or fell through zero, else 0."""
+        """After `Status.ROOT`: for each switch other than 0 where it went through zero.
+
+        None is where the step has passed a zone of a law (`stiffmbs.solve.native.within_step`).
+        """
+        if self._ida.count[WITHIN]:
+            return self._ida.watch.found[: self.n_switches].astype(np.intc)
         found = np.zeros(self.n_switches, dtype=np.intc)
         self._ida.ask("IDAGetRootInfo", found.ctypes.data)
         return found * self._ida.sides.astype(np.intc)

@@ -1,0 +1,286 @@
+"""Events that begin and end within one step: bodies that meet and part, a stop touched and left, a bump of a law passed.
+
+The sign of an event function at both ends of a step says nothing of its inside.  The search looks at values and rates at
+the ends first, by bounds that hold for a cubic and for a convex function.  Only where these reach an edge it follows the
+function along the step's interpolant, in parts that are halved until a cubic describes each of them (Shampine and
+Thompson, Comput. Math. Appl. 39 (2000) 43-49, for the need; Park and Barton, ACM TOMACS 6 (1996) 137-165).
+
+An edge of a switch is zero: the step ends where the switch passes it.  The edges of an argument part its law into zones;
+to go from one zone into the next is nothing that a step's error control does not see, but a zone that the step has passed
+through, or has visited between its ends, has been overlooked.
+"""
+
+from __future__ import annotations
+
+from math import floor, isfinite, sqrt
+
+from stiffmbs.compile.layout import WATCH
+from stiffmbs.compile.native.access import compiled, shifted, view_of
+from stiffmbs.compile.native.evaluate import SWITCH, evaluate
+
+READY, BEGUN = range(2)
+"""Marks: whether values at the start of the step are known, and that start's time."""
+MARGIN = 0.1
+"""Part of the range of a function's bounds that is added to them on both sides."""
+LOOKED_AT = 0.4142135623730951
+"""Place within a part of a step where a cubic is compared with the function: no round fraction of a period."""
+FITS, ROUNDING = 0.02, 1e-9
+"""Part of the range of its values by which the function may differ from the cubic there, and what rounding takes of values and
+rates."""
+LEAST_PART, MOST_PARTS = 1e-5, 20_000
+DIFFERENCE = 1e-5
+"""Part of a step over which rates are taken."""
+BISECTIONS, BEHIND = 50, 1e-9
+"""The event is put behind the change by this part of the step, so that the new law holds there."""
+TURNED = 1.0
+"""rad, by which a body may turn in a step without a look inside: rates at the ends tell nothing of whole turns."""
+
+watch_view = view_of("Watch", WATCH)
+
+
+@compiled
+def zone(w, k, value):
+    """The number of edges of event function k below a value."""
+    first, end = w.first_edge[k], w.first_edge[k + 1]
+    turns = 0
+    if w.period[k] > 0.0:
+        around = floor((value - w.edges[first]) / w.period[k])
+        if not abs(around) < 1e15:
+            return 0
+        turns = int(around)
+        value -= around * w.period[k]
+    low = first
+    high = end
+    while low < high:
+        middle = (low + high) // 2
+        if w.edges[middle] < value:
+            low = middle + 1
+        else:
+            high = middle
+    return low - first + turns * (end - first)
+
+
+@compiled
+def noted(target, values, count):
+    """Keep the values of all event functions."""
+    for k in range(count):
+        target[k] = values[k]
+
+
+@compiled
+def noted_rates(rate, value, nearby, ahead, count):
+    """Rates from values and from those at another instant, so much later."""
+    for k in range(count):
+        rate[k] = (nearby[k] - value[k]) / ahead
+
+
+@compiled
+def _left_out(w, k):
+    """Whether a function is not looked at: it waits, has no number, or has changed at the end, which is seen without a search."""
+    if not isfinite(w.value_before[k] - w.value_after[k]):
+        return True
+    if k >= w.n_switches:
+        return False
+    return w.waits[k] > 0 or w.value_before[k] == 0.0 or zone(w, k, w.value_before[k]) != zone(w, k, w.value_after[k])
+
+
+@compiled
+def _bound(start, start_rate, end, end_rate, side):
+    """A bound from below (`side` -1) or above (1) on what has these values and rates (times the length) at the ends of a part.
+
+    That of the cubic's Bezier points, and of the tangents' meeting point, beyond which no convex function goes.
+    """
+    p, q = start + start_rate / 3.0, end - end_rate / 3.0
+    low, high = min(start, end, p, q), max(start, end, p, q)
+    if start_rate * end_rate < 0.0:
+        place = (end - end_rate - start) / (start_rate - end_rate)
+        if 0.0 < place < 1.0:
+            meeting = start + start_rate * place
+            low, high = min(low, meeting), max(high, meeting)
+    margin = MARGIN * (high - low)
+    return low - margin if side < 0 else high + margin
+
+
+@compiled
+def _reaches(w, k, start, start_rate, end, end_rate):
+    """Whether a function may come into a zone that is none of those at the ends of the step."""
+    one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
+    if abs(one - other) > 1:
+        return True
+    low, high = _bound(start, start_rate, end, end_rate, -1), _bound(start, start_rate, end, end_rate, 1)
+    return zone(w, k, low) < min(one, other) or zone(w, k, high) > max(one, other)
+
+
+@compiled
+def suspicious(w, h, q_before, q_after):
+    """Whether the values and rates at both ends of a step of length h leave room for an event inside."""
+    for k in range(w.n_angles):
+        if abs(q_after[w.angle[k]] - q_before[w.angle[k]]) > TURNED:
+            return True
+    for k in range(w.n):
+        if not _left_out(w, k) and _reaches(
+            w, k, w.value_before[k], h * w.rate_before[k], w.value_after[k], h * w.rate_after[k]
+        ):
+            return True
+    return False
+
+
+@compiled
+def _load_at(w, s, place):
+    """The state at a place within the step, from 0 to 1, by the polynomial through the nodes (barycentric formula)."""
+    total = 0.0
+    for i in range(w.n_state):
+        w.row[w.n_nodes * w.n_state + i] = 0.0
+    state = shifted(w.row, w.n_nodes * w.n_state)
+    for node in range(w.n_nodes):
+        apart = place - w.node[node]
+        row = shifted(w.row, node * w.n_state)
+        if apart == 0.0:
+            noted(state, row, w.n_state)
+            total = 1.0
+            break
+        factor = w.weight[node] / apart
+        total += factor
+        for i in range(w.n_state):
+            state[i] += factor * row[i]
+    for i in range(s.n_q):
+        s.q[i] = state[i] / total
+    for i in range(s.n_u):
+        s.u[i] = state[s.n_q + i] / total
+
+
+@compiled
+def keep_row(w, s, node):
+    """Keep the state at hand as that of a node."""
+    row = shifted(w.row, node * w.n_state)
+    noted(row, s.q, s.n_q)
+    noted(shifted(row, s.n_q), s.u, s.n_u)
+
+
+@compiled
+def _values(w, s, begun, h, place):
+    _load_at(w, s, place)
+    return evaluate(s, SWITCH, begun + place * h)
+
+
+@compiled
+def _cubic(start, start_rate, end, end_rate, x):
+    """The cubic with these values and rates (times the length) at 0 and 1."""
+    y = 1.0 - x
+    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (y * start_rate - x * end_rate)
+
+
+@compiled
+def _described(w, part):
+    """Whether cubics describe the functions that may have an event within a part of the step."""
+    for k in range(w.n):
+        if _left_out(w, k):
+            continue
+        start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
+        if not _reaches(w, k, start, start_rate, end, end_rate):
+            continue
+        seen = max(start, end, w.m[k]) - min(start, end, w.m[k])
+        rounding = ROUNDING * (abs(start) + abs(end) + abs(start_rate) + abs(end_rate))
+        if not abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT)) <= FITS * seen + rounding:
+            return False
+    return True
+
+
+@compiled
+def _extremum(start, start_rate, end, end_rate, which):
+    """Where within (0, 1) the cubic has a slope of zero, the first or second such place; 2 for nowhere."""
+    a = 3.0 * (start_rate + end_rate - 2.0 * (end - start))
+    b = 2.0 * (3.0 * (end - start) - 2.0 * start_rate - end_rate)
+    inside = b * b - 4.0 * a * start_rate
+    if inside < 0.0:
+        return 2.0
+    half = -0.5 * (b + (sqrt(inside) if b >= 0.0 else -sqrt(inside)))
+    root = 2.0
+    if which == 0 and a != 0.0:
+        root = half / a
+    if which == 1 and half != 0.0:
+        root = start_rate / half
+    return root if 0.0 < root < 1.0 else 2.0
+
+
+@compiled
+def _visits(w, k, value, low, high):
+    """Note that a function has a value at a place; whether that is an event.  It was in the zone of the start up to `low`."""
+    one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
+    here = zone(w, k, value)
+    if here != one and w.left_high[k] < 0.0:
+        w.left_low[k], w.left_high[k] = low, high
+    if k < w.n_switches or abs(one - other) > 1:
+        return here != one
+    return here < min(one, other) or here > max(one, other)
+
+
+@compiled
+def _first_within(w, s, begun, h, low, part):
+    """The first event of all functions within a part of the step, as a place in the step; 2 for none."""
+    first = 2.0
+    for k in range(w.n):
+        if _left_out(w, k):
+            continue
+        start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
+        there = _visits(w, k, w.m[k], low, low + LOOKED_AT * part)
+        if not there and _reaches(w, k, start, start_rate, end, end_rate):
+            for which in range(2):
+                place = _extremum(start, start_rate, end, end_rate, which)
+                if place < 1.0 and not there:
+                    there = _visits(w, k, _values(w, s, begun, h, low + place * part)[k], low, low + place * part)
+        if not there:
+            there = _visits(w, k, end, low, low + part)
+        if there:
+            place = _change(w, s, begun, h, k)
+            if place < first:
+                first = place
+                for j in range(w.n):
+                    w.found[j] = 0
+                w.found[k] = 1
+    return first
+
+
+@compiled
+def _change(w, s, begun, h, k):
+    """Where a function leaves the zone in which it was at the start of the step."""
+    here = zone(w, k, w.value_before[k])
+    low, high = w.left_low[k], w.left_high[k]
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if zone(w, k, _values(w, s, begun, h, middle)[k]) != here:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@compiled
+def first_event(w, s, begun, h):
+    """The place, from 0 to 1, of the first event within a step from `begun` that the nodes describe; 2 for none."""
+    noted(w.a, w.value_before, w.n)
+    for k in range(w.n):
+        w.a_rate[k] = h * w.rate_before[k]
+        w.left_high[k] = -1.0
+    low = 0.0
+    part = 0.5
+    parts = 0
+    while low < 1.0:
+        end = min(low + part, 1.0)
+        part = end - low
+        noted(w.b, _values(w, s, begun, h, end), w.n)
+        noted_rates(w.b_rate, w.b, _values(w, s, begun, h, end - DIFFERENCE * part), -DIFFERENCE * part, w.n)
+        noted(w.m, _values(w, s, begun, h, low + LOOKED_AT * part), w.n)
+        parts += 1
+        fits = _described(w, part)
+        if not fits and part > LEAST_PART and parts < MOST_PARTS:
+            part *= 0.5
+            continue
+        place = _first_within(w, s, begun, h, low, part)
+        if place <= 1.0:
+            return min(1.0, place + BEHIND)
+        noted(w.a, w.b, w.n)
+        noted(w.a_rate, w.b_rate, w.n)
+        low = end
+        part = 2.0 * part if fits else part
+    return 2.0

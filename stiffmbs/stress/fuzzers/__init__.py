@@ -1,0 +1,1 @@
+"""Random cases without end: each module has `WHAT` and `trial(seed)`."""
