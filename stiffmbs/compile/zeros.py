@@ -14,10 +14,10 @@ SHORTEST = 1e-12
 """Length of a stretch, in parts of the times themselves, in which no more than one passage is looked for."""
 MOST = 1_000_000
 """Stretches at which the search is given up."""
-MANY = 4096
+MANY = 256
 """Stretches from which on those are dropped in which the formula stands at a level but for rounding."""
-ROUNDING = 1e-14
-"""Of a formula, in parts of its range."""
+ROUNDING, LAST_DIGIT = 1e-14, 3e-16
+"""Of a formula where samples tell it, and where its ranges do, in parts of its values."""
 
 Values = Callable[[np.ndarray], np.ndarray]
 Ranges = Callable[[np.ndarray, np.ndarray], Enclosure]
@@ -71,7 +71,7 @@ def _stretches(
         found = ranges(low, high)
         size = size or _size(found.value)
         middle = (low + high) / 2
-        around = _around(levels, found, values(middle), middle, low, high)
+        around = _around(levels, found, values(middle), middle, low, high) & ~_stays(found.value, levels, size)
         one_way = (found.slope[0] > 0) | (found.slope[1] < 0)
         settled = around & (one_way | (high - low <= shortest))
         yield np.array([low[settled], high[settled]])
@@ -101,6 +101,12 @@ def _around(
     half = np.where(np.isfinite(half), half, np.inf)
     least, most = np.fmax(at_middle - half, found.value[0]), np.fmin(at_middle + half, found.value[1])
     return moving & (np.searchsorted(levels, least, side="left") < np.searchsorted(levels, most, side="right"))
+
+
+def _stays(value: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
+    """Stretches in which the formula is nowhere away from one level, but for rounding."""
+    k = np.clip(np.searchsorted(levels, value[0] - LAST_DIGIT * size), 0, len(levels) - 1)
+    return (np.abs(value - levels[k]) <= LAST_DIGIT * size).all(axis=0)
 
 
 def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
