@@ -86,9 +86,7 @@ def test_the_fallback_engine_sees_it_too(monkeypatch):
     from stiffmbs.solve import bdf
 
     monkeypatch.setattr(bdf, "available", lambda: (False, "not here"))
-    solution = stiffmbs.run(
-        scene("1000*exp(-((t - 8)/0.5 ms)^2)"), duration=10.0, points=11, rtol=1e-6, solver="bdf"
-    )
+    solution = stiffmbs.run(scene("1000*exp(-((t - 8)/0.5 ms)^2)"), duration=10.0, points=11, rtol=1e-6, solver="bdf")
     assert solution["b.vx"][-1] == pytest.approx(0.25 * np.sqrt(np.pi), rel=1e-4)
 
 
@@ -129,7 +127,10 @@ def test_nested_steps_take_no_longer_than_their_number():
     """Fourteen steps within each other, and a part that is written twice at each of fourteen levels."""
     nested = doubled = "t/10"
     for _ in range(14):
-        nested, doubled = f"step({nested}, 0.1, 0, 0.9, 1)", f"({doubled})*sin({doubled})" if len(doubled) < 400 else doubled
+        nested, doubled = (
+            f"step({nested}, 0.1, 0, 0.9, 1)",
+            f"({doubled})*sin({doubled})" if len(doubled) < 400 else doubled,
+        )
     for text in (nested, doubled):
         given = Input(parse(text), text, {}, {})
         found = given.within(np.array([0.0]), np.array([1.0]), order=3)
@@ -174,7 +175,9 @@ def test_enclosures_hold_taylor_coefficients(name):
             assert np.all((least <= exact.real + close)[defined] & (exact.real <= greatest + close)[defined])
 
 
-@pytest.mark.parametrize("how", [{"lines": True}, {"akima": True}, {}, {"ends": "periodic"}, {"ends": "clamped"}], ids=str)
+@pytest.mark.parametrize(
+    "how", [{"lines": True}, {"akima": True}, {}, {"ends": "periodic"}, {"ends": "clamped"}], ids=str
+)
 def test_ranges_of_tables_hold_their_values_and_slopes(how):
     rng = np.random.default_rng(0)
     y = rng.uniform(-1, 1, 12)

@@ -48,7 +48,11 @@ def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
     for node in reading_order(given.tree):
         for condition, levels in _conditions(given, node, start, end):
             key = ast.dump(condition), levels.tobytes()
-            if key in seen or not len(levels) or not any(isinstance(part, ast.Name) and part.id == TIME for part in ast.walk(condition)):
+            if (
+                key in seen
+                or not len(levels)
+                or not any(isinstance(part, ast.Name) and part.id == TIME for part in ast.walk(condition))
+            ):
                 continue
             seen.add(key)
             values, ranges = partial(given.at, part=condition), partial(given.within, part=condition)

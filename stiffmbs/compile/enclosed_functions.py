@@ -27,7 +27,9 @@ def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
 
     def of(x: Enclosure) -> Enclosure:
         def outer(k: int) -> Range:
-            return (between_turns(np.cosh, x.value, (0.0,)) if even == (k % 2 == 0) else np.sinh(x.value)) / FACTORIALS[k]
+            return (between_turns(np.cosh, x.value, (0.0,)) if even == (k % 2 == 0) else np.sinh(x.value)) / FACTORIALS[
+                k
+            ]
 
         return x.composed(outer)
 

@@ -13,7 +13,15 @@ from typing import Any
 import numpy as np
 
 from .ranges import (
-    EVERYWHERE, Range, around_zero, hull, power_range, product, real_binomial, real_power_range, total,
+    EVERYWHERE,
+    Range,
+    around_zero,
+    hull,
+    power_range,
+    product,
+    real_binomial,
+    real_power_range,
+    total,
 )  # fmt: skip
 
 ROUNDING = 1e-15

@@ -136,7 +136,11 @@ def inputs_of(system: System) -> list[Input]:
         for element in group.elements:
             for written, text, values, tables in _expressions(element):
                 tree = _WithoutRoots().visit(copy.deepcopy(written))
-                key = ast.dump(tree), tuple(sorted(values.items())), tuple((n, id(t)) for n, t in sorted(tables.items()))
+                key = (
+                    ast.dump(tree),
+                    tuple(sorted(values.items())),
+                    tuple((n, id(t)) for n, t in sorted(tables.items())),
+                )
                 if key not in found:
                     found[key] = Input(tree, text, values, {name: ranges_of(table) for name, table in tables.items()})
     return list(found.values())

@@ -33,7 +33,9 @@ def product(a: Range, b: Range) -> Range:
 
 def hull(*ranges: Range) -> Range:
     """The least range that holds all of them."""
-    return np.array([reduce(np.minimum, [each[0] for each in ranges]), reduce(np.maximum, [each[1] for each in ranges])])
+    return np.array(
+        [reduce(np.minimum, [each[0] for each in ranges]), reduce(np.maximum, [each[1] for each in ranges])]
+    )
 
 
 def around_zero(x: Range) -> np.ndarray:

@@ -49,7 +49,9 @@ class TableRanges:
             return self.corners[(self.corners >= low) & (self.corners <= high)]
         first, last = np.floor((low - self._x[0]) / self.period), np.ceil((high - self._x[0]) / self.period)
         if not (last - first) * len(self.corners) <= MOST:
-            raise TooMany(f"a periodic table has more than {MOST:.0e} corners between {low:g} and {high:g}, expected fewer")
+            raise TooMany(
+                f"a periodic table has more than {MOST:.0e} corners between {low:g} and {high:g}, expected fewer"
+            )
         turns = np.arange(first, last + 1)
         found = np.unique((self.corners + turns[:, None] * self.period).ravel())
         return found[(found >= low) & (found <= high)]
@@ -90,7 +92,9 @@ class TableRanges:
         def outer(k: int) -> Range:
             found = hull(self._of_pieces(first, z_first, k), self._of_pieces(last, z_last, k))
             between = last > first + 1
-            found = np.where(between, hull(found, self._most[k].over(first + 1, np.where(between, last, first + 2))), found)
+            found = np.where(
+                between, hull(found, self._most[k].over(first + 1, np.where(between, last, first + 2))), found
+            )
             if k > self._smooth:
                 found = np.where(same, found, EVERYWHERE)
             if k == 0:

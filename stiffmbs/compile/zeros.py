@@ -56,12 +56,11 @@ def zeros(values: Values, ranges: Ranges, start: float, end: float, levels: np.n
             found = start + (end - start) * (levels - first) / (last - first) if first != last else np.empty(0)
             return found[(found >= start) & (found <= end)]
         stretches = list(_stretches(values, ranges, start, end, levels))
-        return _passages(values, *np.concatenate(stretches, axis=1), levels) if stretches else np.empty(0)
+        low, high = np.concatenate([np.empty((2, 0)), *stretches], axis=1)
+        return _passages(values, low, high, levels)
 
 
-def _stretches(
-    values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray
-) -> Iterator[np.ndarray]:
+def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray) -> Iterator[np.ndarray]:
     """Beginnings and ends of stretches of one slope, or as short as time can be told apart, that may hold a passage."""
     shortest = SHORTEST * max(abs(start), abs(end))
     edges = np.linspace(start, end, AT_ONCE + 1)

@@ -94,12 +94,16 @@ class _Maker:
         second = self.sum(depth - 1) if how != "product" else self.slow()
         if how == "sum":
             part = 10.0 ** self.rng.uniform(-1, 0)
-            return self.together(f"({first.text}) + {self.number(part)}*({{}})", lambda a, b: a + part * b, first, second)
+            return self.together(
+                f"({first.text}) + {self.number(part)}*({{}})", lambda a, b: a + part * b, first, second
+            )
         if how == "product":
             return self.together(f"({first.text})*({{}})", lambda a, b: a * b, first, second)
         if how == "branch" and not self.continuous:
             c = self.rng.uniform(0, END)
-            joined = self.together(f"branch(t - {self.number(c)}, {first.text}, 0, {{}})", lambda a, b: a, first, second)
+            joined = self.together(
+                f"branch(t - {self.number(c)}, {first.text}, 0, {{}})", lambda a, b: a, first, second
+            )
             return self.made(
                 joined.text, lambda t: np.where(t < c, first.of(t), second.of(t)), np.append(joined.points, c)
             )
@@ -121,7 +125,9 @@ class _Maker:
             return self.simple(f"exp(-{self.number(w)}*t)", lambda t: np.exp(-w * t))
         if kind == "rectified":
             zeros = (np.arange(0, 30) * np.pi - phase) / w
-            return self.made(f"abs(sin({self.number(w)}*t + {self.number(phase)}))", lambda t: np.abs(np.sin(w * t + phase)), zeros)
+            return self.made(
+                f"abs(sin({self.number(w)}*t + {self.number(phase)}))", lambda t: np.abs(np.sin(w * t + phase)), zeros
+            )
         return self.simple(f"(1 + 0.5*sin({self.number(w)}*t))", lambda t: 1 + 0.5 * np.sin(w * t))
 
     def simple(self, text: str, of: Function) -> Made:
@@ -148,7 +154,10 @@ class _Maker:
             "dome": (f"max(0, 1 - {z}^2)", lambda t: np.maximum(0, 1 - ((t - c) / w) ** 2)),
             "step": (f"(step({ramp}) - step({back}))", lambda t: cubic(rise(t)) - cubic(fall(t))),
             "step5": (f"(step5({ramp}) - step5({back}))", lambda t: quintic(rise(t)) - quintic(fall(t))),
-            "root": (f"(sqrt({z}^2) - sqrt(({z} - 1)^2) + 1)", lambda t: np.abs((t - c) / w) - np.abs((t - c) / w - 1) + 1),
+            "root": (
+                f"(sqrt({z}^2) - sqrt(({z} - 1)^2) + 1)",
+                lambda t: np.abs((t - c) / w) - np.abs((t - c) / w - 1) + 1,
+            ),
             "comb": (f"sin(pi*t/{self.number(4 * w + 0.1)})^200", lambda t: np.sin(np.pi * t / (4 * w + 0.1)) ** 200),
         }
         kind = str(self.rng.choice(list(kinds)))
@@ -158,7 +167,9 @@ class _Maker:
             centres = (np.arange(0, END / period + 2) + 0.5) * period
             points = (centres[:, None] + period * np.linspace(-0.3, 0.3, 31)).ravel()
         else:
-            points = c + w * np.concatenate([np.linspace(-8, 10, 145), *(s * np.geomspace(10, 1e7, 61) for s in (-1, 1))])
+            points = c + w * np.concatenate(
+                [np.linspace(-8, 10, 145), *(s * np.geomspace(10, 1e7, 61) for s in (-1, 1))]
+            )
         return self.made(f"({sign:g}*{text})", lambda t: sign * of(t), points)
 
     def table(self) -> Made:
@@ -195,7 +206,9 @@ class _Maker:
             ("(t + 0.9*sin(t))", lambda t: t + 0.9 * np.sin(t)),
         ]
         if not self.continuous:
-            kinds.append((f"branch(t - {self.number(c / 2)}, 0, {self.number(c / 2)}, t)", lambda t: np.where(t < c / 2, 0.0, t)))
+            kinds.append(
+                (f"branch(t - {self.number(c / 2)}, 0, {self.number(c / 2)}, t)", lambda t: np.where(t < c / 2, 0.0, t))
+            )
         return kinds[int(self.rng.integers(len(kinds)))]
 
 
@@ -211,7 +224,13 @@ def _curve(kind: str, x: np.ndarray, y: np.ndarray) -> Function:
     if kind == "lines":
         return lambda s: np.interp(s, x, y)  # both of its ends are flat
     curve = Akima1DInterpolator(x, y) if kind == "akima" else CubicSpline(x, y, bc_type="natural")
-    return lambda s: curve(np.clip(s, x[0], x[-1]))
+    slopes = curve.derivative()
+
+    def values(s: np.ndarray) -> np.ndarray:
+        inside = np.clip(s, x[0], x[-1])
+        return np.asarray(curve(inside) + slopes(inside) * (s - inside))
+
+    return values
 
 
 def _passed(function: Function, value: float) -> np.ndarray:

@@ -23,6 +23,8 @@ GLOBAL = 300.0
 """Global error, in parts of the tolerance, that steps may add up to."""
 IMPULSE = 10.0
 """Of the absolute value of each input, N s: absolute tolerances then do not matter."""
+NOTHING = 1e-9
+"""Impulse, N s, of inputs of the size of 1 N that vanish but for rounding."""
 UNSEEN = 0.1
 """Part of a drive's change by which its peak may exceed what output points show without a word."""
 
@@ -47,11 +49,14 @@ def _given(made: Made) -> str:
 def _pushed(rng: np.random.Generator) -> Verdict:
     """A force on 1 kg at rest: momentum and way at output points are integrals of the force."""
     made = made_up(rng)
-    size = IMPULSE / made.quadrature(0)[2]
+    impulse = made.quadrature(0)[2]
+    if impulse < NOTHING:
+        return measured(0.0, MISSED, f"an input that is zero: {made.text}")
+    size = IMPULSE / impulse
     made.parameters["size"] = size
     text = f"size*({made.text})"
     solver = str(rng.choice(["bdf", "auto", "dop853", "dopri5"]))
-    how = {"solver": "projected", "scheme": solver} if solver.startswith("dop") else {"solver": solver}
+    how: dict[str, Any] = {"solver": "projected", "scheme": solver} if solver.startswith("dop") else {"solver": solver}
     rtol = float(10.0 ** rng.integers(-9, -4))
     detail = f"{solver}, rtol {rtol:.0e}: {text} {_given(made)}"
     forces = {"f": {"type": "force", "i": "b", "force": [text, 0]}}
