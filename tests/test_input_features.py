@@ -102,6 +102,11 @@ def test_a_sine_is_bounded_alike_at_each_frequency_and_by_half_a_turn_at_the_lea
     assert 0.5 < np.min(found.longest) * frequency < 1.0
 
 
+def test_inputs_with_too_many_features_are_told_and_followed():
+    assert "too many features" in features("sin(2e7*pi*t)").note
+    assert not features("sin(2000*pi*t)").note
+
+
 def test_a_pulse_of_a_microsecond_in_1000_s_is_found_wherever_it_is():
     for c in np.random.default_rng(1).uniform(0, 1000, 20):
         length, t = features(f"exp(-((t - {c:.17g})/1e-6)^2)", end=1000.0).narrowest()
