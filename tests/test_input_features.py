@@ -211,6 +211,11 @@ def test_a_kinematic_peak_between_output_points_is_told_and_found_by_verify():
     assert not any("output points" in note for note in quiet.notes)
 
 
+def test_a_kinematic_drive_may_bend_at_the_very_start():
+    solution = stiffmbs.run(driven("max(0, t)"), duration=1.0, points=11, solver="kinematic")
+    np.testing.assert_allclose(solution["b.x"], solution.t, atol=1e-12)
+
+
 def test_fixed_steps_tell_of_shorter_features():
     how = {"duration": 1.0, "points": 11, "solver": "projected", "scheme": "rk4"}
     notes = stiffmbs.run(scene("exp(-((t - 0.5)/1e-4)^2)"), **how).notes

@@ -87,6 +87,7 @@ class _Motion:
     ) -> None:
         self._mechanics, self._shortest, self._features = mechanics, shortest, features
         self.t, self.steps, self.moves = t, 0, 0
+        self._begun = t
         self._status = 0
         self.q, self.u, self.a = start.q, start.u, start.acceleration
         state = mechanics.state
@@ -104,6 +105,9 @@ class _Motion:
                 h *= 2
             elif h > self._shortest:
                 h /= 2
+            elif self.t == self._begun:  # a drive such as max(0, t) bends at the very start
+                self.go_past(self.t)
+                h = end - self.t
             else:
                 raise SolverError(self._stuck())
 
