@@ -5,8 +5,10 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic, SpringDamper, compile_model
-from stiffmbs.compile.corners import _OF_ARRAYS, corner_times
-from stiffmbs.compile.enclosure import FUNCTIONS, Enclosure
+from stiffmbs.compile.corners import corner_times
+from stiffmbs.compile.enclosed_functions import FUNCTIONS
+from stiffmbs.compile.enclosure import Enclosure
+from stiffmbs.compile.inputs_of_time import _OF_ARRAYS, inputs_of
 from stiffmbs.describe.table import Table
 
 
@@ -40,7 +42,7 @@ def test_a_short_pulse_after_a_long_rest_is_seen(at_rest, how):
 
 
 def corners(force, start=0.0, end=10.0):
-    return corner_times(compile_model(sled(force).data()), start, end)
+    return corner_times(inputs_of(compile_model(sled(force).data())), start, end)
 
 
 @pytest.mark.parametrize(
@@ -90,12 +92,12 @@ def test_corners_before_the_start_and_after_the_end_do_not_count():
 
 
 def test_tables_of_time_have_corners_where_flat_parts_end():
-    from stiffmbs.compile.corners import _of_table
+    from stiffmbs.compile.table_ranges import TableRanges
 
     pulse = Table(table=((0, 0), (4, 0), (4.1, 1), (4.2, 0), (9, 0), (10, 0)))
-    np.testing.assert_allclose(sorted(_of_table(pulse, 0, 10)), [0, 4, 4.2, 10])
+    np.testing.assert_allclose(TableRanges(pulse).corners_between(0, 10), [0, 4, 4.2, 10])
     lines = Table(table=((0, 0), (1, 1), (2, 2), (3, 0)), lines=True)
-    np.testing.assert_allclose(sorted(_of_table(lines, 0, 10)), [0, 2, 3])
+    np.testing.assert_allclose(TableRanges(lines).corners_between(0, 10), [0, 2, 3])
 
 
 def test_the_result_does_not_depend_on_output_points():

@@ -7,6 +7,7 @@ from scipy.interpolate import Akima1DInterpolator, CubicSpline
 import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.compile.corners import corner_times
+from stiffmbs.compile.inputs_of_time import inputs_of
 from stiffmbs.compile.table_values import curve
 from stiffmbs.describe.table import Table
 
@@ -85,7 +86,7 @@ run: {{duration: 2, points: 41}}
 
 def test_corners_of_named_tables_of_time():
     def corners(force, how=", lines: true"):
-        return corner_times(stiffmbs.compile_model(scene(force, how)), 0.0, 2.5)
+        return corner_times(inputs_of(stiffmbs.compile_model(scene(force, how))), 0.0, 2.5)
 
     np.testing.assert_allclose(corners("push(t)"), [0.5, 1, 2])
     np.testing.assert_allclose(corners("push(2*t - 1)"), [0.5, 0.75, 1, 1.5, 2])

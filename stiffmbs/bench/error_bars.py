@@ -105,7 +105,7 @@ def measured(problem: Problem, rtols: Iterable[float] = RTOLS) -> Iterator[tuple
 
 def at_more_instants(job: Job) -> Solution:
     """A job solved, and solved again at its own steps and between these besides."""
-    times = more_instants(solved(job))
+    times = more_instants(solved(job), job.mechanics.input_features(job.grid.start, job.grid.end))
     return solved(replace(job, grid=Grid(job.grid.start, job.grid.end, times)))
 
 

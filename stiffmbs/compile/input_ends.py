@@ -17,7 +17,8 @@ from ..describe.element import Element
 from ..describe.formula import UNIT, FormulaError, evaluate
 from ..describe.formula_field import TIME, Formula, is_measure, reading_order
 from ..describe.formula_value import formula_value
-from .enclosure import FUNCTIONS, Enclosure
+from .enclosed_functions import FUNCTIONS
+from .enclosure import Enclosure
 from .system import System
 
 AT_ONCE, MOST_DIVISIONS = 32, 500
@@ -191,7 +192,7 @@ def _range(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) 
     t = Enclosure.of_time(low, high)
 
     def constant(number: float) -> Enclosure:
-        return Enclosure(np.full((2, len(low)), float(number)), np.zeros((2, len(low))))
+        return t.constant(number)
 
     def names(name: str) -> Enclosure:
         return t if name == TIME else constant(formula.values[name])

@@ -102,9 +102,12 @@ SCHEME: Layout = {
 }  # fmt: skip
 """The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
 
+STEP_BOUND: Layout = {"n": INT, "place": INTS, "starts": FLOATS, "longest": FLOATS}
+"""The longest steps that see what the inputs do (`stiffmbs.solve.step_bound`); n is 0 where nothing bounds a step."""
+
 EXPLICIT: Layout = {
     "mechanics": INTS, "eliminated": INTS, "eliminates": INT, "scheme": INTS, "n": INT, "project": INT, "tolerance": FLOATS,
-    "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS,
+    "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS, "step_bound": INTS,
     "t": FLOATS, "t_before": FLOATS, "span": FLOATS, "h": FLOATS, "last_error": FLOATS,
     "n_switches": INT, "n_events": INT, "sides": FLOATS, "at_event": INTS, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
@@ -121,6 +124,7 @@ NATIVE_IDA: Layout = {
     "n_switches": INT, "sides": FLOATS, "waits": INTS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
+    "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
     "mark": FLOATS, "count": INTS, "history": FLOATS, "samples": FLOATS, "balance_mark": FLOATS, "balance": INTS,
     "iteration": INTS, "watch": INTS, "probe": FLOATS,
 }  # fmt: skip

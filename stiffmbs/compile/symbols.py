@@ -181,7 +181,10 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
-            expression = sp.sympify(evaluate(tree, names(variables), self.functions() | tables, sp.sympify))
+            functions = self.functions() | tables
+            expression = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
+            if expression.has(sp.Abs):  # which SymPy makes of sqrt(x^2)
+                expression = expression.replace(sp.Abs, functions["abs"])
             self.symbols.note_functions(expression)
             return expression
 

@@ -56,7 +56,7 @@ def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def curve(table: Table) -> Curve:
     """The values of a table, as kernels compute them: outside its points it goes on straight, or repeats."""
-    count, x, pieces = _parts(table)
+    count, x, pieces = parts_of(table)
 
     def values(arguments: np.ndarray) -> np.ndarray:
         at = np.asarray(arguments, dtype=float)
@@ -64,7 +64,7 @@ def curve(table: Table) -> Curve:
             at = x[0] + np.mod(at - x[0], x[-1] - x[0])
         inside = np.clip(at, x[0], x[-1])
         k = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, count - 2)
-        a, b, c, d = pieces[k].T.reshape(4, *at.shape)
+        a, b, c, d = np.moveaxis(pieces[k], -1, 0)
         h = inside - x[k]
         slope = (3 * a * h + 2 * b) * h + c
         return ((a * h + b) * h + c) * h + d + slope * (at - inside)
@@ -72,7 +72,7 @@ def curve(table: Table) -> Curve:
     return values
 
 
-def _parts(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
+def parts_of(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
     """Number of points, the points, and the coefficients of each piece, highest first."""
     data = spline_data(table)
     count = int(data[0])

@@ -1,4 +1,4 @@
-"""All instants at which a formula of time changes its sign, however close to each other."""
+"""All instants at which a formula of time passes one of some levels, however close to each other."""
 
 from __future__ import annotations
 
@@ -11,23 +11,28 @@ from .enclosure import Enclosure
 AT_ONCE = 64
 """Stretches that the search begins with."""
 SHORTEST = 1e-12
-"""Length of a stretch, in parts of the times themselves, in which no more than one sign is looked for."""
+"""Length of a stretch, in parts of the times themselves, in which no more than one passage is looked for."""
 MOST = 1_000_000
 """Stretches at which the search is given up."""
+MANY = 256
+"""Stretches from which on those are dropped in which the formula stands at a level but for rounding."""
+ROUNDING, LAST_DIGIT = 1e-14, 3e-16
+"""Of a formula where samples tell it, and where its ranges do, in parts of its values."""
 
 Values = Callable[[np.ndarray], np.ndarray]
 Ranges = Callable[[np.ndarray, np.ndarray], Enclosure]
+ZERO = np.zeros(1)
 
 
 class TooMany(Exception):
-    """A formula changes its sign too often."""
+    """A formula passes its levels too often."""
 
 
-def zeros(values: Values, ranges: Ranges, start: float, end: float) -> np.ndarray:
-    """Instants of a change of sign between two times, in no order.
+def zeros(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray = ZERO) -> np.ndarray:
+    """Instants between two times at which a formula changes its sign or passes another level, in no order.
 
-    A stretch is halved until the formula's range leaves zero out, or its slope keeps one sign there, so that the
-    signs at the ends tell all.  Straight lines need no search.
+    A stretch is halved until the formula's range leaves all levels out, or its slope keeps one sign there, so that the
+    values at the ends tell all.  Straight lines need no search.  Where the formula stays at a level it passes none.
 
     Parameters
     ----------
@@ -37,6 +42,8 @@ def zeros(values: Values, ranges: Ranges, start: float, end: float) -> np.ndarra
         Of the beginnings and ends of stretches.
     start, end : float
         s.
+    levels : ndarray
+        Increasing.
 
     Raises
     ------
@@ -46,50 +53,84 @@ def zeros(values: Values, ranges: Ranges, start: float, end: float) -> np.ndarra
         first, last = values(np.array([start, end]))
         slope = ranges(np.array([start]), np.array([end])).slope[:, 0]
         if np.isfinite(slope[0]) and slope[0] == slope[1]:
-            return start + (end - start) * first / (first - last) * np.ones(int(first != last))
-        stretches = list(_stretches(values, ranges, start, end))
-        return _bisected(values, *np.concatenate(stretches, axis=1)) if stretches else np.empty(0)
+            found = start + (end - start) * (levels - first) / (last - first) if first != last else np.empty(0)
+            return found[(found >= start) & (found <= end)]
+        stretches = list(_stretches(values, ranges, start, end, levels))
+        low, high = np.concatenate([np.empty((2, 0)), *stretches], axis=1)
+        return _passages(values, low, high, levels)
 
 
-def _stretches(values: Values, ranges: Ranges, start: float, end: float) -> Iterator[np.ndarray]:
-    """Beginnings and ends of stretches of one slope, or as short as time can be told apart, that may hold a change."""
+def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray) -> Iterator[np.ndarray]:
+    """Beginnings and ends of stretches of one slope, or as short as time can be told apart, that may hold a passage."""
     shortest = SHORTEST * max(abs(start), abs(end))
     edges = np.linspace(start, end, AT_ONCE + 1)
     low, high = edges[:-1], edges[1:]
+    size = 0.0
     while len(low):
         found = ranges(low, high)
+        size = size or _size(found.value)
         middle = (low + high) / 2
-        around = _around_zero(found, values(middle), middle, low, high)
+        around = _around(levels, found, values(middle), middle, low, high) & ~_stays(found.value, levels, size)
         one_way = (found.slope[0] > 0) | (found.slope[1] < 0)
         settled = around & (one_way | (high - low <= shortest))
         yield np.array([low[settled], high[settled]])
         open_ones = around & ~settled
+        if np.count_nonzero(open_ones) > MANY:
+            open_ones[open_ones] = ~_stands(values, low[open_ones], high[open_ones], levels, size)
         low, middle, high = low[open_ones], middle[open_ones], high[open_ones]
         if len(low) > MOST:
             raise TooMany(f"found more than {MOST:.0e} corners between {start:g} and {end:g} s, expected fewer")
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
 
 
-def _around_zero(
-    found: Enclosure, at_middle: np.ndarray, middle: np.ndarray, low: np.ndarray, high: np.ndarray
-) -> np.ndarray:
-    """Which stretches may hold a change of sign, by their ranges and by the slope from their middle.
+def _size(value: np.ndarray) -> float:
+    finite = value[np.isfinite(value)]
+    return float(np.max(np.abs(finite), initial=0.0))
 
-    Where the formula stands still it changes no sign, whatever its value.
+
+def _around(
+    levels: np.ndarray, found: Enclosure, at_middle: np.ndarray, middle: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Which stretches may hold a passage, by their ranges and by the slope from their middle.
+
+    Where the formula stands still it passes nothing, whatever its value.
     """
     half = np.maximum(high - middle, middle - low) * np.abs(found.slope).max(axis=0)
     moving = np.any(found.slope != 0, axis=0)
-    near = ~(np.abs(at_middle) > half)  # also where the bound of the slope is infinite
-    return moving & near & (found.value[0] <= 0) & (found.value[1] >= 0)
+    half = np.where(np.isfinite(half), half, np.inf)
+    least, most = np.fmax(at_middle - half, found.value[0]), np.fmin(at_middle + half, found.value[1])
+    return moving & (np.searchsorted(levels, least, side="left") < np.searchsorted(levels, most, side="right"))
 
 
-def _bisected(values: Values, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Where the sign changes in each stretch; stretches without a change have none, a zero at an end counts."""
+def _stays(value: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
+    """Stretches in which the formula is nowhere away from one level, but for rounding."""
+    k = np.clip(np.searchsorted(levels, value[0] - LAST_DIGIT * size), 0, len(levels) - 1)
+    return (np.abs(value - levels[k]) <= LAST_DIGIT * size).all(axis=0)
+
+
+def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
+    """Stretches in which the formula is at a level, but for rounding, wherever it is looked at."""
+    standing = np.ones(len(low), dtype=bool)
+    for part in (0.0, 0.17, 0.5, 0.83, 1.0):
+        at = values(low + part * (high - low))
+        k = np.clip(np.searchsorted(levels, at), 1, len(levels) - 1) if len(levels) > 1 else 0
+        miss = np.minimum(np.abs(at - levels[k]), np.abs(at - levels[np.maximum(k - 1, 0)]))
+        standing &= miss <= ROUNDING * size
+    return standing
+
+
+def _passages(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarray) -> np.ndarray:
+    """Where each stretch passes the levels between its ends; a value at an end that is a level counts."""
     first, last = values(low), values(high)
-    at_ends = np.concatenate([low[first == 0], high[last == 0]])
-    changes = first * last < 0
-    low, high, rising = low[changes], high[changes], last[changes] > 0
+    at_ends = np.concatenate([low[np.isin(first, levels)], high[np.isin(last, levels)]])
+    least, most = np.minimum(first, last), np.maximum(first, last)
+    from_level = np.searchsorted(levels, least, side="right")
+    count = np.maximum(np.searchsorted(levels, most, side="left") - from_level, 0)
+    stretch = np.repeat(np.arange(len(low)), count)
+    within = np.arange(len(stretch)) - np.repeat(np.cumsum(count) - count, count)
+    level = levels[from_level[stretch] + within]
+    low, high, rising = low[stretch], high[stretch], (last > first)[stretch]
     while np.any((low < (middle := (low + high) / 2)) & (middle < high)):
-        beyond = (values(middle) > 0) == rising
+        beyond = (values(middle) > level) == rising
         low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
     return np.concatenate([at_ends, high])

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.input_features import InputFeatures
 from .error_bars import Fine
 from .poses import poses_of
 from .run import Job
@@ -22,6 +23,8 @@ AT_ONCE = 1e-9
 PARTS_OF_IMPLICIT_STEPS, PARTS = 2, 4
 """Into how many parts the time between two instants is cut: a polynomial of order 5 or less goes through an implicit
 step, one of order 8 through an explicit one."""
+MOST_OF_INPUTS = 5000
+"""Instants that show what inputs do."""
 MOST_VALUES = 3e7
 """Values of a run; more would fill the memory."""
 
@@ -52,19 +55,24 @@ class Between:
         return self.solution.time[self.sound], self.solution[channel][self.sound], self.at
 
 
-def more_instants(first: Solution) -> np.ndarray:
-    """Output instants, ends of the solver's steps, and instants between these; fewer where there are too many."""
+def more_instants(first: Solution, features: InputFeatures) -> np.ndarray:
+    """Output instants, ends of the solver's steps, and instants between these; fewer where there are too many.
+
+    Where the inputs have features narrower than the time between output instants, a few instants in each besides.
+    """
     reported, own = first.time, first.step_times
     room = int(MOST_VALUES / len(first))
     found = reported
+    start, end = float(reported[0]), float(reported[-1])
+    narrow = features.instants(start, end, float(np.max(np.diff(reported))), min(room // 4, MOST_OF_INPUTS))
     ends = own[(own > reported[0]) & (own < reported[-1])]
     if len(found) + len(ends) <= room:
         found = np.union1d(found, apart(ends, found))
     parts = PARTS_OF_IMPLICIT_STEPS if len(first.history.order) else PARTS
-    if parts * len(found) > room:
-        return found
-    within = found[:-1, None] + np.diff(found)[:, None] * np.arange(1, parts) / parts
-    return np.union1d(found, apart(within.ravel(), found))
+    if parts * len(found) <= room:
+        within = found[:-1, None] + np.diff(found)[:, None] * np.arange(1, parts) / parts
+        found = np.union1d(found, apart(within.ravel(), found))
+    return np.union1d(found, apart(narrow, found))
 
 
 def apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:

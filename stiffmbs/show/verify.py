@@ -179,7 +179,8 @@ class _Verification:
 
     def _look_between(self) -> None:
         """The first tighter run, also at instants between those of the output; the next one where it does not end."""
-        times = more_instants(self._first)
+        start, end = float(self._first.time[0]), float(self._first.time[-1])
+        times = more_instants(self._first, self._job.mechanics.input_features(start, end))
         at = np.searchsorted(times, self._first.time)
         for level in self._levels():
             run = self._run(level, times, at)

@@ -164,13 +164,14 @@ class Integrator:
                     "contacts and other events that begin and end within one step are not seen this way; set max_step"
                 )
         self._jumps: list[str] = []
+        self._of_inputs = ""
         self._events = self._corners = 0
 
     def note(self) -> str:
         """What the user should know: how IDA runs, jumps of velocities, an order held down."""
         more = len(self._jumps) - MOST_JUMPS
         jumps = [*self._jumps[:MOST_JUMPS], *([f"and {more} more such jumps"] if more > 0 else [])]
-        return "; ".join(filter(None, (*self._notes, *jumps, self.engine.note())))
+        return "; ".join(filter(None, (*self._notes, self._of_inputs, *jumps, self.engine.note())))
 
     def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """q and u from a vector of unknowns."""
@@ -181,9 +182,12 @@ class Integrator:
         """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
         t = grid.start
         self._jumps.clear()
+        features = self.mechanics.input_features(grid.start, grid.end)
+        self.engine.see_inputs(features)
+        self._of_inputs = features.note
         chattering = Chattering(self.mechanics, grid.end, self.settings.rtol)
         self._held = HeldSwitches(self.mechanics, chattering)
-        for stop in (*self.mechanics.corner_times(grid.start, grid.end).tolist(), grid.end):
+        for stop in (*features.corners.tolist(), grid.end):
             while _just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
                 self._begin(start, t)

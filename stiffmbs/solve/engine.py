@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ..compile.input_features import InputFeatures
 from .newton import Stiffness
 from .trajectory import History
 
@@ -43,6 +44,9 @@ class Engine(Protocol):
 
     def forget(self) -> None:
         """Forget counters, history and pivots of an earlier run."""
+
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Take no step that might miss what the inputs do, from the next start on."""
 
     def leave_out(self, waits: np.ndarray) -> None:
         """Do not look at each switch for so many steps from the next start on."""

@@ -6,13 +6,14 @@ import time
 
 import numpy as np
 
-from ..compile.corners import corner_times
+from ..compile.input_features import InputFeatures
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .failures import FAILURES
 from .initial import InitialValues
 from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
+from .narrow_inputs import narrower_than_output
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
@@ -34,7 +35,7 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     Each step predicts q + h u + h^2/2 u' and corrects it by Newton; it is halved until positions and velocities come
     out near their prediction, so that the solution cannot jump to another branch.  A mechanism that locks (a dead
     centre under its drive) stops there with a message that names instant and pose.  At corners of the drives in time,
-    where velocities may jump, they are taken anew.
+    where velocities may jump, they are taken anew, and no step is longer than what the drives do in between.
 
     Raises
     ------
@@ -47,8 +48,9 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     rows = Rows(system.n_q, system.n_u, len(times))
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
-    motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start))
-    corners = iter((*corner_times(system, grid.start, grid.end), np.inf))
+    features = mechanics.input_features(grid.start, grid.end)
+    motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start), features)
+    corners = iter((*features.corners, np.inf))
     corner = next(corners)
     rows.append(times[0], motion.q, motion.u)
     try:
@@ -65,7 +67,8 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": time.perf_counter() - begun}
-    return Trajectory(*rows.stored, outcome, message, statistics)
+    note = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
+    return Trajectory(*rows.stored, outcome, message, statistics, note=note)
 
 
 def _refuse_freedoms(mechanics: Mechanics) -> None:
@@ -81,9 +84,12 @@ def _refuse_freedoms(mechanics: Mechanics) -> None:
 class _Motion:
     """The state that is followed in time, with its velocities and accelerations."""
 
-    def __init__(self, mechanics: Mechanics, start: InitialValues, t: float, shortest: float) -> None:
-        self._mechanics, self._shortest = mechanics, shortest
+    def __init__(
+        self, mechanics: Mechanics, start: InitialValues, t: float, shortest: float, features: InputFeatures
+    ) -> None:
+        self._mechanics, self._shortest, self._features = mechanics, shortest, features
         self.t, self.steps, self.moves = t, 0, 0
+        self._begun = t
         self._status = 0
         self.q, self.u, self.a = start.q, start.u, start.acceleration
         state = mechanics.state
@@ -97,12 +103,15 @@ class _Motion:
         """Follow the motion to a later time, in as many steps as it takes."""
         h = end - self.t
         while self.t < end:
-            h = min(h, end - self.t)
+            h = min(h, end - self.t, max(self._features.longest_step(self.t), 2 * self._shortest))
             last = end - self.t <= h
             if self._step(end if last else self.t + h, h):
                 h *= 2
             elif h > self._shortest:
                 h /= 2
+            elif self.t == self._begun:  # a drive such as max(0, t) bends at the very start
+                self.go_past(self.t)
+                h = end - self.t
             else:
                 raise SolverError(self._stuck())
 

@@ -10,8 +10,8 @@ from typing import TypeVar, cast
 import numpy as np
 
 from ..compile.coordinates import Coordinates, all_independent
-from ..compile.corners import corner_times
 from ..compile.input_ends import InputEnd, first_input_end
+from ..compile.input_features import InputFeatures, input_features
 from ..compile.layout import MECHANICS, packed
 from ..compile.routines import together
 from ..compile.state import State
@@ -91,7 +91,7 @@ class Mechanics:
         self._kept: dict[str, tuple[object, object]] = {}
         counting = system.term("acceleration", "counting")
         self._counting = counting.source.astype(np.int64), counting.row.astype(np.int64)
-        self._corners = np.inf, -np.inf, np.empty(0)
+        self._features = np.inf, -np.inf, InputFeatures()
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
             MECHANICS,
@@ -127,13 +127,13 @@ class Mechanics:
         """The quicker way to accelerations that explicit steps take where it serves."""
         return Eliminated(self.state)
 
-    def corner_times(self, start: float, end: float) -> np.ndarray:
-        """The corners in time strictly between two instants, sought once for all runs within them."""
-        first, last, times = self._corners
+    def input_features(self, start: float, end: float) -> InputFeatures:
+        """The features of the inputs between two instants, sought once for all runs within them."""
+        first, last, found = self._features
         if not first <= start <= end <= last:
-            times = corner_times(self.system, start, end)
-            self._corners = start, end, times
-        return times[(times > start) & (times < end)]
+            found = input_features(self.system, start, end)
+            self._features = start, end, found
+        return found.within(start, end)
 
     def input_end(self, start: float, end: float) -> InputEnd | None:
         """Where the first formula of time ends between two instants, sought once for all runs between them."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..compile.equations import Equations
+from ..compile.input_features import InputFeatures
 from ..compile.state import State
 from ..describe.settings import RunSettings
 from .engine import Reached
@@ -63,6 +64,10 @@ class NativeEngine:
         self._order.forget()
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
+
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Take no step that might miss what the inputs do."""
+        self._ida.see_inputs(features)
 
     def leave_out(self, waits: np.ndarray) -> None:
         """Do not look at each switch for so many steps."""

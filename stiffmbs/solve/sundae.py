@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..compile.equations import Equations
+from ..compile.input_features import InputFeatures
 from ..compile.layout import IDA, packed
 from ..compile.routines import Routine
 from ..compile.state import State
@@ -160,6 +161,7 @@ class SundaeEngine:
         self._before = {"residuals": 0, "jacobians": 0}
         self._since = {"residuals": 0, "jacobians": 0}
         self._interrupted = False
+        self._features = InputFeatures()
 
     def _sparse(self) -> dict[str, Any]:
         from scipy.sparse import csc_matrix
@@ -171,6 +173,10 @@ class SundaeEngine:
     def forget(self) -> None:
         """Each run has a driver of its own."""
 
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Stop where a longer step might miss what the inputs do; IDA goes on from there with its history."""
+        self._features = features
+
     def leave_out(self, waits: np.ndarray) -> None:
         """Do not look at each switch for so many steps."""
         self.callbacks.waits[:] = waits
@@ -180,7 +186,7 @@ class SundaeEngine:
         for name, count in self._since.items():
             self._before[name] += count
         self.callbacks.begin(t)
-        self._last = self._ida.init_step(t, y, yp)
+        self._last, self._near = self._ida.init_step(t, y, yp), t
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
@@ -194,7 +200,7 @@ class SundaeEngine:
             if reached.fired or reached.failure:
                 return
         while not ends_there:
-            reached = self._reached(self._ida.step(stop, method="normal", tstop=stop), False)
+            reached = self._reached(self._to(stop, stop), False)
             yield reached
             ends_there = bool(reached.fired or reached.failure or reached.t >= stop)
 
@@ -204,7 +210,7 @@ class SundaeEngine:
         last = self._last
         try:
             for time in times:
-                last = self._ida.step(time, method="normal", tstop=stop)
+                last = self._to(time, stop)
                 if last.status < 0 or last.status == ROOT_FOUND:
                     break
                 rows[served] = last.y[self._reported]
@@ -213,10 +219,28 @@ class SundaeEngine:
             self._interrupted = True
         return replace(self._reached(last, False), times=times[:served], rows=rows[:served])
 
+    def _to(self, time: float, stop: float) -> Any:
+        """Integrate to a time, over the stops that inputs ask for on the way to `stop`."""
+        while self._near < time:
+            if self._last.t < self._near:
+                self._last = self._ida.step(self._near, method="normal", tstop=self._near)
+                if self._last.status < 0 or self._last.status == ROOT_FOUND:
+                    return self._last
+            self._near = self._next_stop(stop)
+        self._last = self._ida.step(time, method="normal", tstop=self._near)
+        return self._last
+
+    def _next_stop(self, stop: float) -> float:
+        """Where a step from the last such stop on must end at the latest."""
+        return min(stop, self._near + self._features.longest_step(self._near))
+
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
         while True:
-            reached = self._reached(self._ida.step(stop, method="onestep", tstop=stop), True)
+            if self._last.t >= self._near:
+                self._near = self._next_stop(stop)
+            self._last = self._ida.step(stop, method="onestep", tstop=self._near)
+            reached = self._reached(self._last, True)
             yield reached
             if reached.fired or reached.failure or reached.t >= stop:
                 return

@@ -48,7 +48,8 @@ class AdaptiveRun:
     """One integration with a scheme that estimates its error, from corner to corner and from event to event.
 
     Steps are not cut by output times: states there come from the scheme's interpolant.  They are cut by corners in
-    time, which long steps of a motion at rest would jump over, and where a force changes its law (a contact closes).
+    time, and by other features of the inputs, which long steps of a motion at rest would jump over, and where a force
+    changes its law (a contact closes).
 
     Attributes
     ----------
@@ -68,7 +69,9 @@ class AdaptiveRun:
         self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
-        self._corners = mechanics.corner_times(grid.start, grid.end)
+        features = mechanics.input_features(grid.start, grid.end)
+        self._corners, self._note = features.corners, features.note
+        work.step_bound.follow(features)
         self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg
 
@@ -97,7 +100,7 @@ class AdaptiveRun:
             message = f"{message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": time.perf_counter() - begun}
-        return Trajectory(*self._rows.stored, outcome, message, statistics, history)
+        return Trajectory(*self._rows.stored, outcome, message, statistics, history, self._note)
 
     def _leg(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""

@@ -17,6 +17,7 @@ from ..chattering import jump_sentence
 from ..initial import InitialValues
 from ..limits import refuse_beyond_limits
 from ..mechanics import POSITION_TOLERANCE, Mechanics
+from ..narrow_inputs import narrower_than_steps
 from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
 from ..two_sides import FAR, sliding
 from .integration import Integration
@@ -110,6 +111,8 @@ def solve_with_fixed_steps(
     statistics = {
         "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": time.perf_counter() - begun,
     }  # fmt: skip
+    narrow = narrower_than_steps(mechanics.input_features(grid.start, grid.end), settings.step, settings.scheme)
+    note = "; ".join(filter(None, (note, narrow)))
     return Trajectory(*rows.stored, outcome, message, statistics, note=note)
 
 

@@ -11,6 +11,7 @@ from ...describe.settings import RunSettings
 from ..event_watch import EventWatch
 from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
+from ..step_bound import StepBound
 from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, Rows
 from .scheme import Scheme
@@ -32,6 +33,7 @@ class Integration:
         Most steps, and most rows, of one call.
     step_times : list of ndarray
         Ends of the steps of each call.
+    step_bound : StepBound
     """
 
     def __init__(
@@ -45,6 +47,7 @@ class Integration:
         self._mechanics = mechanics
         self._scheme, self._eliminated = scheme, mechanics.eliminated
         self._end = scheme.stages
+        self.step_bound = StepBound()
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         n_switches = mechanics.system.n_switches
@@ -55,7 +58,7 @@ class Integration:
             "scheme": scheme.table, "n": n,
             "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
             "rtol": np.array([settings.rtol]), "atol": atol,
-            "longest": np.array([settings.max_step or np.inf]),
+            "longest": np.array([settings.max_step or np.inf]), "step_bound": self.step_bound.table,
             "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
             "t": np.array([grid.start]), "t_before": np.array([grid.start]), "span": np.zeros(1),
             "n_switches": n_switches, "n_events": mechanics.system.n_values("switch"), "sides": np.zeros(n_switches),

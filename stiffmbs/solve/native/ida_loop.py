@@ -8,6 +8,7 @@ from stiffmbs.compile.native.evaluate import SWITCH, add_entries, add_products, 
 from stiffmbs.solve.native.balance import CURRENT, LONG, balance_view, balanced
 from stiffmbs.solve.native.calls import call_address, call_int, copy_bytes, int32
 from stiffmbs.solve.native.iteration import AGE, MADE
+from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 from stiffmbs.solve.native.watched import watched
 from stiffmbs.solve.native.within_step import (
     BEGUN,
@@ -29,8 +30,11 @@ OK, RECOVERABLE = 0, 1
 ONE_STEP = 2
 STOP_RETURN, ROOT_RETURN = 1, 2
 """IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
-RETURNED, INTERNAL, SIZE = range(3)
-"""Marks: the time of the returned state, the time that IDA has reached inside, the size of its last step."""
+RETURNED, INTERNAL, SIZE, NEXT_SIZE = range(4)
+"""Marks: the time of the returned state, the time that IDA has reached inside, the size of its last step (0 before the
+first), and of the one that it will try next."""
+STRETCHED = 1.01
+"""The last step may be this much longer than inputs allow, so that no tiny one is left."""
 SERVED, RECORDED, ORDER, TINY, SINCE, NEXT, WITHIN = range(7)
 """Counts: output points served, steps in the history, order of the last step, tiny steps in succession, steps since the
 last sample, place of the next one, whether the last event was found by the search within the step."""
@@ -103,11 +107,27 @@ def switches(t, yy, yp, g, user_data):
 
 
 @compiled
-def _stepped(c, toward):
+def _see_inputs(c, stop):
+    """Have IDA stop where a longer step might miss what an input does; it goes on from there with its history."""
+    bound = step_bound_view(c.step_bound)
+    if bound.n > 0:
+        t = c.mark[INTERNAL]
+        longest = longest_step(bound, t)
+        call_int(c.next_step_of, (c.memory, shifted(c.mark, NEXT_SIZE)))
+        first = c.mark[SIZE] == 0.0
+        cut = (first or c.mark[NEXT_SIZE] > longest) and t + STRETCHED * longest < stop
+        call_int(c.stop_at, (c.memory, t + longest if cut else stop))
+
+
+@compiled
+def _stepped(c, toward, stop):
     """One step; returns IDA's flag and notes the step's end, order and size in the history."""
     before = c.mark[INTERNAL]
+    _see_inputs(c, stop)
     _watch_start(c, toward)
     flag = call_int(c.solve, (c.memory, toward, c.mark, c.y, c.yp, int32(ONE_STEP)))
+    if flag == STOP_RETURN and c.mark[RETURNED] < stop:
+        flag = int32(OK)
     call_int(c.time_of, (c.memory, shifted(c.mark, INTERNAL)))
     call_int(c.step_of, (c.memory, shifted(c.mark, SIZE)))
     if c.mark[INTERNAL] != before and flag >= 0:
@@ -262,7 +282,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     for _ in range(min(most, MOST_STEPS)):
         if flag != OK:
             break
-        flag = _stepped(c, times[c.count[SERVED]] if c.count[SERVED] < count else stop)
+        flag = _stepped(c, times[c.count[SERVED]] if c.count[SERVED] < count else stop, stop)
         if flag >= 0:
             told = _served(c, times, count, y_out, yp_out)
             flag = told if told < 0 else flag
@@ -276,7 +296,7 @@ def steps(room, stop, t_out, y_out, ida):
     c.count[RECORDED] = 0
     flag = int32(OK)
     while flag == OK and c.count[SERVED] < min(room, MOST_STEPS):
-        flag = _stepped(c, stop)
+        flag = _stepped(c, stop, stop)
         if flag >= 0:
             k = c.count[SERVED]
             t_out[k] = c.mark[RETURNED]

@@ -11,6 +11,7 @@ from stiffmbs.solve.native.events import RETRIED, end_at_event
 from stiffmbs.solve.native.interpolant import store_rows, store_step
 from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import NOT_FINITE
+from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 
 STEP_TOO_SMALL, STIFF = -4, -5
 PAUSED, AT_END, AT_EVENT = 0, 1, 2
@@ -68,6 +69,9 @@ def _step(x, c, s, m, end):
     _depart(x, c)
     t = x.t[0]
     h = min(x.h[0], x.longest[0])
+    bound = step_bound_view(x.step_bound)
+    if bound.n > 0:
+        h = min(h, longest_step(bound, t))
     most = LARGEST_FACTOR
     while True:
         if t + STRETCHED * h >= end:

@@ -11,6 +11,7 @@ from ...compile.layout import NATIVE_IDA, packed
 from ...compile.routines import Routine
 from ...compile.state import State
 from ..event_watch import EventWatch
+from ..step_bound import StepBound
 from .balance import ENOUGH, LONG, Balance
 from .error_norm import ErrorNorm
 from .iteration import Iteration
@@ -26,7 +27,7 @@ JACOBIAN = Routine(
 )
 SWITCHES = Routine(MODULE, "switches", "int32(float64, int64, int64, float64*, int64*)")
 
-RETURNED, INTERNAL, SIZE = range(3)
+RETURNED, INTERNAL, SIZE, NEXT_SIZE = range(4)
 SERVED, RECORDED, ORDER, TINY, SINCE, NEXT, WITHIN = range(7)
 SAMPLES = 16
 """Marks and counts, as in `stiffmbs.solve.native.ida_loop`."""
@@ -55,6 +56,7 @@ class Connection:
     balance : Balance
     iteration : Iteration
     error_norm : ErrorNorm
+    step_bound : StepBound
     n_switches : int
     sides, waits : ndarrays, shape (n_switches,)
         As in `stiffmbs.solve.native.watched`.
@@ -73,11 +75,11 @@ class Connection:
         self._session, self._state, self._equations = session, state, equations
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
         self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
-        self.mark, self.count = np.zeros(3), np.zeros(7, dtype=np.int64)
+        self.mark, self.count = np.zeros(4), np.zeros(7, dtype=np.int64)
         self.history = StepLog()
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self.balance, self.iteration = Balance(n), Iteration(n)
+        self.balance, self.iteration, self.step_bound = Balance(n), Iteration(n), StepBound()
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
         self.n_switches = equations.system.n_switches
@@ -108,7 +110,8 @@ class Connection:
                 "n_reported": len(self.reported), "reported": self.reported,
                 "solve": address("IDASolve"), "interpolate": address("IDAGetDky"),
                 "time_of": address("IDAGetCurrentTime"), "order_of": address("IDAGetLastOrder"),
-                "step_of": address("IDAGetLastStep"),
+                "step_of": address("IDAGetLastStep"), "stop_at": address("IDASetStopTime"),
+                "next_step_of": address("IDAGetCurrentStep"), "step_bound": self.step_bound.table,
                 "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS), "samples": self.samples,
                 "balance_mark": self.balance.mark, "balance": self.balance.table,
                 "iteration": self.iteration.count, "watch": self.watch.table, "probe": self._probe,

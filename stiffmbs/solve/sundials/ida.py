@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import Equations
+from ...compile.input_features import InputFeatures
 from ...compile.routines import Routine
 from ...compile.state import State
-from .connection import INTERNAL, MODULE, MOST_STEPS, NEXT, RETURNED, SERVED, SINCE, TINY, WITHIN, Connection
+from .connection import INTERNAL, MODULE, MOST_STEPS, NEXT, RETURNED, SERVED, SINCE, SIZE, TINY, WITHIN, Connection
 from .matrices import Matrix
 from .session import Session
 from .statistics import Statistics
@@ -156,6 +157,10 @@ class NativeIda:
         """Do not look at each switch for so many steps from the next beginning on."""
         self._ida.waits[:] = waits
 
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Take no step that might miss what the inputs do."""
+        self._ida.step_bound.follow(features)
+
     def leave_to_newton(self, part: float) -> None:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
         self._ida.ask("IDASetNonlinConvCoef", part)
@@ -195,7 +200,7 @@ class NativeIda:
         self._ida.ask("IDASetInitStep", first_step)
         if highest_order is not None:
             self._ida.ask("IDASetMaxOrd", highest_order)
-        self._ida.mark[[RETURNED, INTERNAL]] = t
+        self._ida.mark[[RETURNED, INTERNAL, SIZE]] = t, t, 0.0
         self._ida.count[[TINY, SINCE]] = 0
         self._ida.samples[:] = np.nan
         self._ida.sides[:] = 0.0

@@ -1,0 +1,24 @@
+"""How long a step may be that sees what the inputs do."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.layout import STEP_BOUND
+from stiffmbs.compile.native.access import compiled, view_of
+
+step_bound_view = view_of("StepBound", STEP_BOUND)
+
+
+@compiled
+def longest_step(f, t):
+    """The longest step from a time on: no longer than is allowed in any stretch that it touches; f.n is not 0."""
+    k = f.place[0]
+    while k + 1 < f.n and f.starts[k + 1] <= t:
+        k += 1
+    while k > 0 and f.starts[k] > t:
+        k -= 1
+    f.place[0] = k
+    h = f.longest[k]
+    while k + 1 < f.n and f.starts[k + 1] < t + h:
+        k += 1
+        h = min(h, max(f.longest[k], f.starts[k] - t))
+    return h
