@@ -8,9 +8,10 @@ from __future__ import annotations
 from stiffmbs.compile.native.access import compiled, eliminated_view, state_view
 from stiffmbs.compile.native.evaluate import ACCELERATION, evaluate
 
-SMALL, LOST = 1e-2, 1e-6
-"""Pivots that keep less than the first part of their diagonal entry, and what they may keep together: the loss of digits of one is
-passed on to the next.  Beyond that the LU with pivoting has to do it."""
+LOST = 1e-7
+"""A pivot that keeps less than this part of its diagonal entry is left to the LU with pivoting."""
+SMALL, TOGETHER = 1e-2, 1e-10
+"""Pivots that keep less than the first part, and what they may keep together: the loss of digits of one is passed on to the next."""
 
 
 @compiled
@@ -56,7 +57,7 @@ def _factored(r):
         pivot = r.s[first]
         if not pivot > SMALL * r.diagonal[k]:
             kept *= pivot / r.diagonal[k]
-            if not kept > LOST:
+            if not pivot > LOST * r.diagonal[k] or not kept > TOGETHER:
                 return False
         inverse = 1.0 / pivot
         r.s[first] = inverse

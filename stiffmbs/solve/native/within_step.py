@@ -24,15 +24,17 @@ MARGIN = 0.1
 """Part of the range of a function's bounds that is added to those between the ends."""
 LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
 """Places within a part of a step where a cubic is compared with the function: no round fractions of a period."""
-FITS, NOISE = 0.02, 1e-11
+FITS, NOISE = 0.02, 1e-9
 """Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
 state that rounding takes of values and rates."""
 WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
 LEAST_PART, MOST_PARTS = 1e-4, 5000
-DIFFERENCE = 1e-3
+DIFFERENCE = 1e-6
 """Part of a step, or of a part of one, over which rates are taken."""
+REFINED, REFINEMENTS = 0.02, 5
+"""Part of a part of a step over which a parabola is laid at an extremum, and how often, each over a tenth of the one before."""
 BISECTIONS, BEHIND = 50, 1e-9
 """The event is put behind the change by this part of the step, so that the new law holds there."""
 UNKNOWN = 8.0
@@ -270,6 +272,25 @@ def _visits(w, k, value, low, high):
 
 
 @compiled
+def _visits_extremum(w, s, begun, h, k, low, place, part):
+    """Note that a function has its extremum near a place, which parabolas bring nearer; whether that is an event."""
+    apart = REFINED * part
+    for _ in range(REFINEMENTS):
+        here = _values(w, s, begun, h, place)[k]
+        if _visits(w, k, here, low, place):
+            return True
+        apart = min(apart, place - low, low + part - place)
+        before = _values(w, s, begun, h, place - apart)[k]
+        behind = _values(w, s, begun, h, place + apart)[k]
+        curved = before - 2.0 * here + behind
+        if curved == 0.0 or not isfinite(curved):
+            return False
+        place += min(max(0.5 * apart * (before - behind) / curved, -apart), apart)
+        apart *= 0.1
+    return False
+
+
+@compiled
 def _first_within(w, s, begun, h, low, part):
     """The first event of all functions within a part of the step, as a place in the step; 2 for none."""
     first = 2.0
@@ -282,7 +303,7 @@ def _first_within(w, s, begun, h, low, part):
             for which in range(2):
                 place = _extremum(start, start_rate, end, end_rate, which)
                 if place < 1.0 and not there:
-                    there = _visits(w, k, _values(w, s, begun, h, low + place * part)[k], low, low + place * part)
+                    there = _visits_extremum(w, s, begun, h, k, low, low + place * part, part)
         if not there:
             there = _visits(w, k, end, low, low + part)
         if there:
