@@ -13,7 +13,7 @@ from stiffmbs.compile.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.enclosure import Enclosure
 from stiffmbs.compile.input_features import InputFeatures, input_features
 from stiffmbs.compile.inputs_of_time import Input
-from stiffmbs.compile.symbols import CORNERED, SMOOTH
+from stiffmbs.compile.symbols import SMOOTH
 from stiffmbs.compile.table_ranges import TableRanges
 from stiffmbs.compile.table_values import curve
 from stiffmbs.describe.formula import parse
@@ -151,10 +151,23 @@ def test_a_step_is_no_longer_than_what_it_touches_allows():
     assert found.longest_step(5.0) == np.inf
 
 
+def _ramp(x, x0, h0, x1, h1, rise):
+    z = (x - x0) / (x1 - x0)
+    return sp.Piecewise((h0, x <= x0), (h1, x >= x1), (h0 + (h1 - h0) * rise(z), True))
+
+
+BY_PIECES = {
+    "abs": lambda x: sp.Piecewise((x, x >= 0), (-x, True)),
+    "min": lambda x, other: sp.Piecewise((x, x <= other), (other, True)),
+    "max": lambda x, other: sp.Piecewise((x, x >= other), (other, True)),
+    "step": lambda *x: _ramp(*x, rise=lambda z: z**2 * (3 - 2 * z)),
+    "step5": lambda *x: _ramp(*x, rise=lambda z: z**3 * (10 - 15 * z + 6 * z**2)),
+}
+
+
 def _derivatives(name, others):
     x = sp.Symbol("x", real=True)
-    function = SMOOTH[name] if name in SMOOTH else CORNERED[name][0]
-    expression = function(x, *others)
+    expression = (SMOOTH | BY_PIECES)[name](x, *others)
     return [sp.lambdify(x, expression.diff(x, k) / sp.factorial(k), "numpy") for k in range(4)]
 
 

@@ -23,9 +23,11 @@ def test_a_fast_pendulum_at_a_tight_tolerance_is_told_its_rounding():
     assert "rtol = 1e-10 asks for more digits than rounding leaves: bar.angle" in solution.message
 
 
-def test_a_pendulum_far_from_the_origin_is_told_its_rounding():
-    solution = stiffmbs.run(pendulum(at=1e6), duration=1.0, rtol=1e-10, points=11)
-    assert "bar.x = 1e+06 m is known to 6e-11 m only" in solution.message
+def test_a_pendulum_far_from_the_origin_swings_as_one_at_it():
+    """Coordinates of 1e6 m are known to 6e-11 m; the motion is not known better."""
+    there, here = (stiffmbs.run(pendulum(at=at), duration=1.0, rtol=1e-10, points=11) for at in (1e6, 0.0))
+    assert there.outcome is here.outcome is Outcome.DONE
+    np.testing.assert_allclose(there["bar.angle"], here["bar.angle"], atol=1e-7)
 
 
 @pytest.mark.parametrize("speed, rtol", [(1e4, 1e-8), (1e3, 1e-9)])

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..describe.element import Element
-from ..describe.formula import UNIT, FormulaError, evaluate
+from ..describe.formula import UNIT, evaluate
 from ..describe.formula_field import TIME, Formula, is_measure, reading_order
-from ..describe.formula_value import formula_value
 from .enclosed_functions import FUNCTIONS
 from .enclosure import Enclosure
+from .inputs_of_time import Input
 from .system import System
 
 AT_ONCE, MOST_DIVISIONS = 32, 500
@@ -139,11 +139,12 @@ def _of_node(
 ) -> Iterator[InputEnd]:
     """The first end of a part of a formula that comes from one node of it."""
 
+    evaluated = Input(part, formula.text, formula.values, {})
+
     def value(t: float) -> float | None:
-        try:
-            return formula_value(formula, part, **{TIME: t})
-        except FormulaError:
-            return None
+        with np.errstate(all="ignore"):  # cosh may overflow in a denominator
+            found = float(evaluated.at(np.array([t]))[0])
+        return found if np.isfinite(found) else None
 
     for low, high in _without_bound(formula, node, start, end):
         size = max(abs(low), abs(high), end - start)

@@ -90,7 +90,7 @@ ELIMINATED: Layout = {
     "product_end": INDICES, "product_first": INDICES, "product_second": INDICES,
     "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
     "scale": FLOATS, "j_scale": FLOATS, "j": FLOATS,
-    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS,
+    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS, "most_kept": FLOATS,
 }  # fmt: skip
 """J M^-1 J^T and its factors by flat lists (`stiffmbs.solve.eliminated`)."""
 

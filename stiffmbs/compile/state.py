@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -112,6 +113,17 @@ class State:
         for term_set, values in self.values.items():
             first = self.system.constants(term_set)["E_mu"]
             values[first : first + len(self._relaxations)] = self._relaxations
+
+    @contextmanager
+    def unchanged(self) -> Iterator[None]:
+        """Come back to the present coordinates, velocities and multipliers: an integrator may go on from what they hold."""
+        vectors = (self.q, self.u, self.a, self.lam, self.mu)
+        kept = [vector.copy() for vector in vectors]
+        try:
+            yield
+        finally:
+            for vector, values in zip(vectors, kept, strict=True):
+                vector[:] = values
 
     def evaluate(self, term_set: str, t: float) -> None:
         """Compute all terms of a set at the current state."""

@@ -180,7 +180,9 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     balance = energy_balance(system, rows.t, *energies, rows.values, trajectory.step_times)
     wrong = tuple(senseless(job.mechanics, rows, job.settings))
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
-    wrong = (*wrong, *no_number_sentences(rows.t, channels))
+    solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
+    known = {name: values[solved_there] for name, values in channels.items() if not np.isfinite(values).all()}
+    wrong = (*wrong, *no_number_sentences(rows.t[solved_there], known))
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *left_out, *wrong), solver=statistics,

@@ -45,12 +45,17 @@ class Eliminated:
         products = self._products()
         columns = _filled({(a, b) for a, b, *_ in products}, len(rows))
         updates = sum(len(below) * (len(below) + 1) // 2 for below in columns)
+        self._most_kept = np.zeros(1)
         hanging = len(system.term("acceleration", "f_lam").source)
         self.serves = not hanging and updates <= MOST_UPDATES_PER_ENTRY * max(len(self._j[0]), 1)
         self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
         if self.serves:
             self._arrays = self._packable(state, products, columns)
             self.table = packed(ELIMINATED, self._arrays)
+
+    def forget(self) -> None:
+        """Forget how many digits pivots have kept so far, so that a run's rounding does not depend on earlier runs."""
+        self._most_kept[:] = 0.0
 
     def _products(self) -> list[tuple[int, int, int, int]]:
         """Row, column and both factors (by their number among the entries of J) of every product in the lower half of J M^-1 J^T."""
@@ -92,7 +97,7 @@ class Eliminated:
             "n_gamma": len(lists["gamma_source"]), "n_j": len(self._j[0]),
             "n_slots": int(starts[-1]), "scale": scale, "j_scale": scale[self._j[2]], "j": np.zeros(len(self._j[0])),
             "s": np.zeros(int(starts[-1])), "l": np.zeros(int(starts[-1])), "diagonal": np.zeros(n),
-            "a": np.zeros(system.n_u), "b": np.zeros(n),
+            "a": np.zeros(system.n_u), "b": np.zeros(n), "most_kept": self._most_kept,
         }  # fmt: skip
 
 

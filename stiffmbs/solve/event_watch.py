@@ -33,7 +33,7 @@ class EventWatch:
         system = state.system
         state.load("switch")
         n, n_switches, n_state = system.n_values("switch"), system.n_switches, system.n_q + system.n_u
-        self.found, self._mark = np.zeros(n, dtype=np.int64), np.zeros(2)
+        self.found, self._mark = np.zeros(n, dtype=np.int64), np.zeros(3)
         first_edge, edges, period = edges_of(system)
         place = np.arange(NODES) * np.pi / (NODES - 1)
         weight = (-1.0) ** np.arange(NODES)

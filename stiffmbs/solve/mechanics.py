@@ -121,6 +121,8 @@ class Mechanics:
         """Have pivots sought anew, so that a run's rounding does not depend on earlier runs."""
         for system in (self._positions, self._velocities, self._accelerations):
             system.forget_pivots()
+        if "eliminated" in self.__dict__:
+            self.eliminated.forget()
 
     @cached_property
     def eliminated(self) -> Eliminated:

@@ -42,13 +42,14 @@ def jumping(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.
     -------
     ndarray of int
     """
-    crossed = _crossed(mechanics, t, q, u)
-    if not len(crossed):
-        return crossed
-    far, near = (
-        float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-        for a, b in (_sides(mechanics, t, q, u, size) for size in (FAR, NEAR))
-    )
+    with mechanics.state.unchanged():
+        crossed = _crossed(mechanics, t, q, u)
+        if not len(crossed):
+            return crossed
+        far, near = (
+            float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
+            for a, b in (_sides(mechanics, t, q, u, size) for size in (FAR, NEAR))
+        )
     return crossed if near > max(JUMPS * far, LEAST) else crossed[:0]
 
 
@@ -63,11 +64,12 @@ def sliding(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach:
     reach : float
         Size of the move, as `FAR`, within which a jump is looked for.
     """
-    crossed = _crossed(mechanics, t, q, u, reach)
-    if not len(crossed):
-        return crossed
-    back = _driven_back(_sides(mechanics, t, q, u, reach), crossed)
-    return np.array([k for k in crossed[back] if _slides(mechanics, t, q, u, reach, k)], dtype=int)
+    with mechanics.state.unchanged():
+        crossed = _crossed(mechanics, t, q, u, reach)
+        if not len(crossed):
+            return crossed
+        back = _driven_back(_sides(mechanics, t, q, u, reach), crossed)
+        return np.array([k for k in crossed[back] if _slides(mechanics, t, q, u, reach, k)], dtype=int)
 
 
 def _driven_back(sides: list[_Side], switches: np.ndarray) -> np.ndarray:

@@ -8,10 +8,11 @@ from __future__ import annotations
 from stiffmbs.compile.native.access import compiled, eliminated_view, state_view
 from stiffmbs.compile.native.evaluate import ACCELERATION, evaluate
 
-LOST = 1e-7
+LOST = 1e-6
 """A pivot that keeps less than this part of its diagonal entry is left to the LU with pivoting."""
-SMALL, TOGETHER = 1e-2, 1e-10
-"""Pivots that keep less than the first part, and what they may keep together: the loss of digits of one is passed on to the next."""
+SMALL, TOGETHER, BESIDE = 1e-2, 1e-9, 1e-5
+"""Pivots that keep less than the first part, and what they may keep together: the loss of digits of one is passed on to the next.
+Beside what they have kept together elsewhere on the way they may keep the last part."""
 
 
 @compiled
@@ -57,7 +58,7 @@ def _factored(r):
         pivot = r.s[first]
         if not pivot > SMALL * r.diagonal[k]:
             kept *= pivot / r.diagonal[k]
-            if not pivot > LOST * r.diagonal[k] or not kept > TOGETHER:
+            if not pivot > LOST * r.diagonal[k] or not kept > max(TOGETHER, BESIDE * r.most_kept[0]):
                 return False
         inverse = 1.0 / pivot
         r.s[first] = inverse
@@ -71,6 +72,7 @@ def _factored(r):
             for below in range(p, end):
                 r.s[r.update_slot[at]] -= value * r.s[below]
                 at += 1
+    r.most_kept[0] = max(r.most_kept[0], kept)
     return True
 
 

@@ -35,6 +35,8 @@ FADES_LOW, FADES, LOW = 0.99, 0.8, 2
 TROUBLED, LASTS = 7.0, 1000
 """Count of failures from which estimates are filtered, and for how many steps.  A run that creeps fails in each step, or in one of seven, which
 counts up to 100 or 15; Andrews' mechanism, where the filter only costs, counts up to 6."""
+NO_ESTIMATE = 1e12
+"""Filtered norm beyond which a vector is none of IDA's estimates: IDA measures the solution too, to see what rounding takes of it."""
 
 error_norm_view = view_of("ErrorNorm", ERROR_NORM)
 
@@ -84,5 +86,7 @@ def error_norm(estimate, weights):
         _look(c)
     wanted = c.mark[ALWAYS] > 0.0 or c.count[STEPS] < c.count[UNTIL]
     if wanted and c.iteration[CJ] < float("inf") and _filtered(c, estimate):
-        return call_float(c.norm, (c.at_filtered, weights))
+        size = call_float(c.norm, (c.at_filtered, weights))
+        if size < NO_ESTIMATE:
+            return size
     return call_float(c.norm, (estimate, weights))

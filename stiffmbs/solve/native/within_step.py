@@ -18,8 +18,8 @@ from stiffmbs.compile.layout import WATCH
 from stiffmbs.compile.native.access import compiled, shifted, view_of
 from stiffmbs.compile.native.evaluate import SWITCH, evaluate
 
-READY, BEGUN = range(2)
-"""Marks: whether values at the start of the step are known, and that start's time."""
+READY, BEGUN, DEPTH = range(3)
+"""Marks: whether values at the start of the step are known, that start's time, and how far a switch must go beyond zero."""
 MARGIN = 0.1
 """Part of the range of a function's bounds that is added to those between the ends."""
 LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
@@ -27,6 +27,8 @@ LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
 FITS, NOISE = 0.02, 1e-9
 """Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
 state that rounding takes of values and rates."""
+SHALLOW = 1e-5
+"""Part of that noise which no switch is taken to go beyond zero by: rounding alone changes the sign of a contact that is just closed."""
 WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
@@ -266,7 +268,9 @@ def _visits(w, k, value, low, high):
     here = zone(w, k, value)
     if here != one and w.left_high[k] < 0.0:
         w.left_low[k], w.left_high[k] = low, high
-    if k < w.n_switches or abs(one - other) > 1:
+    if k < w.n_switches:
+        return here != one and abs(value) > w.mark[DEPTH]
+    if abs(one - other) > 1:
         return here != one
     return here < min(one, other) or here > max(one, other)
 
@@ -354,6 +358,7 @@ def first_event(w, s, begun, h):
     noise = 0.0
     for i in range(w.n_state):
         noise = max(noise, NOISE * abs(w.row[i]))
+    w.mark[DEPTH] = SHALLOW * noise
     while low < 1.0:
         end = min(low + part, 1.0)
         part = end - low
