@@ -47,6 +47,7 @@ class PlanarData(ModelData):
         return weights(bodies, self.gravity)
 
     def drawn_marker(self, marker: MarkerReference) -> DrawnMarker:
+        """A marker with numbers, in ground axes, as the bodies are drawn."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return DrawnMarker(np.array(placed.point), placed.angle)
@@ -108,4 +109,5 @@ class Model(ModelBuilder):
         return super().add(name, part)
 
     def data(self) -> PlanarData:
+        """The model as it would stand in a scene, checked."""
         return super().data()
