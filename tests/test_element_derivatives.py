@@ -56,8 +56,15 @@ def case_name(case):
     return "-".join([*(["space"] if dimensions == 3 else []), kind.kind, *(f"no_{name}" for name in left_out)])
 
 
+def takes_long(case):
+    """All in space, and of the plane the cam, whose equations are the longest."""
+    return case[0] == 3 or case_name(case) == "point_on_curve-no_y"
+
+
 @pytest.fixture(
-    params=[pytest.param(case, marks=pytest.mark.long if case[0] == 3 else (), id=case_name(case)) for case in CASES]
+    params=[
+        pytest.param(case, marks=pytest.mark.long if takes_long(case) else (), id=case_name(case)) for case in CASES
+    ]
 )
 def state(request):
     rng = np.random.default_rng(7)

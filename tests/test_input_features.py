@@ -74,8 +74,13 @@ INPUTS = {
 }
 
 
+LONG = ("noisy(t)", "akima(t)")
+
+
 @pytest.mark.parametrize("how", WAYS, ids=str)
-@pytest.mark.parametrize("force", INPUTS)
+@pytest.mark.parametrize(
+    "force", [pytest.param(force, marks=pytest.mark.long if force in LONG else ()) for force in INPUTS]
+)
 def test_every_solver_sees_a_short_input_after_a_long_rest(force, how):
     tables, impulse = INPUTS[force]
     solution = stiffmbs.run(scene(force, **tables), duration=10.0, points=11, rtol=1e-6, **how)

@@ -181,7 +181,16 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
         assert part in told
 
 
-@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.yaml")), ids=lambda path: path.stem)
+LONG = ("bricard", "governor", "spatial_chain")
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=pytest.mark.long if path.stem in LONG else (), id=path.stem)
+        for path in sorted(EXAMPLES.glob("*.yaml"))
+    ],
+)
 def test_clean_scenes_give_no_warning(path):
     scene = stiffmbs.load_scene(path)
     warned = stiffmbs.verify(scene).notes[len(stiffmbs.run(scene).notes) :]
