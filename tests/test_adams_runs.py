@@ -178,6 +178,7 @@ REQUEST/9, F2=AZ(20,12)-2*(AZ(30,13)-20D)+3*AZ(40,14)\\ F3=AZ(30,13)
     assert np.abs(solution["REQUEST_9.f3"]).max() > 2 * np.pi
 
 
+@pytest.mark.long
 def test_a_rack_pulls_a_pinion():
     """The rack's line is 0.2 m below the pinion's axis: turned forwards the pinion carries it along +x."""
     text = (
