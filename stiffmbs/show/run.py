@@ -24,6 +24,7 @@ from ..solve.initial import InitialValues, initial_values
 from ..solve.input_ends import solve_up_to_the_inputs_end
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.pieces import Piece, leave_out_coordinates, piece_of, solve_pieces
+from ..solve.storage import blocks, release
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from .balance_notes import balance_notes
@@ -181,7 +182,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     wrong = tuple(senseless(job.mechanics, rows, job.settings))
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
-    known = {name: values[solved_there] for name, values in channels.items() if not np.isfinite(values).all()}
+    known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
     wrong = (*wrong, *no_number_sentences(rows.t[solved_there], known))
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
@@ -207,6 +208,16 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
         trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
         message=sentence,
     )  # fmt: skip
+
+
+def _all_finite(values: np.ndarray) -> bool:
+    """Whether all are numbers, block by block: a channel of a large run lies in a file, whose memory is let go of."""
+    for block in blocks(len(values)):
+        finite = np.isfinite(values[block]).all()
+        release(values)
+        if not finite:
+            return False
+    return True
 
 
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
