@@ -87,3 +87,27 @@ forces:
         solution = stiffmbs.run(scene, duration=1.0, points=2, **how)
         assert solution["b.vx"][-1] == pytest.approx(-10, rel=1e-3)
         assert solution["b.x"][-1] == pytest.approx(2.5 - 7.5, abs=0.05)
+
+
+@pytest.mark.parametrize("velocity, start", [(-1.0, 0.3847), (-1.0, 0.4017), (-0.5, 0.3424), (-0.5, 0.3593)])
+def test_the_first_touch_comes_first_where_the_step_ends_in_a_later_one(velocity, start):
+    """A pin on a spinning disc that drifts to a wall touches it, leaves it, and touches it again a turn later.
+
+    The step's end lies where the pin withdraws faster than its dissipation lets the contact push: no error test sees it.
+    """
+    scene = stiffmbs.read_scene(f"""
+gravity: [0, 0]
+bodies: {{b: {{mass: 1, inertia: 0.01, position: [{start}, 0], velocity: [{velocity}, 0], omega: 100}}}}
+forces:
+  wall:
+    type: contact
+    i: {{body: b, point: [0.1, 0]}}
+    j: {{body: ground, angle: {-np.pi / 2}}}
+    stiffness: 1e6
+    dissipation: 0.3
+""")
+    explicit = {"solver": "projected", "scheme": "dop853"}
+    true = stiffmbs.run(scene, duration=1.0, points=2, rtol=1e-9, max_step=2e-4, **explicit)["b.x"][-1]
+    for how in ({"solver": "bdf"}, explicit, {"solver": "projected", "scheme": "dopri5"}):
+        solution = stiffmbs.run(scene, duration=1.0, points=2, rtol=1e-7, **how)
+        assert solution["b.x"][-1] == pytest.approx(true, rel=1e-3)
