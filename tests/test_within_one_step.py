@@ -111,3 +111,24 @@ forces:
     for how in ({"solver": "bdf"}, explicit, {"solver": "projected", "scheme": "dopri5"}):
         solution = stiffmbs.run(scene, duration=1.0, points=2, rtol=1e-7, **how)
         assert solution["b.x"][-1] == pytest.approx(true, rel=1e-3)
+
+
+def test_the_end_of_a_push_within_the_overlap_is_an_event():
+    """A body pulled out of a wall faster than 1/dissipation is released before it has left the wall."""
+    scene = stiffmbs.read_scene(f"""
+gravity: [0, 0]
+bodies: {{b: {{mass: 1, inertia: 1, position: [-0.5, 0], velocity: [4.5, 0]}}}}
+forces:
+  pull: {{type: force, i: b, force: [10, 0]}}
+  wall:
+    type: contact
+    i: b
+    j: {{body: ground, angle: {-np.pi / 2}}}
+    stiffness: 100
+    exponent: 1
+    dissipation: 0.2
+""")
+    for how in ({"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}):
+        solution = stiffmbs.run(scene, duration=0.06, points=2, rtol=1e-9, **how)
+        assert solution["b.x"][-1] < 0 and solution["b.vx"][-1] > 5
+        assert solution.solver["events"] == 1
