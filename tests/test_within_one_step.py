@@ -47,6 +47,12 @@ def test_a_smooth_table_has_few_zones_and_a_bump_one_of_its_own():
     assert bump.tolist() == [0, 15, 15.05, 15.1, 30]
 
 
+def test_a_reciprocal_has_no_edge_where_its_usual_arguments_turn_round():
+    """1/(1 + x^2) and 1/cos(x) have their extremum at 1: whether it passes an edge there is left to rounding."""
+    _, found, _ = edges_of(compile_model(pushed("{table: [[0, 0], [1, 1]]}", "1/(1 + b.x^2)")))
+    assert np.abs(np.abs(found) - 1).min() > 0.4
+
+
 def test_a_periodic_table_repeats_its_zones():
     found, period = edges("{table: [[0, 0], [0.9, 0], [0.95, 1], [1, 0]], lines: true, ends: periodic}")
     assert period == 1 and found.tolist() == [0, 0.9, 0.95]
