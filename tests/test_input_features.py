@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.integrate import quad
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 import stiffmbs
@@ -239,3 +240,30 @@ def test_fixed_steps_tell_of_shorter_features():
 def test_a_drive_by_the_root_of_a_square_turns_round():
     solution = stiffmbs.run(driven("sqrt((t - 0.52)^2)"), duration=1.0, points=11, solver="kinematic")
     np.testing.assert_allclose(solution["b.x"], np.abs(solution.t - 0.52), atol=1e-9)
+
+
+DRIVES = {
+    "min(2*t, 1)": (lambda t: np.minimum(2 * t, 1), [0.5]),
+    "max(0, 2*t - 18.5)": (lambda t: np.maximum(0, 2 * t - 18.5), [9.25]),
+    "abs(sin(0.5*pi*t))": (lambda t: np.abs(np.sin(0.5 * np.pi * t)), [2, 4, 6, 8]),
+    "sqrt((t - 7.3)^2) - sqrt((t - 7.83)^2)": (lambda t: np.abs(t - 7.3) - np.abs(t - 7.83), [7.3, 7.83]),
+}
+
+
+@pytest.mark.parametrize("how", [*WAYS, {"solver": "auto"}], ids=str)
+@pytest.mark.parametrize("position", DRIVES)
+def test_behind_a_corner_a_drive_leads_with_its_new_velocity(position, how):
+    """It pushes a free mass, and no force tells in which steps its velocity was the old one."""
+    given = {
+        "gravity": [0, 0],
+        "bodies": {"b": {"mass": 2, "inertia": 1}, "g": {"mass": 1, "inertia": 1}},
+        "joints": {
+            "rail": {"type": "prismatic", "i": "b", "j": "ground"},
+            "motor": {"type": "drive", "joint": "rail", "position": position},
+        },
+        "forces": {"f": {"type": "force", "i": "g", "force": ["b.x", 0]}},
+    }
+    solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(given)), duration=10.0, points=11, rtol=1e-8, **how)
+    values, corners = DRIVES[position]
+    assert solution["g.vx"][-1] == pytest.approx(quad(values, 0, 10, points=corners)[0], abs=1e-5)
+    assert any("a drive makes velocities jump" in note for note in solution.notes)
