@@ -221,6 +221,10 @@ def test_a_kinematic_peak_between_output_points_is_told_and_found_by_verify():
     peak = 2 * 2e-3 / 1e-6
     assert found.errors["motor.fx"].least == pytest.approx(peak, rel=0.3)
     assert any("peaks lie between the output instants" in note for note in found.notes)
+    wide = stiffmbs.run(driven("1/(1 + ((t - 8.25)/0.49)^2)"), duration=10.0, points=21, solver="kinematic")
+    assert any("a peak of 1 at t = 8.25 s, between output points" in note for note in wide.notes)
+    bent = stiffmbs.run(driven("max(0, 1 - abs(t - 8.25))"), duration=10.0, points=21, solver="kinematic")
+    assert any("a peak of 1 at t = 8.25 s, between output points" in note for note in bent.notes)
     quiet = stiffmbs.run(driven("1e-3*sin(t)"), **how)
     assert not any("output points" in note for note in quiet.notes)
 
