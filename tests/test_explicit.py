@@ -1,6 +1,7 @@
 """Explicit schemes with projection: their orders, dense output, constraints, and what they say of stiff scenes."""
 
 import itertools
+import json
 
 import numpy as np
 import pytest
@@ -236,3 +237,17 @@ def test_one_plate_with_many_pendulums_is_left_to_the_whole_system():
     job = prepare(model, duration=0.1, points=3, solver="projected", scheme="dop853")
     assert not job.mechanics.eliminated.serves
     assert job.integrate().outcome is Outcome.DONE
+
+
+@pytest.mark.parametrize("scheme", ADAPTIVE)
+def test_between_long_steps_at_rest_nothing_moves(scheme):
+    """A load of 1e-15 N on a damped spring: steps at rest are far longer than stability allows, and amplify rounding."""
+    law = "-1e4*mass.x - 70*mass.vx + 1e-15*(1 + sin(t))"
+    given = {
+        "gravity": [0, 0],
+        "bodies": {"mass": {"mass": 1, "inertia": 1}},
+        "forces": {"load": {"type": "force", "i": "mass", "force": [law, 0]}},
+    }
+    how = {"duration": 20.0, "points": 2001, "rtol": 1e-6}
+    solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(given)), solver="projected", scheme=scheme, **how)
+    assert np.max(np.abs(solution["mass.vx"])) < 1e-2

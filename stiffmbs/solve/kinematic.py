@@ -7,13 +7,14 @@ import time
 import numpy as np
 
 from ..compile.input_features import InputFeatures
+from ..compile.inputs_of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .failures import FAILURES
 from .initial import InitialValues
 from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
-from .narrow_inputs import narrower_than_output
+from .narrow_inputs import hidden_peak, narrower_than_output
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
@@ -67,7 +68,8 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": time.perf_counter() - begun}
-    note = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
+    narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
+    note = narrow or hidden_peak(inputs_of(system), features, times)
     return Trajectory(*rows.stored, outcome, message, statistics, note=note)
 
 

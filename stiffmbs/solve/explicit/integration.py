@@ -84,6 +84,10 @@ class Integration:
         """The time reached."""
         return float(self._arrays["t"][0])
 
+    @t.setter
+    def t(self, value: float) -> None:
+        self._arrays["t"][0] = value
+
     @property
     def h(self) -> float:
         """The length of the next step, s."""
