@@ -29,7 +29,7 @@ from .sundae import SundaeEngine
 from .sundials.choice import chosen
 from .sundials.libraries import available
 from .suspect import suspect
-from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from .trajectory import Grid, Outcome, Rows, Trajectory, Watch, keeps_slopes
 
 MOST_JUMPS = 3
 """Jumps of velocities that are told one by one."""
@@ -69,13 +69,17 @@ def integrated(
         Asked now and then whether to go on; where it does not, the run is left where `integrator.reached` says.
     """
     system = integrator.mechanics.system
-    rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
+    expected = len(grid.times) if grid.times is not None else 1024
+    rows = Rows(system.n_q, system.n_u, expected, keeps_slopes(system, grid))
     rows.append(grid.start, start.q, start.u)
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
         for stretch, reached in enumerate(integrator.run(start, grid)):
-            rows.extend(reached.times, *integrator.equations.states(reached.rows))
+            equations, slopes = integrator.equations, reached.slopes
+            rows.extend(
+                reached.times, *equations.states(reached.rows), None if slopes is None else equations.slopes(slopes)
+            )
             watch(reached.t)
             integrator.reached = reached
             failure = _failure(integrator, reached) if reached.failure or stretch > SHORT else ""
@@ -92,7 +96,8 @@ def integrated(
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {**integrator.statistics(), "seconds": time.perf_counter() - begun}
-    return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history(), integrator.note())
+    history, note = integrator.engine.history(), integrator.note()
+    return Trajectory(*rows.stored, outcome, message, statistics, history, note, slope=rows.slope)
 
 
 def _failure(integrator: Integrator, reached: Reached) -> str:
@@ -238,7 +243,8 @@ class Integrator:
         """Integrate from t to `stop` or to the first event."""
         if grid.times is None:
             return self.engine.by_steps(stop)
-        return self.engine.to_times(_within(grid.times, _just_after(t), stop), stop)
+        times = _within(grid.times, _just_after(t), stop)
+        return self.engine.to_times(times, stop, keeps_slopes(self.mechanics.system, grid))
 
     def _at_once(self, start: InitialValues, before: float, t: float, grid: Grid) -> Iterator[Reached]:
         """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs.
