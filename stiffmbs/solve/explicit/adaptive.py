@@ -71,7 +71,7 @@ class AdaptiveRun:
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
         features = mechanics.input_features(grid.start, grid.end)
-        self._corners, self._note = features.corners, features.note
+        self._corners, self._note = grid.with_corners(features.corners), features.note
         work.step_bound.follow(features)
         self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg
@@ -101,9 +101,7 @@ class AdaptiveRun:
             message = f"{message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": time.perf_counter() - begun}
-        return Trajectory(
-            *self._rows.stored, outcome, message, statistics, history, self._note, slope=self._rows.slope
-        )
+        return Trajectory(*self._rows.stored, outcome, message, statistics, history, self._note, slope=self._rows.slope)
 
     def _leg(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
