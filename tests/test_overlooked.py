@@ -6,7 +6,6 @@ import pytest
 import stiffmbs
 from stiffmbs.compile.law_zones import edges_of
 from stiffmbs.show import taken_again
-from stiffmbs.show.run import prepare
 from stiffmbs.solve import event_watch
 
 from .conftest import EXAMPLES
@@ -30,27 +29,6 @@ forces:
   post: {type: contact, i: ball, j: {body: ground, point: [5.01, 0]}, surface: circle, surface_radius: 0.028, stiffness: 1e8}
 """
 BEHIND = {"bump": np.sqrt(100 + 2 * HEIGHT * WIDTH * np.sqrt(np.pi)), "post": -10.0}
-WELDED_IN_PLANE = """
-gravity: [0, -9.81]
-bodies:
-  arm: {mass: 2, inertia: 0.3, position: [0.5, 0], omega: 3, velocity: [0, 1.5]}
-  tip: {mass: 1, inertia: 0.1, position: [1, 0.2], angle: 0.4, omega: 3, velocity: [-0.6, 3]}
-joints:
-  hinge: {type: revolute, i: arm, j: {body: ground, point: [0, 0]}}
-  weld: {type: fixed, i: tip, j: arm}
-forces: {wind: {type: force, i: arm, force: ["sin(5*t)", 0]}}
-"""
-WELDED_IN_SPACE = """
-dimensions: 3
-gravity: [0, 0, -9.81]
-bodies:
-  top: {mass: 2, inertia: [0.3, 0.2, 0.1], position: [0, 0.1, 0.5], omega: [1, 2, 3]}
-  tip: {mass: 1, inertia: [0.1, 0.2, 0.1], position: [0.3, 0, 1], orientation: {euler: zxz, angles: [0, 0.6, 0.2]}}
-joints:
-  ball: {type: spherical, i: top, j: {body: ground, point: [0, 0, 0]}}
-  weld: {type: fixed, i: tip, j: top}
-forces: {wind: {type: force, i: top, force: ["sin(5*t)", 0, 0]}}
-"""
 
 
 @pytest.fixture
@@ -109,21 +87,3 @@ def test_an_interrupted_second_run_leaves_the_first(no_search):
 def test_runs_that_have_seen_everything_are_left_alone(name, how):
     for rtol in (1e-3, 1e-6, 1e-9):
         assert not told(stiffmbs.run(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"), rtol=rtol, **how))
-
-
-@pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
-@pytest.mark.parametrize("scene", [WELDED_IN_PLANE, WELDED_IN_SPACE], ids=["plane", "space"])
-def test_slopes_are_the_accelerations_also_of_bodies_that_others_carry(scene, how):
-    job = prepare(stiffmbs.read_scene(scene), duration=1.0, points=101, rtol=1e-9, **how)
-    assert job.pieces
-    found = job.integrate()
-    rows = job.mechanics.report(found.t, found.q, found.u, True)
-    inside = ~np.isnan(found.slope).any(axis=1)
-    assert np.count_nonzero(inside) > 90
-    np.testing.assert_allclose(found.slope[inside], rows.acceleration[inside], atol=1e-4)
-
-
-def test_slopes_are_not_kept_without_laws_or_between_steps():
-    pendulum = prepare(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"))
-    assert not pendulum.integrate().slope.size
-    assert not prepare(stiffmbs.read_scene(BUMP), points="steps").integrate().slope.size

@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs import Body, Model
 from stiffmbs.describe.model import FORCES
 from stiffmbs.show import verify as module
-from stiffmbs.compile.laws import has_laws
+from stiffmbs.show.laws import has_laws
 from stiffmbs.show.run import prepare, solved
 from stiffmbs.show.stepped_over import looked_along
 from stiffmbs.solve.trajectory import Outcome

@@ -82,10 +82,6 @@ class Equations:
             return q, u
         return self._offset + self._led("q", q), self._led("u", u)
 
-    def slopes(self, rows: np.ndarray) -> np.ndarray:
-        """The derivatives of all velocities from those of what `independent` lists, one state in each row."""
-        return self._led("u", rows[:, int(self.coordinates.independent.sum()) :])
-
     def _led(self, name: str, rows: np.ndarray) -> np.ndarray:
         """How all coordinates or velocities move with the independent ones."""
         leader, ratio = self.coordinates.relation(name)

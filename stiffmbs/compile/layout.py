@@ -113,7 +113,7 @@ EXPLICIT: Layout = {
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INTS,
-    "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "n_slopes": INT, "row_slope": FLOATS, "ends": FLOATS,
+    "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 }  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
 switches' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends

@@ -66,15 +66,6 @@ class Part:
         into_q[:, n_q * self.bodies[:, None] + np.arange(n_q)] = of
         into_u[:, n_u * self.bodies[:, None] + np.arange(n_u)] = rates
 
-    def put_slope(self, q: np.ndarray, u: np.ndarray, slope: np.ndarray, into: np.ndarray) -> None:
-        """Write u' of the bodies of the whole, one state a row, from that of the part's bodies."""
-        n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
-        rates = slope.reshape(len(q), count, n_u)[:, self.carrier]
-        if self.seats.moved:
-            of = q[:, : n_q * count].reshape(len(q), count, n_q)[:, self.carrier]
-            rates = self.seats.carried_slope(of, u.reshape(len(u), count, n_u)[:, self.carrier], rates)
-        into[:, n_u * self.bodies[:, None] + np.arange(n_u)] = rates
-
 
 def parts_of(model: ModelData, whole: System, apart: bool = True) -> tuple[Part, ...]:
     """The mechanisms to solve in place of a compiled model; empty where that is the model itself.

@@ -35,9 +35,6 @@ class Seats(Protocol):
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The states of the bodies from those of their carriers; shapes (..., k, n_q) and (..., k, n_u)."""
 
-    def carried_slope(self, q: np.ndarray, u: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        """The derivatives of the bodies' velocities from the states of their carriers and u' there."""
-
 
 @dataclass(frozen=True)
 class PlanarSeats:
@@ -77,12 +74,6 @@ class PlanarSeats:
         across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
         place = np.concatenate([q[..., :2] + arm, (q[..., 2] + self.angle)[..., None]], axis=-1)
         return place, np.concatenate([u[..., :2] + u[..., 2:] * across, u[..., 2:]], axis=-1)
-
-    def carried_slope(self, q: np.ndarray, u: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        arm = _turned(q[..., 2], self.point)
-        across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
-        linear = slope[..., :2] + slope[..., 2:] * across - u[..., 2:] ** 2 * arm
-        return np.concatenate([linear, slope[..., 2:]], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -131,12 +122,6 @@ class SpatialSeats:
         velocity = u[..., :3] + np.cross(rotated(p, w), arm)
         place = np.concatenate([q[..., :3] + arm, times(p, self.turn)], axis=-1)
         return place, np.concatenate([velocity, rotated(CONJUGATE * self.turn, w)], axis=-1)
-
-    def carried_slope(self, q: np.ndarray, u: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        p, alpha = q[..., 3:], slope[..., 3:]
-        arm, w = rotated(p, self.point), rotated(p, u[..., 3:])
-        linear = slope[..., :3] + np.cross(rotated(p, alpha), arm) + np.cross(w, np.cross(w, arm))
-        return np.concatenate([linear, rotated(CONJUGATE * self.turn, alpha)], axis=-1)
 
 
 def _turned(phi: np.ndarray, points: np.ndarray) -> np.ndarray:

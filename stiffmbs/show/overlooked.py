@@ -1,9 +1,10 @@
-"""What no step has seen, found where the forces at output instants contradict the steps that lead over them.
+"""What no step has seen, found where the forces at output instants contradict the step that leads over them.
 
 Within a step an integrator has a polynomial, and at every output instant the block system gives accelerations anyway.
-Their difference from the polynomial's own derivative, times the step, is an error that the velocities may have.  Along
-smooth motions and stiff forces it stays within some thousand tolerances, and steps that cross the knots of a table differ by
-a small part of the accelerations (measured).  A force that has begun and ended within the step differs by far more.
+Between two instants of one step their mean, times the time between, is the change of the velocities.  Along smooth motions
+it is so but for a small part, as a step is short beside what it has seen; what stiff forces make of errors within the
+tolerance stays within some ten thousand tolerances over a step (measured).  A force that has begun and ended within the
+step, and is met by an output instant, is beyond both.
 """
 
 from __future__ import annotations
@@ -13,20 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..analyse.reactions import reactions
-from ..compile.laws import has_law
 from ..compile.system import System
 from ..describe.settings import RunSettings
 from ..solve.mechanics import OutputRows
 from ..solve.tolerances import absolute_tolerances
-from ..solve.trajectory import Trajectory
+from .balance_notes import within_steps
+from .laws import has_law, has_laws
 
 TOLERANCES = 1e5
-"""Times the tolerance of a velocity that the difference makes in a step, beyond which something was overlooked."""
-PART = 0.1
-"""Part of the accelerations, weighted with masses, by which they must differ from what the steps have followed."""
-
-ROUNDING = 1e-9
-"""Part of a step within which an instant counts for its end."""
+"""Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
+PART = 0.3
+"""Part of what the larger of two accelerations, weighted with masses, makes in the time between, by which the change differs."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +34,8 @@ class Overlooked:
     Attributes
     ----------
     times : ndarray
-        In each step that passed over something, the first output instant that shows it, s.
+        In each step that passed over something, the output instant with the largest accelerations of the first pair that
+        shows it, s.
     step : float
         Length of the first of these steps, s.
     velocity : str
@@ -60,45 +59,44 @@ class Overlooked:
         )
 
 
-def overlooked(system: System, trajectory: Trajectory, rows: OutputRows, settings: RunSettings) -> Overlooked | None:
-    """What the steps of a run passed over; None for nothing.
+def overlooked(system: System, rows: OutputRows, steps: np.ndarray, settings: RunSettings) -> Overlooked | None:
+    """What the steps of a run passed over; None for nothing, and where no law could be.
 
     Parameters
     ----------
     system : System
         Of the whole.
-    trajectory : Trajectory
     rows : OutputRows
-        At its instants.
+    steps : ndarray
+        Ends of the solver's own steps, s; empty where it does not tell them.
     settings : RunSettings
     """
-    if not trajectory.slope.size or not len(trajectory.step_times):
+    if not has_laws(system):
         return None
-    last, step = _steps(trajectory, rows.t)
-    off = np.abs(trajectory.slope[: len(rows.t)] - rows.acceleration)
-    tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u)
-    far = np.flatnonzero((off * step[:, None] > TOLERANCES * tolerance).any(axis=1))
-    different, followed, there = (_sizes(system, each[far]) for each in (off, trajectory.slope, rows.acceleration))
-    far = far[different > PART * np.fmax(followed, there)]
+    pairs = np.flatnonzero(within_steps(rows.t, steps))
+    if not len(pairs):
+        return None
+    number = np.searchsorted(steps, rows.t[pairs])
+    step, apart = steps[number] - steps[number - 1], np.diff(rows.t)[pairs]
+    one, other = rows.acceleration[pairs], rows.acceleration[pairs + 1]
+    off = np.abs((rows.u[pairs + 1] - rows.u[pairs]) / apart[:, None] - (one + other) / 2)
+    tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u[pairs])
+    over_step = off * (step[:, None] / tolerance)
+    far = np.flatnonzero((over_step > TOLERANCES).any(axis=1))
+    different, first, last = (_sizes(system, each[far]) for each in (off, one, other))
+    certain = different > PART * np.fmax(first, last)
+    far, later = far[certain], (last > first)[certain]
     if not len(far):
         return None
-    _, first = np.unique(last[far], return_index=True)
-    k = int(far[0])
-    velocity = system.name_of(int(np.nanargmax(off[k] / tolerance[k])), system.of_body.velocities)
-    return Overlooked(rows.t[far[first]], float(step[k]), velocity, _acting(system, rows, k))
-
-
-def _steps(trajectory: Trajectory, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The number and length, s, of the step that each instant lies in; of no length where steps meet, as they see the forces there."""
-    ends = np.append(trajectory.t[0], trajectory.step_times)
-    last = np.clip(np.searchsorted(ends, t), 1, len(ends) - 1)
-    step = ends[last] - ends[last - 1]
-    return last, np.where(np.minimum(t - ends[last - 1], ends[last] - t) > ROUNDING * step, step, 0.0)
+    _, of_steps = np.unique(number[far], return_index=True)
+    at = pairs[far] + later
+    velocity = system.name_of(int(np.nanargmax(over_step[far[0]])), system.of_body.velocities)
+    return Overlooked(rows.t[at[of_steps]], float(step[far[0]]), velocity, _acting(system, rows, int(at[0])))
 
 
 def _sizes(system: System, accelerations: np.ndarray) -> np.ndarray:
-    """Norms of accelerations in the mass matrix; of those alone that are known."""
-    return np.sqrt(np.nansum(system.mass * accelerations**2, axis=1))
+    """Norms of accelerations in the mass matrix."""
+    return np.sqrt(np.sum(system.mass * accelerations**2, axis=1))
 
 
 def _acting(system: System, rows: OutputRows, k: int) -> str:

@@ -20,7 +20,6 @@ from ..analyse.balance import Balance, energy_balance
 from ..analyse.energy import kinetic_energy, potential_energy
 from ..analyse.reactions import reactions
 from ..analyse.singular_poses import PosesOnTheWay
-from ..compile.laws import has_law
 from ..compile.system import System
 from ..errors import StiffmbsError
 from ..solve.mechanics import OutputRows
@@ -29,6 +28,7 @@ from ..solve.trajectory import Grid, Outcome
 from .balance_notes import may_be_missing
 from .between import apart
 from .gaps import reported
+from .laws import has_law
 from .run import Job
 from .settings import changed, near_constraints
 from .solution import Solution

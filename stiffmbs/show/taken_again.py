@@ -61,4 +61,4 @@ def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
-    return overlooked(job.mechanics.system, computed.trajectory, computed.rows, job.settings)
+    return overlooked(job.mechanics.system, computed.rows, computed.trajectory.step_times, job.settings)

@@ -25,7 +25,6 @@ from typing import Any
 
 import numpy as np
 
-from ..compile.laws import has_laws
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
@@ -34,6 +33,7 @@ from .between import Between, looked_between, more_instants
 from .doubts import Comparison, doubts
 from .doubts_of_steps import by_luck, doubts_of_steps
 from .error_bars import UNKNOWN, ErrorBar, error_bar
+from .laws import has_laws
 from .parting import distance, parting
 from .run import Job, prepare, solved
 from .scales import scales

@@ -29,7 +29,7 @@ from .sundae import SundaeEngine
 from .sundials.choice import chosen
 from .sundials.libraries import available
 from .suspect import suspect
-from .trajectory import Grid, Outcome, Rows, Trajectory, Watch, keeps_slopes
+from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 MOST_JUMPS = 3
 """Jumps of velocities that are told one by one."""
@@ -69,17 +69,13 @@ def integrated(
         Asked now and then whether to go on; where it does not, the run is left where `integrator.reached` says.
     """
     system = integrator.mechanics.system
-    expected = len(grid.times) if grid.times is not None else 1024
-    rows = Rows(system.n_q, system.n_u, expected, keeps_slopes(system, grid))
+    rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
     outcome, message = Outcome.DONE, Outcome.DONE.value
     begun = time.perf_counter()
     try:
         for stretch, reached in enumerate(integrator.run(start, grid)):
-            equations, slopes = integrator.equations, reached.slopes
-            rows.extend(
-                reached.times, *equations.states(reached.rows), None if slopes is None else equations.slopes(slopes)
-            )
+            rows.extend(reached.times, *integrator.equations.states(reached.rows))
             watch(reached.t)
             integrator.reached = reached
             failure = _failure(integrator, reached) if reached.failure or stretch > SHORT else ""
@@ -96,8 +92,7 @@ def integrated(
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {**integrator.statistics(), "seconds": time.perf_counter() - begun}
-    history, note = integrator.engine.history(), integrator.note()
-    return Trajectory(*rows.stored, outcome, message, statistics, history, note, slope=rows.slope)
+    return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history(), integrator.note())
 
 
 def _failure(integrator: Integrator, reached: Reached) -> str:
@@ -192,7 +187,7 @@ class Integrator:
         self._of_inputs = features.note
         chattering = Chattering(self.mechanics, grid.end, self.settings.rtol)
         self._held = HeldSwitches(self.mechanics, chattering)
-        for stop in (*grid.with_corners(features.corners).tolist(), grid.end):
+        for stop in (*grid.with_stops(features.corners).tolist(), grid.end):
             while _just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
                 self._begin(start, t)
@@ -243,8 +238,7 @@ class Integrator:
         """Integrate from t to `stop` or to the first event."""
         if grid.times is None:
             return self.engine.by_steps(stop)
-        times = _within(grid.times, _just_after(t), stop)
-        return self.engine.to_times(times, stop, keeps_slopes(self.mechanics.system, grid))
+        return self.engine.to_times(_within(grid.times, _just_after(t), stop), stop)
 
     def _at_once(self, start: InitialValues, before: float, t: float, grid: Grid) -> Iterator[Reached]:
         """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs.

@@ -29,8 +29,6 @@ class Reached:
         The switches that stopped it by changing their sign; empty where none did.
     failure : str
         Why it cannot go on; empty where it can.
-    slopes : ndarray, optional
-        The derivatives of the rows by time, of the integrator's own polynomial.
     """
 
     times: np.ndarray
@@ -39,7 +37,6 @@ class Reached:
     y: np.ndarray
     fired: tuple[int, ...] = ()
     failure: str = ""
-    slopes: np.ndarray | None = None
 
 
 class Engine(Protocol):
@@ -61,8 +58,8 @@ class Engine(Protocol):
         brought back to the equations.
         """
 
-    def to_times(self, times: np.ndarray, stop: float, slopes: bool) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there, with slopes where asked; ends early at an event or a failure."""
+    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""

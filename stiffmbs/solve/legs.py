@@ -12,11 +12,10 @@ from .trajectory import History, Trajectory, summed
 
 def joined(legs: Sequence[Trajectory]) -> Trajectory:
     """Legs as one trajectory; each begins with the row at which the last one ended."""
-    t, q, u, slope = (
-        np.concatenate([getattr(leg, name)[int(k > 0) :] for k, leg in enumerate(legs)])
-        for name in ("t", "q", "u", "slope")
+    t, q, u = (
+        np.concatenate([getattr(leg, name)[int(k > 0) :] for k, leg in enumerate(legs)]) for name in ("t", "q", "u")
     )
-    return replace(legs[-1], t=t, q=q, u=u, slope=slope, statistics=_summed(legs), history=_history(legs))
+    return replace(legs[-1], t=t, q=q, u=u, statistics=_summed(legs), history=_history(legs))
 
 
 def _last_of_each_kind(legs: Sequence[Trajectory]) -> list[Trajectory]:

@@ -102,19 +102,18 @@ class NativeEngine:
                 self._ida.t, self._ida.y.copy(), self._ida.yp.copy(), eased, self._stiffness
             )  # IDA reads it at a start alone
 
-    def to_times(self, times: np.ndarray, stop: float, slopes: bool) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there, with slopes where asked; ends early at an event or a failure."""
+    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
         status, served = Status.GOING, 0
         while status is Status.GOING:
             times = times[served:]
             rows = room(len(times), self._width)
-            rates = room(len(times), self._width) if slopes else None
-            served, status = self._ida.advance(times, stop, rows, rates)
+            served, status = self._ida.advance(times, stop, rows)
             *earlier, last = list(blocks(served)) or [slice(0, 0)]
             for block in earlier:
-                yield self._reached(times[block], rows[block], Status.GOING, None if rates is None else rates[block])
-                release(*(array for array in (rows, rates) if array is not None))
-            yield self._reached(times[last], rows[last], status, None if rates is None else rates[last])
+                yield self._reached(times[block], rows[block], Status.GOING)
+                release(rows)
+            yield self._reached(times[last], rows[last], status)
             if status is Status.GOING:
                 self._adapt()
 
@@ -128,12 +127,10 @@ class NativeEngine:
             if status is Status.GOING:
                 self._adapt()
 
-    def _reached(
-        self, times: np.ndarray, rows: np.ndarray, status: Status, slopes: np.ndarray | None = None
-    ) -> Reached:
+    def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
         failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
         fired = tuple(map(int, np.flatnonzero(self._ida.roots()))) if status is Status.ROOT else ()
-        return Reached(times, rows, self._ida.t, self._ida.y, fired, failure, slopes)
+        return Reached(times, rows, self._ida.t, self._ida.y, fired, failure)
 
     def _worst(self) -> str:
         """Where the last step's error, or the last correction of Newton's iteration, was largest; nothing where that is not known."""

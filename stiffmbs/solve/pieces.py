@@ -105,20 +105,8 @@ def _together(pieces: Sequence[Piece], found: Sequence[Trajectory], start: Initi
     return replace(
         ending, t=found[0].t[:rows], q=q, u=u, statistics=summed([each.statistics for each in found]), history=_merged([each.history for each in found]),
         note="; ".join(each.note for each in found if each.note),
-        solver=", ".join(dict.fromkeys(each.solver for each in found if each.solver)), slope=_slope(pieces, found, u),
+        solver=", ".join(dict.fromkeys(each.solver for each in found if each.solver)),
     )  # fmt: skip
-
-
-def _slope(pieces: Sequence[Piece], found: Sequence[Trajectory], u: np.ndarray) -> np.ndarray:
-    """The slopes of all bodies where any piece has kept its own; not numbers where others have not."""
-    if not any(each.slope.size for each in found):
-        return np.empty((len(u), 0))
-    slope = room(*u.shape)
-    slope[:] = np.nan
-    for piece, each in zip(pieces, found, strict=False):
-        if each.slope.size:
-            piece.part.put_slope(*(array[: len(u)] for array in (each.q, each.u, each.slope)), slope)
-    return slope
 
 
 def _merged(histories: Sequence[History]) -> History:

@@ -188,8 +188,8 @@ class SundaeEngine:
         self.callbacks.begin(t)
         self._last, self._near = self._ida.init_step(t, y, yp), t
 
-    def to_times(self, times: np.ndarray, stop: float, slopes: bool) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there, without slopes; ends early at an event or a failure."""
+    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
         ends_there, served = len(times) > 0 and times[-1] == stop, 0
         while served < len(times):
             reached = self._several(times[served : served + TOGETHER], stop)

@@ -18,8 +18,6 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ..compile.laws import has_laws
-from ..compile.system import System
 from ..describe.settings import RunSettings
 from .storage import BLOCK, release, room
 
@@ -66,8 +64,8 @@ class Grid:
     times: np.ndarray | None
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
 
-    def with_corners(self, corners: np.ndarray) -> np.ndarray:
-        """Where to start anew: corners of inputs within the run, and the stops."""
+    def with_stops(self, corners: np.ndarray) -> np.ndarray:
+        """Where to start anew: at corners of inputs, and at the stops within the run."""
         if not len(self.stops):
             return corners
         return np.union1d(corners, self.stops[(self.stops > self.start) & (self.stops < self.end)])
@@ -91,8 +89,6 @@ class Trajectory:
         What the user should know besides; empty for nothing.
     solver : str
         Which solvers have worked, where that was not for the user to say.
-    slope : ndarray, shape (n, n_u) or (n, 0)
-        u' of the integrator's own interpolant, not a number where it is not known; of no width where it was not kept.
     """
 
     t: np.ndarray
@@ -104,7 +100,6 @@ class Trajectory:
     history: History = field(default_factory=lambda: History(np.empty(0), np.empty(0, dtype=int)))
     note: str = ""
     solver: str = ""
-    slope: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
     def step_times(self) -> np.ndarray:
@@ -131,50 +126,37 @@ def summed(parts: Sequence[Mapping[str, int | float | str]]) -> dict[str, int | 
     return together
 
 
-def keeps_slopes(system: System, grid: Grid) -> bool:
-    """Whether a run keeps the slopes of its interpolant: between steps, where there are laws that these may go over."""
-    return grid.times is not None and has_laws(system)
-
-
 class Rows:
-    """Growing storage for states, and for slopes where they are wanted: appended to row by row, whatever their number."""
+    """Growing storage for states: appended to row by row, whatever their number."""
 
-    def __init__(self, n_q: int, n_u: int, expected: int = 1024, slopes: bool = False) -> None:
+    def __init__(self, n_q: int, n_u: int, expected: int = 1024) -> None:
         self._t, self._q, self._u = room(expected), room(expected, n_q), room(expected, n_u)
-        self._slope = room(expected, n_u if slopes else 0)
         self._count = self._released = 0
 
     def append(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Store one state."""
         self._make_room(1)
         self._t[self._count], self._q[self._count], self._u[self._count] = t, q, u
-        self._slope[self._count] = np.nan
         self._count += 1
 
-    def extend(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, slope: np.ndarray | None = None) -> None:
-        """Store states, one in each row, and their slopes where these are kept and known."""
+    def extend(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> None:
+        """Store states, one in each row."""
         self._make_room(len(t))
         added = slice(self._count, self._count + len(t))
         self._t[added], self._q[added], self._u[added] = t, q, u
-        self._slope[added] = np.nan if slope is None else slope
         self._count += len(t)
         if self._count - self._released > BLOCK:
-            release(self._t, self._q, self._u, self._slope)
+            release(self._t, self._q, self._u)
             self._released = self._count
 
     def _make_room(self, count: int) -> None:
         while self._count + count > len(self._t):
-            self._t, self._q, self._u, self._slope = map(_doubled, (self._t, self._q, self._u, self._slope))
+            self._t, self._q, self._u = (_doubled(array) for array in (self._t, self._q, self._u))
 
     @property
     def stored(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Times, positions and velocities stored so far."""
         return self._t[: self._count], self._q[: self._count], self._u[: self._count]
-
-    @property
-    def slope(self) -> np.ndarray:
-        """Slopes of the velocities stored so far, shape (n, n_u), or (n, 0) where they are not kept."""
-        return self._slope[: self._count]
 
 
 def _doubled(array: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from ..mechanics import Mechanics
 from ..restart import restarted
 from ..suspect import suspect
 from ..tolerances import absolute_tolerances
-from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch, keeps_slopes
+from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
@@ -66,12 +66,11 @@ class AdaptiveRun:
         self.left = False
         self._scheme, self._mechanics, self._start, self._grid = scheme, mechanics, start, grid
         self._settings, self._watch = settings, watch
-        expected = len(grid.times) if grid.times is not None else work.room + 1
-        self._rows = Rows(system.n_q, system.n_u, expected, keeps_slopes(system, grid))
+        self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
         features = mechanics.input_features(grid.start, grid.end)
-        self._corners, self._note = grid.with_corners(features.corners), features.note
+        self._corners, self._note = grid.with_stops(features.corners), features.note
         work.step_bound.follow(features)
         self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg
@@ -101,7 +100,7 @@ class AdaptiveRun:
             message = f"{message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": time.perf_counter() - begun}
-        return Trajectory(*self._rows.stored, outcome, message, statistics, history, self._note, slope=self._rows.slope)
+        return Trajectory(*self._rows.stored, outcome, message, statistics, history, self._note)
 
     def _leg(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""

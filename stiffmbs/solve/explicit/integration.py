@@ -13,7 +13,7 @@ from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
 from ..step_bound import StepBound
 from ..tolerances import absolute_tolerances
-from ..trajectory import Grid, Rows, keeps_slopes
+from ..trajectory import Grid, Rows
 from .scheme import Scheme
 
 SHORTEST_PART = 1e-12
@@ -50,8 +50,6 @@ class Integration:
         self.step_bound = StepBound()
         atol = absolute_tolerances(mechanics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
-        self._slopes = keeps_slopes(mechanics.system, grid)
-        n_slopes = len(start.u) if self._slopes else 0
         n_switches = mechanics.system.n_switches
         self._watch = EventWatch(mechanics.state)
         counters = ("at_event", "dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
@@ -71,7 +69,7 @@ class Integration:
             **{name: np.zeros(1, dtype=np.int64) for name in counters},
             "n_times": len(times), "times": times,
             "room": self.room, "row_t": np.empty(self.room), "row_y": np.empty((self.room, n)),
-            "n_slopes": n_slopes, "row_slope": np.full((self.room, n_slopes), np.nan), "ends": np.empty(self.room),
+            "ends": np.empty(self.room),
         }  # fmt: skip
         self._table = packed(EXPLICIT, self._arrays)
         self.begin(start)
@@ -128,8 +126,7 @@ class Integration:
         """Take over the rows and ends of steps that the last call stored, and make room for the next."""
         count, before = self.count("rows"), self._collected
         y = self._arrays["row_y"][:count]
-        slope = self._arrays["row_slope"][:count] if self._slopes else None
-        rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :], slope)
+        rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :])
         self._arrays["rows"][0] = 0
         self._collected = self.count("steps")
         self.step_times.append(self._arrays["ends"][np.arange(before, self._collected) % self.room])

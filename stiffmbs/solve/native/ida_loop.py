@@ -241,26 +241,16 @@ def _stalled(c):
 
 
 @compiled
-def _report_at(c, t, row):
-    """What is reported of the solution at a time within the last step."""
+def _report_at(c, t, derivative, current, row):
+    """What is reported of the solution, or of its derivative, at a time within the last step."""
     if t == c.mark[RETURNED]:
-        _report(c, _array(c, c.y), row)
+        _report(c, _array(c, current), row)
         return int32(OK)
     if c.mark[SIZE] > c.balance_mark[LONG] and balanced(c.balance, c.state, c.equations, t):
-        _report(c, balance_view(c.balance).y, row)
+        b = balance_view(c.balance)
+        _report(c, b.yp if derivative else b.y, row)
         return int32(OK)
-    flag = call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
-    _report(c, c.output, row)
-    return flag
-
-
-@compiled
-def _report_slope_at(c, t, row):
-    """The derivative of IDA's own polynomial there, not brought back to the equations."""
-    if t == c.mark[RETURNED]:
-        _report(c, _array(c, c.yp), row)
-        return int32(OK)
-    flag = call_int(c.interpolate, (c.memory, t, int32(1), c.at_output))
+    flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))
     _report(c, c.output, row)
     return flag
 
@@ -271,9 +261,9 @@ def _served(c, times, count, y_out, yp_out):
     flag = int32(OK)
     while c.count[SERVED] < count and times[c.count[SERVED]] <= c.mark[RETURNED]:
         k = c.count[SERVED]
-        flag = _report_at(c, times[k], shifted(y_out, k * c.n_reported))
+        flag = _report_at(c, times[k], 0, c.y, shifted(y_out, k * c.n_reported))
         if flag >= 0 and yp_out != 0:
-            flag = _report_slope_at(c, times[k], shifted(floats(yp_out), k * c.n_reported))
+            flag = _report_at(c, times[k], 1, c.yp, shifted(floats(yp_out), k * c.n_reported))
         if flag < 0:
             break
         c.count[SERVED] = k + 1

@@ -51,33 +51,6 @@ def interpolated(x, c, theta, target):
 
 
 @compiled
-def _slope(x, c, first, theta, target):
-    """The derivative of the interpolant by time at a part theta of the last step, of the state from number `first` on."""
-    for i in range(first, x.n):
-        value = 0.0
-        rate = 0.0
-        for k in range(2 + c.n_dense, -1, -1):
-            value += x.polynomial[k * x.n + i]
-            if k % 2 == 0:
-                rate = rate * theta + value
-                value *= theta
-            else:
-                rate = rate * (1.0 - theta) - value
-                value *= 1.0 - theta
-        target[i - first] = rate / x.span[0]
-
-
-@compiled
-def _store_slope(x, c, first, theta):
-    """Store the derivative of the velocities; at the end of a step it is that of the equations themselves."""
-    target = shifted(x.row_slope, x.rows[0] * x.n_slopes)
-    if theta < 1.0:
-        _slope(x, c, first, theta, target)
-    else:
-        copied(target, shifted(x.k, c.stages * x.n + first), x.n_slopes)
-
-
-@compiled
 def store_rows(x, c, s, m):
     """Store the states at all output times up to now; 1 when that is done, 0 when the room is full, or a status."""
     while x.next_time[0] < x.n_times and x.times[x.next_time[0]] <= x.t[0]:
@@ -85,7 +58,6 @@ def store_rows(x, c, s, m):
             return 0
         time = x.times[x.next_time[0]]
         target = shifted(x.row_y, x.rows[0] * x.n)
-        theta = 1.0
         if time == x.t[0]:
             copied(target, x.y, x.n)
         else:
@@ -93,10 +65,7 @@ def store_rows(x, c, s, m):
                 status = prepare(x, c, s, m)
                 if status < 0:
                     return status
-            theta = (time - x.t_before[0]) / x.span[0]
-            interpolated(x, c, theta, target)
-        if x.n_slopes > 0:
-            _store_slope(x, c, s.n_q, theta)
+            interpolated(x, c, (time - x.t_before[0]) / x.span[0], target)
         x.row_t[x.rows[0]] = time
         x.rows[0] += 1
         x.next_time[0] += 1

@@ -223,7 +223,7 @@ class NativeIda:
         stop : float
             Time beyond which no residual is evaluated, s.
         y_out, yp_out : ndarrays, shape (len(times), number of reported unknowns)
-            Receive the solution, and the derivative of IDA's own polynomial.
+            Receive the solution, and its derivative.
 
         Returns
         -------

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .group import Group
-from .kind import Shape
-from .system import System
+from ..compile.group import Group
+from ..compile.kind import Shape
+from ..compile.system import System
 
 
 def has_laws(system: System) -> bool:
