@@ -21,7 +21,7 @@ from ..solve.tolerances import absolute_tolerances
 from .balance_notes import within_steps
 from .laws import has_law, has_laws
 
-TOLERANCES = 1e5
+TOLERANCES = 3e5
 """Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
 PART = 0.3
 """Part of what the larger of two accelerations, weighted with masses, makes in the time between, by which the change differs."""
@@ -71,27 +71,33 @@ def overlooked(system: System, rows: OutputRows, steps: np.ndarray, settings: Ru
         Ends of the solver's own steps, s; empty where it does not tell them.
     settings : RunSettings
     """
-    if not has_laws(system):
+    if len(steps) < 2 or not has_laws(system):
         return None
-    pairs = np.flatnonzero(within_steps(rows.t, steps))
-    if not len(pairs):
-        return None
+    allowed = TOLERANCES * absolute_tolerances(system, settings)[system.n_q :]
+    off = _contradictions(rows)
+    far = np.flatnonzero(off > allowed / np.max(np.diff(steps)))  # few, so that all else costs nothing
+    pairs = np.unique(far // off.shape[1])
+    pairs = pairs[within_steps(rows.t[pairs], rows.t[pairs + 1], steps)]
     number = np.searchsorted(steps, rows.t[pairs])
-    step, apart = steps[number] - steps[number - 1], np.diff(rows.t)[pairs]
-    one, other = rows.acceleration[pairs], rows.acceleration[pairs + 1]
-    off = np.abs((rows.u[pairs + 1] - rows.u[pairs]) / apart[:, None] - (one + other) / 2)
-    tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u[pairs])
-    over_step = off * (step[:, None] / tolerance)
-    far = np.flatnonzero((over_step > TOLERANCES).any(axis=1))
-    different, first, last = (_sizes(system, each[far]) for each in (off, one, other))
-    certain = different > PART * np.fmax(first, last)
-    far, later = far[certain], (last > first)[certain]
-    if not len(far):
+    step = steps[number] - steps[number - 1]
+    many = off[pairs] * step[:, None] / (allowed + TOLERANCES * settings.rtol * np.abs(rows.u[pairs]))
+    one, other = (_sizes(system, rows.acceleration[pairs + k]) for k in (0, 1))
+    found = np.flatnonzero((many > 1).any(axis=1) & (_sizes(system, off[pairs]) > PART * np.fmax(one, other)))
+    if not len(found):
         return None
-    _, of_steps = np.unique(number[far], return_index=True)
-    at = pairs[far] + later
-    velocity = system.name_of(int(np.nanargmax(over_step[far[0]])), system.of_body.velocities)
-    return Overlooked(rows.t[at[of_steps]], float(step[far[0]]), velocity, _acting(system, rows, int(at[0])))
+    _, first = np.unique(number[found], return_index=True)
+    at, k = (pairs + (other > one))[found], found[0]
+    velocity = system.name_of(int(np.nanargmax(many[k])), system.of_body.velocities)
+    return Overlooked(rows.t[at[first]], float(step[k]), velocity, _acting(system, rows, int(at[0])))
+
+
+def _contradictions(rows: OutputRows) -> np.ndarray:
+    """By how much the change of velocities between instants, in a second, differs from the mean of their accelerations."""
+    off = np.diff(rows.u, axis=0)
+    off /= np.diff(rows.t)[:, None]
+    off -= 0.5 * rows.acceleration[1:]
+    off -= 0.5 * rows.acceleration[:-1]
+    return np.abs(off, out=off)
 
 
 def _sizes(system: System, accelerations: np.ndarray) -> np.ndarray:
