@@ -73,21 +73,19 @@ def overlooked(system: System, rows: OutputRows, steps: np.ndarray, settings: Ru
     """
     if len(steps) < 2 or not has_laws(system):
         return None
-    allowed = TOLERANCES * absolute_tolerances(system, settings)[system.n_q :]
-    off = _contradictions(rows)
-    far = np.flatnonzero(off > allowed / np.max(np.diff(steps)))  # few, so that all else costs nothing
-    pairs = np.unique(far // off.shape[1])
+    off, size = _contradictions(rows), rows.acceleration**2 @ system.mass
+    pairs = np.flatnonzero(off**2 @ system.mass > PART**2 * np.fmax(size[1:], size[:-1]))  # few: the rest costs nothing
     pairs = pairs[within_steps(rows.t[pairs], rows.t[pairs + 1], steps)]
     number = np.searchsorted(steps, rows.t[pairs])
     step = steps[number] - steps[number - 1]
-    many = off[pairs] * step[:, None] / (allowed + TOLERANCES * settings.rtol * np.abs(rows.u[pairs]))
-    one, other = (_sizes(system, rows.acceleration[pairs + k]) for k in (0, 1))
-    found = np.flatnonzero((many > 1).any(axis=1) & (_sizes(system, off[pairs]) > PART * np.fmax(one, other)))
+    tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u[pairs])
+    over_step = np.abs(off[pairs]) * step[:, None] / (TOLERANCES * tolerance)
+    found = np.flatnonzero((over_step > 1).any(axis=1))
     if not len(found):
         return None
     _, first = np.unique(number[found], return_index=True)
-    at, k = (pairs + (other > one))[found], found[0]
-    velocity = system.name_of(int(np.nanargmax(many[k])), system.of_body.velocities)
+    at, k = (pairs + (size[pairs + 1] > size[pairs]))[found], found[0]
+    velocity = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities)
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, _acting(system, rows, int(at[0])))
 
 
@@ -97,12 +95,7 @@ def _contradictions(rows: OutputRows) -> np.ndarray:
     off /= np.diff(rows.t)[:, None]
     off -= 0.5 * rows.acceleration[1:]
     off -= 0.5 * rows.acceleration[:-1]
-    return np.abs(off, out=off)
-
-
-def _sizes(system: System, accelerations: np.ndarray) -> np.ndarray:
-    """Norms of accelerations in the mass matrix."""
-    return np.sqrt(np.sum(system.mass * accelerations**2, axis=1))
+    return off
 
 
 def _acting(system: System, rows: OutputRows, k: int) -> str:
