@@ -1,5 +1,7 @@
 """Steps that pass over something are told from the forces at output instants, and are taken again."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import stiffmbs
 from stiffmbs.compile.law_zones import edges_of
 from stiffmbs.show import taken_again
 from stiffmbs.solve import event_watch
+from stiffmbs.stress.fuzzers import contacts
 
 from .conftest import EXAMPLES
 
@@ -87,3 +90,13 @@ def test_an_interrupted_second_run_leaves_the_first(no_search):
 def test_runs_that_have_seen_everything_are_left_alone(name, how):
     for rtol in (1e-3, 1e-6, 1e-9):
         assert not told(stiffmbs.run(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"), rtol=rtol, **how))
+
+
+def test_a_corner_that_meets_the_ground_while_its_body_spins():
+    """A random scene in which a body turns by 11 rad in a step of free flight."""
+    described, _ = contacts._made(np.random.default_rng(9))
+    model = stiffmbs.read_scene(json.dumps(described))
+    found = stiffmbs.run(model, duration=0.5, points=500, rtol=1e-7)
+    short = stiffmbs.run(model, duration=0.5, points=500, rtol=1e-7, max_step=2e-4)
+    for name in ("b1.vx", "b1.vy"):
+        assert found[name][-1] == pytest.approx(short[name][-1], rel=1e-4)
