@@ -36,6 +36,7 @@ from .no_number import no_number_sentences
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
 from .solution import Solution
+from .taken_again import Computed, seen_through
 from .unconnected import unconnected_sentence
 
 
@@ -167,13 +168,12 @@ def run(
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    trajectory = _sound_part(job, job.integrate(watch))
-    project = near_constraints(job.settings)
-    rows, left_out = reported(job.mechanics, trajectory, project)
+    computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
+    trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
         raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
-    if project:
+    if near_constraints(job.settings):
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
     system, channels = job.mechanics.system, channels_of(job.data, job.mechanics.system, rows)
@@ -186,11 +186,17 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     wrong = (*wrong, *no_number_sentences(rows.t[solved_there], known))
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
-        message=message, notes=(*_notes(job, trajectory), *left_out, *wrong), solver=statistics,
+        message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
+
+
+def _computed(job: Job, watch: Watch | None) -> Computed:
+    """Integrate a job and report it."""
+    trajectory = _sound_part(job, job.integrate(watch))
+    return Computed(trajectory, *reported(job.mechanics, trajectory, near_constraints(job.settings)))
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:

@@ -119,7 +119,7 @@ class _Shared:
         times = self._grid.times
         if t == self._grid.start:
             return self._grid
-        return Grid(t, self._grid.end, None if times is None else np.append(t, times[times > t]))
+        return replace(self._grid, start=t, times=None if times is None else np.append(t, times[times > t]))
 
     def _explicit_leg(self, start: InitialValues, t: float) -> float | None:
         """Explicit steps from t on; the time at which they were left, or None at the end."""

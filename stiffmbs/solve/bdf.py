@@ -174,7 +174,7 @@ class Integrator:
         self._of_inputs = features.note
         chattering = Chattering(self.mechanics, grid.end, self.settings.rtol)
         self._held = HeldSwitches(self.mechanics, chattering)
-        for stop in (*features.corners.tolist(), grid.end):
+        for stop in (*grid.with_stops(features.corners).tolist(), grid.end):
             while just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
                 self._begin(start, t)

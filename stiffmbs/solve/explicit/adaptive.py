@@ -71,7 +71,7 @@ class AdaptiveRun:
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
         features = mechanics.input_features(grid.start, grid.end)
-        self._corners, self._note = features.corners, features.note
+        self._corners, self._note = grid.with_stops(features.corners), features.note
         work.step_bound.follow(features)
         self._jumps = VelocityJumps(mechanics)
         self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
