@@ -94,7 +94,7 @@ def _step(x, c, s, m, end):
                 h = h * SHORTER if moved <= MOST_MOVED else h / SHORTER**MOST_MOVED
                 continue
             if status == 0:
-                x.uncertain[0] = 1 if uncertain else 0
+                x.uncertain[0] = 1 if uncertain or moved else 0  # two in a row would creep up to a pose that locks
                 x.t[0] = t_new
                 x.span[0] = t_new - t
                 x.h[0] = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
