@@ -55,9 +55,7 @@ def test_bars_hold_the_true_error_and_are_not_far_from_it(problem):
         for parts in (found.reported, found.peaks, found.over_time):
             assert np.mean(parts >= 1) >= NEARLY_ALL, (solver, rtol)
             assert parts.min() > SMALLEST, (solver, rtol)
-        assert np.median(found.reported) < (
-            12 if problem == "stick_slip" else 6
-        )  # explicit steps end at events: better than bdf
+        assert np.median(found.reported) < 6
 
 
 @pytest.mark.parametrize("solver", ["bdf", "projected"])

@@ -32,6 +32,7 @@ from .channels import channels_of
 from .far_away import refuse_far_away
 from .gaps import reported
 from .growth import senseless
+from .lost_turns import lost_turns_sentence
 from .no_number import no_number_sentences
 from .presolve import presolve_sentences
 from .settings import changed, may_presolve, near_constraints, output_grid
@@ -183,7 +184,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
     known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
-    wrong = (*wrong, *no_number_sentences(rows.t[solved_there], known))
+    wrong = (*wrong, *lost_turns_sentence(job.mechanics, rows), *no_number_sentences(rows.t[solved_there], known))
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
