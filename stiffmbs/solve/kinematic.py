@@ -6,15 +6,15 @@ import time
 
 import numpy as np
 
-from ..compile.input_features import InputFeatures
-from ..compile.inputs_of_time import inputs_of
+from ..compile.inputs.features import InputFeatures
+from ..compile.inputs.of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
+from .events.limits import refuse_beyond_limits
+from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .failures import FAILURES
 from .initial import InitialValues
-from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
-from .narrow_inputs import hidden_peak, narrower_than_output
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 

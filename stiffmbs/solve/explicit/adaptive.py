@@ -8,19 +8,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.routines import Routine
+from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
-from ..beyond_sense import refuse_beyond_sense
-from ..chattering import Chattering
+from ..error_control.tolerances import absolute_tolerances
+from ..events.chattering import Chattering
+from ..events.divergence import refuse_beyond_sense
+from ..events.limits import refuse_beyond_limits
+from ..events.restart import just_after, just_before, restarted
+from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
-from ..limits import refuse_beyond_limits
 from ..mechanics import Mechanics
-from ..restart import just_after, just_before, restarted
 from ..suspect import suspect
-from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
-from ..velocity_jumps import VelocityJumps
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence

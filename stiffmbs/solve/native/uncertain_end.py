@@ -7,7 +7,7 @@ step that ends beside it hands errors on that no shorter step makes good: the sh
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, eliminated_view, shifted
+from stiffmbs.compile.machine.native.access import compiled, eliminated_view, shifted
 
 ROUNDING = 2.2e-16
 CLOSE = 1e-2
