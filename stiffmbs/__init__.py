@@ -20,10 +20,11 @@ from .describe.marker import GROUND as ground
 from .describe.marker import Marker
 from .describe.model import FORCES, JOINTS
 from .describe.model import Model as DescribedModel
-from .describe.scene import load_scene, read_scene
+from .describe.scene import read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
+from .jobs.load_scene import load_scene
 
 __version__ = "0.1.0"
 
@@ -46,7 +47,7 @@ class Model(DescribedModel):
         **changes
             Fields of the settings to change; returns and raises what `stiffmbs.check` does.
         """
-        from .show.check import check
+        from .jobs.check import check
 
         return check(self, **changes)
 
@@ -55,15 +56,15 @@ def __getattr__(name: str) -> Any:
     if name in _ELEMENTS:
         return _ELEMENTS[name]
     if name == "run":
-        from .show.run import run
+        from .jobs.run import run
 
         return run
     if name == "verify":
-        from .show.verify import verify
+        from .verification.verify import verify
 
         return verify
     if name == "check":
-        from .show.check import check
+        from .jobs.check import check
 
         return check
     if name == "compile_model":

@@ -8,7 +8,7 @@ import sys
 def start() -> None:
     """The command ``stiffmbs``; also where there is too little memory to load it."""
     try:
-        from .command_line import main
+        from .commands.main import main
     except (MemoryError, ImportError, OSError) as error:
         print(f"stiffmbs: the program cannot be loaded ({type(error).__name__}: {error})", file=sys.stderr)
         sys.exit(1)

@@ -31,7 +31,7 @@ class Model(DescribedModel):
         **changes
             Fields of the settings to change; returns and raises what `stiffmbs.check` does.
         """
-        from .show.check import check
+        from .jobs.check import check
 
         return check(self, **changes)
 
@@ -65,8 +65,8 @@ def in_space(planar: Any) -> Any:
     """
     from .describe.model import PlanarData
     from .describe.model_builder import ModelBuilder
-    from .describe.spatial.in_space import built, embedded
     from .errors import InputError
+    from .jobs.in_space import built, embedded
 
     if isinstance(planar, ModelBuilder) and planar.data_type is PlanarData:
         return built(planar, Model())

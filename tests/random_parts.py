@@ -11,7 +11,7 @@ from stiffmbs import Body, Marker, Model, spatial
 from stiffmbs.describe import model as plane
 from stiffmbs.describe.element import Element, JointName
 from stiffmbs.describe.fields import Measured
-from stiffmbs.describe.formula_field import FormulaOf
+from stiffmbs.describe.formula.field import FormulaOf
 from stiffmbs.describe.marker import MarkerReference
 from stiffmbs.describe.spatial import model as space
 from stiffmbs.describe.spatial.orientation import about, conjugate, product

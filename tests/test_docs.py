@@ -16,9 +16,9 @@ from ruamel.yaml import YAML
 
 import stiffmbs
 import stiffmbs.spatial
-from stiffmbs.command_line import main
+from stiffmbs.commands.main import main
 from stiffmbs.describe import model
-from stiffmbs.describe.expand import repeat_entries
+from stiffmbs.describe.files.expand import repeat_entries
 from stiffmbs.describe.scene import SECTIONS, PlanarScene
 from stiffmbs.describe.spatial import model as spatial_model
 

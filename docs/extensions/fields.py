@@ -10,11 +10,11 @@ from pydantic_core import PydanticUndefined
 
 from stiffmbs.describe.element import Force, Joint, JointName
 from stiffmbs.describe.fields import Described, Measured
-from stiffmbs.describe.formula_field import FormulaOf
+from stiffmbs.describe.formula.field import FormulaOf
 from stiffmbs.describe.marker import MarkerReference, Placement
 from stiffmbs.describe.spatial.marker import Placement as SpatialPlacement
 from stiffmbs.describe.spatial.orientation import OrientationField
-from stiffmbs.describe.units import DIMENSIONS
+from stiffmbs.describe.units.units import DIMENSIONS
 
 WORDS = {
     MarkerReference: "marker",

@@ -14,13 +14,13 @@ import numpy as np
 
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
-from ..show.between import more_instants
-from ..show.error_bars import ErrorBar
-from ..show.run import Job, prepare, solved
-from ..show.scales import scales
-from ..show.solution import Solution
-from ..show.verify import verified
+from ..jobs.run import Job, prepare, solved
+from ..results.error_bars import ErrorBar
+from ..results.scales import scales
+from ..results.solution import Solution
 from ..solve.trajectory import Grid
+from ..verification.dense_sampling import more_instants
+from ..verification.verify import verified
 from .error_control import bushing_in_place, scene
 
 SOLVERS = ("bdf", "projected")

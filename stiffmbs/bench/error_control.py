@@ -21,10 +21,10 @@ from ..describe.marker import Marker
 from ..describe.model import Model
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
-from ..describe.scene import load_scene
-from ..show.run import Job, prepare
+from ..jobs.load_scene import load_scene
+from ..jobs.run import Job, prepare
 from ..solve.bdf import solve
-from ..solve.error_control import ErrorControl
+from ..solve.error_control.error_test import ErrorControl
 from ..solve.trajectory import Outcome
 
 CONTROLS = {

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..show.run import Job, prepare
+from ..jobs.run import Job, prepare
 from ..solve.bdf import solve
-from ..solve.error_control import CHOSEN, ErrorControl
+from ..solve.error_control.error_test import CHOSEN, ErrorControl
 from ..solve.trajectory import Trajectory
 from .error_bars import PROBLEMS, Problem
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..describe.model_data import ModelData
-from ..show.run import prepare
+from ..jobs.run import prepare
 from ..solve.explicit import ADAPTIVE
 from ..solve.trajectory import Outcome, Trajectory
 from .benchmark import Row

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..describe.model_data import ModelData
-from ..show.run import prepare
+from ..jobs.run import prepare
 from .benchmark import Row
 from .by_hand.ida import Equations, Run
 

@@ -129,5 +129,5 @@ SPACE = BodyKind(
     (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 2.0),
 )
 """x, y, z and a quaternion p; the angular velocity is that in the body's principal axes.  Shared: the rotation matrix A
-row by row, e = 2 p/|p|^2, and n = 2/|p|^2 (`stiffmbs.compile.native.orientation`)."""
+row by row, e = 2 p/|p|^2, and n = 2/|p|^2 (`stiffmbs.compile.machine.native.orientation`)."""
 BODY_KINDS = {kind.dimensions: kind for kind in (PLANE, SPACE)}

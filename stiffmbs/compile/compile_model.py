@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..describe.element import Element
-from ..describe.formula import FormulaError
+from ..describe.formula.text import FormulaError
 from ..describe.marker import GROUND
 from ..describe.model_builder import ModelBuilder
 from ..errors import InputError

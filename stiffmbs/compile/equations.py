@@ -1,4 +1,4 @@
-"""A formulation of one system, compiled to flat lists, which `stiffmbs.compile.native.evaluate` runs."""
+"""A formulation of one system, compiled to flat lists, which `stiffmbs.compile.machine.native.evaluate` runs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from .coordinates import STILL, Coordinates, all_independent
 from .formulation import Formulation
-from .layout import EQUATIONS, packed
+from .machine.layout import EQUATIONS, packed
 from .system import System, Term
 from .terms import TERM_SETS
 

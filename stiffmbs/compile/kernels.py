@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .kind import Kind
-from .machine import Compiled, compiled_source
+from .machine.compiler import Compiled, compiled_source
 from .record import RARE, source_of
 from .terms import KERNEL_SIGNATURE, TERM_SETS
 

@@ -14,9 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..describe.element import Element, Joint, JointName
-from ..describe.formula import UNIT
-from ..describe.formula_field import TIME, Formula, is_measure, measured_markers
-from ..describe.formula_value import formula_value
+from ..describe.formula.field import TIME, Formula, is_measure, measured_markers
+from ..describe.formula.text import UNIT
+from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
 from ..describe.table import Table
 from .table_values import spline_data

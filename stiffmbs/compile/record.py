@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..describe.element import Element
-from . import cache as store
 from .kind import Kind
+from .machine import cache as store
 from .terms import TERM_SETS
 
 if TYPE_CHECKING:
-    from .derive import Derived
+    from .symbolic.derive import Derived
 
 RARE = ("all_levels", "all_levels_tangent")
 """Term sets that one formulation alone uses, index1: a third of the work of all, done when it is first asked for."""
@@ -47,7 +47,7 @@ class KindRecord:
     losses : list of int or None
         Numbers of an element that must be zero for it to keep energy; None where nothing makes that certain.
     variation : list
-        For each entry of C_q its summands: factors, columns and whether bounded (`stiffmbs.compile.variation.Summand`).
+        For each entry of C_q its summands: factors, columns and whether bounded (`stiffmbs.compile.symbolic.variation.Summand`).
     removable : list of bool
         For each equation with a position form whether it may be left out where its derivatives are constant.
     timed : list of bool
@@ -99,7 +99,7 @@ def source_of(kind: Kind, term_set: str) -> str | None:
 
 
 def _rare_source(kind: Kind, term_set: str) -> str:
-    from .generate import kernel_source
+    from .symbolic.generate import kernel_source
 
     entry = _entry(kind, term_set)
     stored = store.read(entry) if entry else None
@@ -114,13 +114,13 @@ def _rare_source(kind: Kind, term_set: str) -> str:
 @lru_cache(maxsize=4)
 def _terms(kind: Kind) -> Derived:
     """The terms of a kind, for the kernels that are written of it one after the other."""
-    from .derive import derive
+    from .symbolic.derive import derive
 
     return derive(kind)
 
 
 def _derived(kind: Kind) -> KindRecord:
-    from .generate import kernel_source
+    from .symbolic.generate import kernel_source
 
     derived = _terms(kind)
     patterns = {term: [(entry.row, entry.column) for entry in entries] for term, entries in derived.terms.items()}
@@ -174,7 +174,12 @@ def _helpers(elements: list[type]) -> set[Path]:
 def _compile_text() -> str:
     from importlib.metadata import version
 
-    describe = Path(__file__).parent.parent / "describe"
-    rooms = (Path(__file__).parent, describe, describe / "spatial")
-    files = [path for room in rooms for path in sorted(room.glob("*.py"))]
+    here, describe = Path(__file__).parent, Path(__file__).parent.parent / "describe"
+    folders = (
+        here,
+        here / "symbolic",
+        here / "inputs",
+        *(describe / name for name in ("", "formula", "units", "spatial")),
+    )
+    files = [path for folder in folders for path in sorted(folder.glob("*.py"))]
     return "\0".join([version("sympy"), *(path.read_text(encoding="utf-8") for path in files)])

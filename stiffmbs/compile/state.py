@@ -7,8 +7,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from .layout import CALL, STATE, packed
-from .routines import TERMS
+from .machine.layout import CALL, STATE, packed
+from .machine.routines import TERMS
 from .system import System
 from .terms import TERM_AXES, TERM_SETS
 
@@ -32,7 +32,7 @@ class State:
     values : dict of str to ndarray
         For each loaded term set the values that its kernels write, then the system's constants.
     table : ndarray of int
-        Addresses for compiled code (`stiffmbs.compile.layout.STATE`).
+        Addresses for compiled code (`stiffmbs.compile.machine.layout.STATE`).
     """
 
     def __init__(self, system: System) -> None:

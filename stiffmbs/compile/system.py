@@ -14,7 +14,7 @@ import numpy as np
 from .bodies import BodyKind
 from .group import Group
 from .kernels import kernel_of
-from .machine import Compiled
+from .machine.compiler import Compiled
 from .record import source_of
 from .terms import TERM_AXES, TERM_SETS, TURNED
 
@@ -43,7 +43,7 @@ class System:
         The coordinates and velocities that each of them has.
     q, u : ndarrays
         Coordinates (m, rad; quaternions) and velocities at the start, as described.  Behind the bodies' coordinates
-        stand the counters of turns (`stiffmbs.compile.counted_angle`).
+        stand the counters of turns (`stiffmbs.compile.symbolic.continuous_angle`).
     open_rates : ndarray of bool, shape (n_u,)
         Which velocities at the start are not given, so that constraints decide about them first.
     mass : ndarray, shape (n_u,)

@@ -19,7 +19,7 @@ f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q
 of friction depend on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
 A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, Z of q' = Z u where that is not u itself and
 Z_q = d(Z u)/dq, counted = angles that count turns and counting = their rates, potential = energy, request =
-what the user asked for, power = what an element brings into kinetic + potential energy (`stiffmbs.compile.losses`),
+what the user asked for, power = what an element brings into kinetic + potential energy (`stiffmbs.compile.symbolic.losses`),
 switch = what changes its sign at corners of a force, limit = what is above zero for as long as a force's law holds,
 argument = what tables and functions with narrow features (exp, tanh) are called with.
 """

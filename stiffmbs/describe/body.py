@@ -8,10 +8,10 @@ from typing import Any
 
 from pydantic import Field, field_validator
 
-from . import si
 from .fields import NAME_PATTERN, Described
+from .files.quoted import written
 from .marker import Marker, Placement
-from .quoted import written
+from .units import si
 
 
 class Body(Described):

@@ -1,7 +1,7 @@
 """What a joint and a force are: fields with units, and their equations in SymPy, written once.
 
 An element's equations are static functions of `e`, the element with its markers as symbolic frames
-(`stiffmbs.compile.planar_frames.Frame`, in space `stiffmbs.compile.spatial_frames.SpatialFrame`) and its numbers as
+(`stiffmbs.compile.symbolic.planar_frames.Frame`, in space `stiffmbs.compile.symbolic.spatial_frames.SpatialFrame`) and its numbers as
 symbols.  Jacobians, velocity and acceleration terms, reactions and kernels are all derived from them, so an element is its
 fields, its equations and their names.
 """
@@ -20,14 +20,14 @@ from pydantic import Field, WithJsonSchema
 
 from ..errors import InputError
 from .fields import Described
-from .formula_field import Formula
+from .formula.field import Formula
 from .marker import MarkerReference
 
 if TYPE_CHECKING:
     from .model_data import ModelData
 
 Symbolic = Any
-"""The element as its equations see it (`stiffmbs.compile.frames.SymbolicElement`): a frame for a marker, a symbol for a number, an expression for a formula, a
+"""The element as its equations see it (`stiffmbs.compile.symbolic.frames.SymbolicElement`): a frame for a marker, a symbol for a number, an expression for a formula, a
 function for a formula or table of a variable, a symbolic element for a joint that is referred to; ``e.t`` for time,
 ``e.rate(expression)`` for a total time derivative, ``e.frames`` for the bodies."""
 

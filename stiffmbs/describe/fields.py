@@ -22,10 +22,10 @@ from pydantic import ValidationError as PydanticError
 from pydantic_core import core_schema
 
 from ..errors import InputError
-from .formula import FormulaError
-from .quantity import in_si
-from .quoted import quoted, written
-from .units import DIMENSIONS, one
+from .files.quoted import quoted, written
+from .formula.text import FormulaError
+from .units.quantity import in_si
+from .units.units import DIMENSIONS, one
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
@@ -91,7 +91,7 @@ class Measured:
     Parameters
     ----------
     dimension : str
-        One of `stiffmbs.describe.units.DIMENSIONS`.
+        One of `stiffmbs.describe.units.units.DIMENSIONS`.
     above, at_least, at_most, other_than : float, optional
         Bounds, and a number that is none of them, in SI units.
     """

@@ -10,9 +10,9 @@ from typing import Any
 
 from pydantic import Field, GetJsonSchemaHandler, model_validator
 
-from . import si
 from .fields import NAME_PATTERN, Described
-from .quoted import written
+from .files.quoted import written
+from .units import si
 
 GROUND = "ground"
 

@@ -9,15 +9,16 @@ from typing import Any, Literal, overload
 import numpy as np
 from pydantic import Field
 
-from . import forces, joints, si
+from . import forces, joints
 from .body import Body, BodyHandle
-from .drawn import DrawnMarker
 from .element import Force, Joint, any_of, kinds
 from .forces.weight import weights
-from .formula_field import OfMotion
+from .formula.field import OfMotion
+from .initial_pose import DrawnMarker
 from .marker import GROUND, MarkerReference, Placement
 from .model_builder import ModelBuilder
 from .model_data import ModelData
+from .units import si
 
 JOINTS = kinds(joints, Joint)
 FORCES = kinds(forces, Force)

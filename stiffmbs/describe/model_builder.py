@@ -9,7 +9,7 @@ from ..errors import InputError
 from .body import check_names
 from .element import Element, Force, Joint
 from .fields import Described
-from .formula_names import NAMES
+from .formula.names import NAMES
 from .marker import GROUND, MarkerReference
 from .model_data import RESERVED, check_element
 from .request import Request

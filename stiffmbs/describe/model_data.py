@@ -13,13 +13,13 @@ from pydantic import Field, field_validator, model_validator
 from .body import check_names
 from .element import Element, Force, Joint, JointName
 from .fields import Described
-from .formula import UNIT
-from .formula_field import TIME, Formula
-from .formula_names import NAMES, FormulaNames
+from .files.quoted import quoted
+from .formula.field import TIME, Formula
+from .formula.names import NAMES, FormulaNames
+from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
-from .quoted import quoted
 from .request import Request
-from .units import UNITS
+from .units.units import UNITS
 
 ROUNDING = 1e-13
 """Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from .element import Element, Symbolic
-from .formula_field import OfMotion
+from .formula.field import OfMotion
 
 
 class Request(Element):

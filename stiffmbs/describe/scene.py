@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 from pydantic import Field
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
-from .expand import read_parameters, read_tables, refuse_unused_parameters, repeat_entries, set_value
 from .fields import sentence
 from .figure import Figure
+from .files.expand import read_parameters, read_tables, refuse_unused_parameters, repeat_entries, set_value
+from .files.quoted import written
+from .files.yaml_text import line_of, read_yaml
 from .model import PlanarData
 from .model_data import ModelData
-from .quoted import written
 from .settings import RunSettings
 from .spatial.model import SpatialData
 from .table import Table
-from .text_file import file_text, source_name
-from .yaml_text import line_of, read_yaml
 
 SECTIONS = ("bodies", "joints", "forces")
-DATASET = ".adm"
-"""How the name of an Adams/Solver dataset ends."""
 
 
 class Scene(ModelData):
@@ -52,33 +48,6 @@ class SpatialScene(SpatialData, Scene):
 
 FAMILIES: dict[Any, type[Scene]] = {2: PlanarScene, 3: SpatialScene}
 """By the scene's dimensions."""
-
-
-def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
-    """Read a scene file, or an Adams/Solver dataset.
-
-    Parameters
-    ----------
-    path : str or Path
-        A YAML file, or ``-`` for standard input; a dataset where its name ends in ``.adm``.
-    changes : sequence of (path, text)
-        Values put in place of the file's, such as ``("bodies.cart.mass", "12 kg")``.
-
-    Returns
-    -------
-    Scene
-        `PlanarScene`, or `SpatialScene` where it says ``dimensions: 3``.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be read or is no valid scene; names the file, the line and the path in it.
-    """
-    if Path(path).suffix.lower() == DATASET:
-        from .adams.load import load_adams
-
-        return load_adams(path, changes)
-    return read_scene(file_text(path), changes, source_name(path))
 
 
 def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene") -> Scene:

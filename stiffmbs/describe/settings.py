@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from . import si
 from .fields import Described, Measured
+from .units import si
 
 MOST_OUTPUTS = 10_000_000
 """Output times of a run; a body and a joint take 2 GB at so many, in a temporary file."""
@@ -50,7 +50,7 @@ class RunSettings(Described):
         Largest step of ``bdf`` and the adaptive schemes, s; 0 for none.
     max_order : int, optional
         Highest order of the formulas of ``bdf``, 1 to 5.  Without it 5, and 2 for a while where orders 3 to 5 creep along a stiff, little
-        damped vibration (`stiffmbs.solve.order_watch`); with it the order is never held down.
+        damped vibration (`stiffmbs.solve.error_control.stability_limit`); with it the order is never held down.
     presolve : bool
         Whether the solver is given a smaller problem with the same results where the model allows it.
     give_way : tuple of str

@@ -7,8 +7,8 @@ from typing import Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from . import si
 from .fields import Described
+from .units import si
 
 
 class Table(Described):

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..describe.figure import Figure
 from ..errors import InputError
-from .files import refuse_path, written_whole
-from .solution import Solution
+from ..results.files import refuse_path, written_whole
+from ..results.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..compile.bodies import PLANE, SPACE
+from ..results.error_bars import ErrorBar
+from ..results.solution import Solution, channel_ranges
 from .digits import with_bar
-from .error_bars import ErrorBar
-from .solution import Solution, channel_ranges
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -16,16 +16,16 @@ import numpy as np
 from ..describe.figure import Figure
 from ..describe.scene import Scene
 from ..errors import InputError
-from .balance_notes import balance_words
-from .check import check
+from ..jobs.check import check
+from ..results.energy_balance_notes import balance_words
+from ..results.error_bars import UNKNOWN
+from ..results.files import refuse_path, written_whole
+from ..results.scales import UNITS, kind_of, scales
+from ..results.solution import Solution, channel_ranges
 from .counters import solver_words
 from .digits import with_bar
-from .error_bars import UNKNOWN
 from .figure import drawn
-from .files import refuse_path, written_whole
 from .force_table import ROUNDING
-from .scales import UNITS, kind_of, scales
-from .solution import Solution, channel_ranges
 from .step_history import step_history
 
 if TYPE_CHECKING:

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..results.energy_balance_notes import balance_words
+from ..results.error_bars import UNKNOWN
+from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
-from .balance_notes import balance_words
 from .counters import solver_words
-from .error_bars import UNKNOWN
 from .force_table import NOT_UNIQUE, force_table
-from .solution import Solution, channel_ranges
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from .check import Report
+    from ..jobs.check import Report
 
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 

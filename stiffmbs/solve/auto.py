@@ -15,15 +15,15 @@ import numpy as np
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from . import bdf, cost
-from .engine import Reached
+from .events.restart import restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
 from .explicit.integration import Integration
 from .fastest_rate import fastest_rate
+from .ida.engine import Reached
 from .initial import InitialValues
-from .legs import joined
 from .mechanics import Mechanics
-from .restart import restarted
+from .segments import joined
 from .trajectory import Grid, Outcome, Trajectory, Watch
 
 LOOK = 32

@@ -11,23 +11,23 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from .beyond_sense import refuse_beyond_sense
-from .chattering import Chattering
-from .engine import Engine, Reached
-from .error_control import CHOSEN, ErrorControl
+from .error_control.error_test import CHOSEN, ErrorControl
+from .error_control.newton import newton_tolerance, stiffness_at
+from .error_control.precision import governed_by_rounding, too_fine
+from .error_control.relaxation import relax
+from .events.chattering import Chattering
+from .events.divergence import refuse_beyond_sense
+from .events.limits import refuse_beyond_limits
+from .events.masked import HeldSwitches
+from .events.restart import restarted
 from .formulations import FORMULATIONS
-from .held_switches import HeldSwitches
+from .ida.choice import chosen
+from .ida.engine import Engine, Reached
+from .ida.libraries import available
+from .ida.native_engine import NativeEngine
+from .ida.sundae import SundaeEngine
 from .initial import InitialValues
-from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
-from .native_engine import NativeEngine
-from .newton import newton_tolerance, stiffness_at
-from .precision import governed_by_rounding, too_fine
-from .relaxation import relax
-from .restart import restarted
-from .sundae import SundaeEngine
-from .sundials.choice import chosen
-from .sundials.libraries import available
 from .suspect import suspect
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 

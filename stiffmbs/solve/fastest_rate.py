@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.routines import Routine
+from ..compile.machine.routines import Routine
 from .mechanics import Mechanics
 
 FASTEST_RATE = Routine(

@@ -6,14 +6,14 @@ import time
 
 import numpy as np
 
-from ..compile.input_features import InputFeatures
+from ..compile.inputs.features import InputFeatures
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
+from .events.limits import refuse_beyond_limits
+from .events.narrow_inputs import narrower_than_output
 from .failures import FAILURES
 from .initial import InitialValues
-from .limits import refuse_beyond_limits
 from .mechanics import Mechanics
-from .narrow_inputs import narrower_than_output
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 

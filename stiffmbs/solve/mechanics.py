@@ -10,14 +10,14 @@ from typing import TypeVar, cast
 import numpy as np
 
 from ..compile.coordinates import Coordinates, all_independent
-from ..compile.input_ends import InputEnd, first_input_end
-from ..compile.input_features import InputFeatures, input_features
-from ..compile.layout import MECHANICS, packed
-from ..compile.routines import together
+from ..compile.inputs.ends import InputEnd, first_input_end
+from ..compile.inputs.features import InputFeatures, input_features
+from ..compile.machine.layout import MECHANICS, packed
+from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
-from .eliminated import Eliminated
-from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
+from .linear.eliminated import Eliminated
+from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
 from .storage import blocks, release, room
 
 T = TypeVar("T")

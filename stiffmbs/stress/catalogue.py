@@ -35,8 +35,9 @@ class Row:
 
 def catalogue() -> dict[str, tuple[Case, ...]]:
     """The cases of every file of `stiffmbs.stress.families`, by the family's name."""
-    names = sorted(module.name for module in pkgutil.iter_modules(package.__path__))
-    return {name: importlib.import_module(f"{package.__name__}.{name}").CASES for name in names}
+    found = pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    modules = {module.name.rpartition(".")[2]: module.name for module in found if not module.ispkg}
+    return {family: importlib.import_module(modules[family]).CASES for family in sorted(modules)}
 
 
 def chosen(names: Iterable[str], quick: bool) -> list[tuple[str, Case]]:

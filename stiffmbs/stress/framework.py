@@ -21,7 +21,7 @@ from ..describe.model import JOINTS, Model
 from ..describe.spatial import body as body_in_space
 from ..describe.spatial import marker as marker_in_space
 from ..describe.spatial import model as model_in_space
-from ..show.solution import Solution
+from ..results.solution import Solution
 
 GRAVITY = 9.81
 MASS = 1.0

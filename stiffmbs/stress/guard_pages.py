@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from ..compile import own_memory
-from ..compile.native.memory import REALLOCATE
+from ..compile.machine import own_memory
+from ..compile.machine.native.memory import REALLOCATE
 
 SET_HANDLER = 304
 """Place of PyDataMem_SetHandler in numpy's C interface."""

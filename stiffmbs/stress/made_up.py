@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..solve.sundials.libraries import COMPRESSED_COLUMNS, Libraries
-from ..solve.sundials.session import Session
+from ..solve.ida.libraries import COMPRESSED_COLUMNS, Libraries
+from ..solve.ida.session import Session
 
 NORMAL, ONE_STEP = 1, 2
 _ADDRESS, _REAL = ctypes.c_void_p, ctypes.c_double

@@ -7,7 +7,7 @@ import numpy as np
 from ..describe.body import Body
 from ..describe.marker import Marker
 from ..describe.model import JOINTS, Model
-from ..show.solution import Solution
+from ..results.solution import Solution
 from .pendulum import GRAVITY, swing
 
 

@@ -9,8 +9,8 @@ from typing import Any
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..errors import StiffmbsError
-from ..show.run import run
-from ..show.solution import Solution
+from ..jobs.run import run
+from ..results.solution import Solution
 from ..solve.trajectory import Outcome as Ending
 from ..solve.trajectory import Watch
 from .case import Case, Outcome, Verdict, measured, told

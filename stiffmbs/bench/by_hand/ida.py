@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...solve.sundials.libraries import ida_libraries
-from ...solve.sundials.session import Session
+from ...solve.ida.libraries import ida_libraries
+from ...solve.ida.session import Session
 
 DATA = 1
 """Where the table of the callbacks (`stiffmbs.bench.by_hand.loop`) holds the address of the matrix."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...describe.model_data import ModelData
 from ...describe.scene import read_scene
-from ...show.run import prepare
+from ...jobs.run import prepare
 from ..benchmark import Row
 
 SCENE = """

@@ -11,15 +11,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...compile.cache import DIRECTORY_VARIABLE
 from ...compile.compile_model import compile_model
 from ...compile.group import Group
 from ...compile.kernels import compile_usual
 from ...compile.kind import sorted_out
+from ...compile.machine.cache import DIRECTORY_VARIABLE
 from ...compile.state import State
 from ...compile.system import System
-from ...describe.scene import load_scene
-from ...show.warm import USUAL
+from ...jobs.load_scene import load_scene
+from ...jobs.warm import USUAL
 from ..benchmark import Row
 
 COPIES, ROUNDS = 1000, 50

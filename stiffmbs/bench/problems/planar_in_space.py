@@ -11,9 +11,9 @@ import numpy as np
 
 from ...compile.bodies import BODY_KINDS
 from ...describe.model import PlanarData
-from ...describe.scene import load_scene
-from ...describe.spatial.in_space import embedded
-from ...show.run import Job, prepare
+from ...jobs.in_space import embedded
+from ...jobs.load_scene import load_scene
+from ...jobs.run import Job, prepare
 from ..benchmark import Row
 
 ROUNDS = 9

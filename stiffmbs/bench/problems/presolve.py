@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ...describe.scene import load_scene
-from ...show.presolve import unknowns
-from ...show.run import prepare, run
+from ...jobs.load_scene import load_scene
+from ...jobs.presolve_report import unknowns
+from ...jobs.run import prepare, run
 from ..benchmark import Row
 
 ROUNDS = 21

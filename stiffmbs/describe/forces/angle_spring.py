@@ -6,10 +6,10 @@ from typing import Any, Generic, Literal, TypeVar
 
 from pydantic import Field
 
-from .. import si
 from ..element import Symbolic
-from ..formula_field import OfDeflection, OfRate
+from ..formula.field import OfDeflection, OfRate
 from ..marker import MarkerReference
+from ..units import si
 from .spring import Spring
 
 M = TypeVar("M", bound=MarkerReference)

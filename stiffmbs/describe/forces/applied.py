@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field
 
 from ..element import Force, Symbolic
-from ..formula_field import OfMotion
+from ..formula.field import OfMotion
 from ..marker import Marker
 
 

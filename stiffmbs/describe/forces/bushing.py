@@ -6,10 +6,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, WithJsonSchema, field_validator
 
-from .. import si
 from ..element import Force, Symbolic
-from ..formula_field import OfDeflection
+from ..formula.field import OfDeflection
 from ..marker import Marker
+from ..units import si
 from .matrix import check_symmetric, from_diagonal, product
 
 _AS_WRITTEN = WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})

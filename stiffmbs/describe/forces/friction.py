@@ -6,8 +6,8 @@ from typing import Any
 
 from pydantic import Field
 
-from .. import si
 from ..element import Force, Symbolic
+from ..units import si
 
 TINY = 1e-18
 """N^2, added under the root of a reaction, so that its derivative exists where the reaction vanishes."""

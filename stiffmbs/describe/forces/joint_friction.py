@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from ..element import Symbolic
+from .any_joint_friction import RubbingJoint
 from .friction import Friction, magnitude
-from .rubbing_joint import RubbingJoint
 
 
 class JointFriction(RubbingJoint):

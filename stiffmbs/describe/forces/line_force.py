@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 from pydantic import Field
 
 from ..element import Force, Symbolic
-from ..formula_field import OfMotion
+from ..formula.field import OfMotion
 from ..marker import Marker, MarkerReference
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
 from pydantic import Field
 
-from .. import si
 from ..element import Symbolic
-from ..formula_field import OfDeflection, OfRate
+from ..formula.field import OfDeflection, OfRate
 from ..marker import MarkerReference
+from ..units import si
 from .spring import Spring
 
 if TYPE_CHECKING:

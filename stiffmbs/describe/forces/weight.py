@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
-from .. import si
 from ..element import Force, Symbolic
 from ..marker import MarkerReference
+from ..units import si
 
 
 class Weight(Force):

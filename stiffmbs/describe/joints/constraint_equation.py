@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from ..element import Symbolic
-from ..formula_field import OfPosition
-from .kept_at_zero import ONE_OR_MORE, KeptAtZero
+from ..formula.field import OfPosition
+from .user_constraint import ONE_OR_MORE, KeptAtZero
 
 
 class ConstraintEquation(KeptAtZero):

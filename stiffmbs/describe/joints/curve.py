@@ -10,8 +10,8 @@ from pydantic import Field, field_validator, model_validator
 
 from ..element import Joint
 from ..exactly_one import exactly_one
-from ..formula_field import Formula, FormulaOf
-from ..formula_value import formula_value
+from ..formula.field import Formula, FormulaOf
+from ..formula.value import formula_value
 from ..marker import MarkerReference
 from ..table import Table
 

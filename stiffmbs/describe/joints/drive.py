@@ -10,7 +10,7 @@ from pydantic import Field, field_validator, model_validator
 
 from ..element import Joint, JointReference, Symbolic
 from ..exactly_one import exactly_one
-from ..formula_field import Formula, OfPosition, OfTime
+from ..formula.field import Formula, OfPosition, OfTime
 from ..joint_reference import unfit_joints
 from ..marker import MarkerReference
 

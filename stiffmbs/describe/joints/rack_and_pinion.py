@@ -6,8 +6,8 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
-from .. import si
 from ..element import JointReference, Symbolic
+from ..units import si
 from .relation import Relation
 
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from ..element import Joint, JointName
 from ..joint_reference import unfit_joints
-from .kept_as_drawn import KeptAsDrawn
+from .offset_constraint import KeptAsDrawn
 
 
 class Relation(KeptAsDrawn):

@@ -7,9 +7,9 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, field_validator
 
 from ..element import Symbolic
-from ..formula_field import Formula, OfMotion
-from ..formula_names import VELOCITIES
-from .kept_at_zero import ONE_OR_MORE, KeptAtZero
+from ..formula.field import Formula, OfMotion
+from ..formula.names import VELOCITIES
+from .user_constraint import ONE_OR_MORE, KeptAtZero
 
 
 class VelocityEquation(KeptAtZero):

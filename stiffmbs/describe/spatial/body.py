@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, WithJsonSchema, field_validator
 
-from .. import si
 from ..body import check_names
 from ..fields import Described
+from ..units import si
 from .marker import ORIGIN, Marker, Placement, Point
 from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated
 

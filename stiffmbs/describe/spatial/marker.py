@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from .. import si
 from ..fields import Described
 from ..marker import MarkerReference
+from ..units import si
 from .orientation import IDENTITY, Orientation, matrix
 
 Point = tuple[si.Length, si.Length, si.Length]

@@ -8,7 +8,6 @@ from typing import Any, Literal, overload
 import numpy as np
 from pydantic import Field
 
-from .. import si
 from ..element import Force, Joint, any_of, kinds
 from ..fields import Described
 from ..forces.weight import weights
@@ -16,10 +15,11 @@ from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
 from ..request import Request
+from ..units import si
 from . import forces, joints
 from .body import Body, BodyHandle
-from .drawn import DrawnMarker
-from .forces.turning import turnings
+from .forces.gyroscopic_torque import turnings
+from .initial_pose import DrawnMarker
 from .marker import Placement
 from .orientation import matrix, product, rotated
 from .output import COUNTED_ANGLES, Output, check_output

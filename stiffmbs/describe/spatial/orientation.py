@@ -15,9 +15,9 @@ import numpy as np
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
-from ..formula import FormulaError
-from ..quantity import in_si
-from ..quoted import written
+from ..files.quoted import written
+from ..formula.text import FormulaError
+from ..units.quantity import in_si
 
 Quaternion = tuple[float, float, float, float]
 

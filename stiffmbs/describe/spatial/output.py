@@ -1,6 +1,6 @@
 """Requests in space: formulas that are only reported, of everything that a run knows.
 
-Besides what the formulas of elements may hold (`stiffmbs.describe.formula_names.SPACE`) they measure accelerations and
+Besides what the formulas of elements may hold (`stiffmbs.describe.formula.names.SPACE`) they measure accelerations and
 angles, ask for what joints and forces do, and read other channels.  They are evaluated after the run, so that none of
 them is compiled.  How they are read is in `stiffmbs.describe.spatial.output_field`.
 """
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..element import JointName
-from ..formula_names import SPACE
+from ..formula.names import SPACE
 from ..marker import MarkerReference
 from ..model_data import ModelData, check_marker
 from ..table import Table

@@ -10,11 +10,11 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from ..body import check_names
-from ..formula import FormulaError, parse
-from ..formula_field import FormulaOf, called_tables
-from ..formula_functions import FUNCTIONS, OF_TABLE, ROUNDING, check_functions
+from ..files.quoted import written
+from ..formula.field import FormulaOf, called_tables
+from ..formula.functions import FUNCTIONS, OF_TABLE, ROUNDING, check_functions
+from ..formula.text import FormulaError, parse
 from ..marker import GROUND, MarkerReference
-from ..quoted import written
 from .output import ACTIONS, ALONG_AXES, MEASURES, Output, Term, placeholder
 
 

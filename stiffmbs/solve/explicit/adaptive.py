@@ -8,17 +8,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.routines import Routine
+from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
-from ..beyond_sense import refuse_beyond_sense
-from ..chattering import Chattering
+from ..error_control.tolerances import absolute_tolerances
+from ..events.chattering import Chattering
+from ..events.divergence import refuse_beyond_sense
+from ..events.limits import refuse_beyond_limits
+from ..events.restart import restarted
 from ..initial import InitialValues
-from ..limits import refuse_beyond_limits
 from ..mechanics import Mechanics
-from ..restart import restarted
 from ..suspect import suspect
-from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
 from .integration import Integration
 from .scheme import Scheme

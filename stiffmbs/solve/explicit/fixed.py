@@ -10,16 +10,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.routines import Routine
+from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
-from ..chattering import jump_sentence
+from ..events.chattering import jump_sentence
+from ..events.discontinuity import FAR, sliding
+from ..events.limits import refuse_beyond_limits
+from ..events.narrow_inputs import narrower_than_steps
 from ..initial import InitialValues
-from ..limits import refuse_beyond_limits
 from ..mechanics import POSITION_TOLERANCE, Mechanics
-from ..narrow_inputs import narrower_than_steps
 from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
-from ..two_sides import FAR, sliding
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS

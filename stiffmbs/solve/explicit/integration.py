@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.layout import EXPLICIT, packed
+from ...compile.machine.layout import EXPLICIT, packed
 from ...describe.settings import RunSettings
-from ..event_watch import EventWatch
+from ..error_control.tolerances import absolute_tolerances
+from ..events.event_functions import EventWatch
+from ..events.step_bound import StepBound
 from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
-from ..step_bound import StepBound
-from ..tolerances import absolute_tolerances
 from ..trajectory import Grid, Rows
 from .scheme import Scheme
 

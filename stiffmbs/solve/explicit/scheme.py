@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.layout import SCHEME, packed
+from ...compile.machine.layout import SCHEME, packed
 
 Row = Mapping[int, float]
 """The coefficients of a sum over stages that are not zero, by stage."""
@@ -83,7 +83,7 @@ class Scheme:
 
     @cached_property
     def table(self) -> np.ndarray:
-        """Addresses for compiled code (`stiffmbs.compile.layout.SCHEME`)."""
+        """Addresses for compiled code (`stiffmbs.compile.machine.layout.SCHEME`)."""
         return packed(SCHEME, self._arrays)
 
     def matrix(self, rows: tuple[Row, ...]) -> np.ndarray:

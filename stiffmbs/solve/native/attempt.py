@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
-from stiffmbs.compile.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.solve.native.projection import back_to_constraints
 from stiffmbs.solve.native.stages import copied, load_state, rates, take_stage, weighted
 from stiffmbs.solve.native.statuses import NOT_FINITE

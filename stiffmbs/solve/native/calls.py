@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.translate.code import Code
-from stiffmbs.compile.translate.values import Operand, Value, builtin
+from stiffmbs.compile.machine.translate.code import Code
+from stiffmbs.compile.machine.translate.values import Operand, Value, builtin
 
 
 @builtin

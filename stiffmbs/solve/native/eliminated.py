@@ -5,8 +5,8 @@ Twice as fast as the LU of the whole where bodies carry few joints each; the mas
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, eliminated_view, state_view
-from stiffmbs.compile.native.evaluate import ACCELERATION, evaluate
+from stiffmbs.compile.machine.native.access import compiled, eliminated_view, state_view
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 
 LOST = 1e-6
 """A pivot that keeps less than this part of its diagonal entry is left to the LU with pivoting."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from stiffmbs.compile.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.solve.native.stages import add_stages
 
 DOUBTED = 1e3

@@ -16,14 +16,22 @@ E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996,
 
 from __future__ import annotations
 
-from stiffmbs.compile.layout import ERROR_NORM
-from stiffmbs.compile.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
+from stiffmbs.compile.machine.layout import ERROR_NORM
+from stiffmbs.compile.machine.native.access import (
+    compiled,
+    equations_view,
+    floats,
+    ints,
+    shifted,
+    state_view,
+    view_of,
+)
 from stiffmbs.solve.native.calls import call_address, call_float, call_int
 from stiffmbs.solve.native.iteration import AT_CJ, CJ
 
 OK = 0
 OPERATIONS, TABLE = 1, 53
-"""Words of a SUNDIALS vector and of its table of operations: that table; N_VBufPack, which IDA never calls and in whose place stands the address of the table of this module (`stiffmbs.solve.sundials.operations.take_norm`)."""
+"""Words of a SUNDIALS vector and of its table of operations: that table; N_VBufPack, which IDA never calls and in whose place stands the address of the table of this module (`stiffmbs.solve.ida.operations.take_norm`)."""
 TROUBLE, ALWAYS, LOOKED = range(3)
 """Marks: failures of the error test, each counted less with each step since then; above 0 where all estimates are filtered; cj when failures
 were last looked for."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import isfinite
 
-from stiffmbs.compile.native.access import compiled, factors_view, mechanics_view, state_view
-from stiffmbs.compile.native.orientation import add_rates, take_unit_length
+from stiffmbs.compile.machine.native.access import compiled, factors_view, mechanics_view, state_view
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.mechanics import (
     MOST_MOVES,
     to_accelerations,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, shifted
-from stiffmbs.compile.native.evaluate import SWITCH, evaluate
+from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.error_estimate import DOUBTED, error_or_doubt
 from stiffmbs.solve.native.interpolant import interpolated, prepare

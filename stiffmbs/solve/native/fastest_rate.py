@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import sin, sqrt
 
-from stiffmbs.compile.native.access import compiled, mechanics_view, shifted, state_view
-from stiffmbs.compile.native.orientation import add_rates
+from stiffmbs.compile.machine.native.access import compiled, mechanics_view, shifted, state_view
+from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.native.mechanics import largest_of
 from stiffmbs.solve.native.stages import accelerated, copied
 

@@ -1,6 +1,6 @@
 """Sparse LU along a fixed order of pivots, as flat lists without inner loops: a linear solver for IDA.
 
-The order is found by `stiffmbs.compile.native.factors.factor` with threshold pivoting.  What the elimination then does
+The order is found by `stiffmbs.compile.machine.native.factors.factor` with threshold pivoting.  What the elimination then does
 is written down once as a list of updates, `lu[target] -= lu[left] * lu[right]`, that later factorisations repeat: they
 search nothing, and short inner loops, whose ends a processor cannot foresee, are gone.  Where a pivot
 has become too small against its column, the order is found anew.
@@ -8,10 +8,10 @@ has become too small against its column, the order is found anew.
 
 from __future__ import annotations
 
-from stiffmbs.compile.layout import FIXED_ORDER
-from stiffmbs.compile.native.access import compiled, factors_view, floats, ints, shifted, view_of
-from stiffmbs.compile.native.factors import DONE, FULL, equilibrate, factor, scale
-from stiffmbs.compile.native.memory import FLOAT, INDEX, MOST_INDICES, holds
+from stiffmbs.compile.machine.layout import FIXED_ORDER
+from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
+from stiffmbs.compile.machine.native.factors import DONE, FULL, equilibrate, factor, scale
+from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
 
 OK, RECOVERABLE, FAILED = 0, 1, -1

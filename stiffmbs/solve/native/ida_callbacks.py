@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, equations_view, floats, ida_view, ints, state_view
-from stiffmbs.compile.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.solve.native.watched import watched
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ida_view, ints, state_view
+from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+from stiffmbs.solve.native.event_signs import watched
 
 LAST_TIME, STEPS, REJECTED, ROOM = range(4)
 """What the head of the history holds; the times of the steps' ends follow it."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.layout import NATIVE_IDA
-from stiffmbs.compile.native.access import compiled, equations_view, floats, shifted, state_view, view_of
-from stiffmbs.compile.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.solve.native.balance import CURRENT, LONG, balance_view, balanced
+from stiffmbs.compile.machine.layout import NATIVE_IDA
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, shifted, state_view, view_of
+from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.calls import call_address, call_int, copy_bytes, int32
+from stiffmbs.solve.native.event_signs import watched
 from stiffmbs.solve.native.iteration import AGE, MADE
+from stiffmbs.solve.native.output_correction import CURRENT, LONG, balance_view, balanced
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
-from stiffmbs.solve.native.watched import watched
 from stiffmbs.solve.native.within_step import (
     BEGUN,
     DIFFERENCE,
@@ -42,7 +42,7 @@ SAMPLES, STEPS_APART = 16, 4
 """The last states are kept as samples, one each few steps: the time and what is reported."""
 HISTORY_WIDTH = 3
 MOST_STEPS = 2048
-"""Steps of any one call, and rows of the history (`stiffmbs.solve.sundials.connection`)."""
+"""Steps of any one call, and rows of the history (`stiffmbs.solve.ida.connection`)."""
 STALLED = -101
 START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
 """Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning

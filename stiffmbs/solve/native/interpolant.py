@@ -7,7 +7,7 @@ Wanner, Solving Ordinary Differential Equations I (1993), eq. II.6.15 and the co
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.solve.native.stages import add_stages, copied, take_stage
 
 

@@ -12,15 +12,15 @@ the matrix was made: this part is taken to grow with the time since then, as fas
 measured, also under earlier matrices. A rate that was measured where the matrix was new does not count. A matrix that
 has become slow, or with which the iteration cannot get there in the corrections that are left, is made anew.
 
-How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.newton`). An
+How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.error_control.newton`). An
 error left in a position makes an acceleration, and that a velocity within the step; so shorter steps bear more, in
 proportion to cj.
 """
 
 from __future__ import annotations
 
-from stiffmbs.compile.layout import ITERATION
-from stiffmbs.compile.native.access import compiled, floats, shifted, view_of
+from stiffmbs.compile.machine.layout import ITERATION
+from stiffmbs.compile.machine.native.access import compiled, floats, shifted, view_of
 from stiffmbs.solve.native.calls import call_address, call_int, int32
 
 SETTLED, GO_ON, GIVE_UP = 0, 901, 902

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isfinite, sqrt
 
-from stiffmbs.compile.native.access import (
+from stiffmbs.compile.machine.native.access import (
     compiled,
     equations_view,
     factors_view,
@@ -13,9 +13,17 @@ from stiffmbs.compile.native.access import (
     shifted,
     state_view,
 )
-from stiffmbs.compile.native.evaluate import ACCELERATION, MOTION, OUTPUT, POSITION, add_entries, add_products, evaluate
-from stiffmbs.compile.native.factors import DONE, FULL, factored, solve
-from stiffmbs.compile.native.orientation import take_unit_length
+from stiffmbs.compile.machine.native.evaluate import (
+    ACCELERATION,
+    MOTION,
+    OUTPUT,
+    POSITION,
+    add_entries,
+    add_products,
+    evaluate,
+)
+from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
+from stiffmbs.compile.machine.native.orientation import take_unit_length
 from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_ROOM, NOT_FINITE, SINGULAR
 
 MOST_MOVES = 20

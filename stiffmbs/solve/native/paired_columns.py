@@ -10,10 +10,10 @@ The short inner loops are worth that from some ten rows on; columns that are sho
 
 from __future__ import annotations
 
-from stiffmbs.compile.layout import PAIRED_COLUMNS
-from stiffmbs.compile.native.access import compiled, factors_view, floats, ints, shifted, view_of
-from stiffmbs.compile.native.factors import DONE, FULL
-from stiffmbs.compile.native.memory import FLOAT, INDEX, MOST_INDICES, holds
+from stiffmbs.compile.machine.layout import PAIRED_COLUMNS
+from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
+from stiffmbs.compile.machine.native.factors import DONE, FULL
+from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
 from stiffmbs.solve.native.fixed_order import CONTENT, FAILED, LARGEST, LAST_FLAG, OK, RECOVERABLE, factored_anew
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.native.access import compiled, eliminated_view, shifted
-from stiffmbs.compile.native.evaluate import MOTION, POSITION, evaluate
-from stiffmbs.compile.native.orientation import add_rates, take_unit_length
+from stiffmbs.compile.machine.native.access import compiled, eliminated_view, shifted
+from stiffmbs.compile.machine.native.evaluate import MOTION, POSITION, evaluate
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.eliminated import smallest_move
 from stiffmbs.solve.native.mechanics import (
     MOST_MOVES,

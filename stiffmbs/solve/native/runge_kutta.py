@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from math import isfinite
 
-from stiffmbs.compile.native.access import compiled, explicit_view, mechanics_view, scheme_view, shifted, state_view
+from stiffmbs.compile.machine.native.access import (
+    compiled,
+    explicit_view,
+    mechanics_view,
+    scheme_view,
+    shifted,
+    state_view,
+)
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.error_estimate import error_or_doubt
 from stiffmbs.solve.native.events import RETRIED, end_at_event

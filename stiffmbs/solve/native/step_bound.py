@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.layout import STEP_BOUND
-from stiffmbs.compile.native.access import compiled, view_of
+from stiffmbs.compile.machine.layout import STEP_BOUND
+from stiffmbs.compile.machine.native.access import compiled, view_of
 
 step_bound_view = view_of("StepBound", STEP_BOUND)
 

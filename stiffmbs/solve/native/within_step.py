@@ -14,9 +14,9 @@ from __future__ import annotations
 
 from math import floor, isfinite, sqrt
 
-from stiffmbs.compile.layout import WATCH
-from stiffmbs.compile.native.access import compiled, shifted, view_of
-from stiffmbs.compile.native.evaluate import SWITCH, evaluate
+from stiffmbs.compile.machine.layout import WATCH
+from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 
 READY, BEGUN, DEPTH = range(3)
 """Marks: whether values at the start of the step are known, that start's time, and how far a switch must go beyond zero."""

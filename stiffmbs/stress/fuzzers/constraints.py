@@ -10,8 +10,8 @@ import numpy as np
 
 from ...describe.scene import Scene, read_scene
 from ...errors import StiffmbsError
-from ...show.run import run
-from ...show.solution import Solution
+from ...jobs.run import run
+from ...results.solution import Solution
 from ...solve.trajectory import Outcome as Ending
 from ..case import Outcome, Verdict, measured
 from ..random_constraints import random_constraints

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...describe.scene import read_scene
 from ...errors import StiffmbsError
-from ...show.run import run
+from ...jobs.run import run
 from ...solve.trajectory import Outcome as Ending
 from ..case import Outcome, Verdict, measured
 from ..tiny_steps import ARCH, CIRCLES, GATE, GAUSSIAN, LAW, LINE, LORENTZ, STOP, TENT, WINDOW, Scene, moved

@@ -14,13 +14,13 @@ from random import Random
 
 import numpy as np
 
-from ...describe.adams.load import ENCODING, read_adams
+from ...adams.load import ENCODING, read_adams
+from ...describe.files.text_file import decoded
 from ...describe.scene import Scene, read_scene
-from ...describe.text_file import decoded
 from ...errors import StiffmbsError
-from ...show.check import check
-from ...show.run import run
-from ...show.solution import Solution
+from ...jobs.check import check
+from ...jobs.run import run
+from ...results.solution import Solution
 from ...show.summary import as_json, check_as_json, print_summary
 from ...solve.trajectory import Outcome as Ending
 from ...solve.trajectory import Watch

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...describe.scene import Scene, read_scene
 from ...errors import StiffmbsError
-from ...show.run import run
+from ...jobs.run import run
 from ...solve.trajectory import Outcome as Ending
 from ..case import Outcome, Verdict, measured, told
 from ..made_up_inputs import END, Made, made_up

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from ...element import Element, JointName
-from ...formula_field import Formula
+from ...formula.field import Formula
 from ...marker import Marker
 from .angles import Angles
 from .formulas import formula

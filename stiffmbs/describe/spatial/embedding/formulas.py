@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import ast
 
-from ...formula import UNIT
-from ...formula_field import Formula, is_measure, measured_markers
+from ...formula.field import Formula, is_measure, measured_markers
+from ...formula.text import UNIT
 from ...marker import GROUND, MarkerReference
 from .angles import Angles
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ....errors import InputError
-from ...drawn import drawn
 from ...element import JointName
+from ...initial_pose import drawn
 from ...joints.relation import Relation
 from ..branches import FARTHEST
 from .angles import TURN, Angles

@@ -6,10 +6,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from ... import si
 from ...element import Symbolic
 from ...fields import Measured
 from ...forces.matrix import check_symmetric
+from ...units import si
 from .elastic import NONE, NOTHING, Damping, Elastic, pull_back, six_rows, stored, without_zeros
 
 Modulus = Annotated[float, Measured("pressure", above=0)]

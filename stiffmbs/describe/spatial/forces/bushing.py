@@ -8,7 +8,7 @@ from pydantic import Field, field_validator
 
 from ...element import Symbolic
 from ...forces.matrix import check_symmetric
-from ...formula_field import OfDeflection
+from ...formula.field import OfDeflection
 from .elastic import (
     NONE,
     NOTHING,

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, WithJsonSchema
 
-from ... import si
 from ...element import Force, Symbolic
+from ...files.quoted import written
 from ...forces.matrix import from_diagonal, product
-from ...quoted import written
+from ...units import si
 from ..marker import Marker
 from ..nearest import nearest
 from ..wrench import Pairs, along_axes, velocity

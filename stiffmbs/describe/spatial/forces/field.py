@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field, field_validator
 
-from ... import si
 from ...element import Symbolic
 from ...forces.matrix import check_symmetric
+from ...units import si
 from .elastic import (
     NONE,
     NOTHING,

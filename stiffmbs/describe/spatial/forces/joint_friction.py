@@ -7,9 +7,9 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from ... import si
 from ...element import Joint, Symbolic
-from ...forces.rubbing_joint import RubbingJoint
+from ...forces.any_joint_friction import RubbingJoint
+from ...units import si
 from ..loads import loads
 from ..wrench import Pairs, velocity
 

@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ... import si
 from ...element import Symbolic
 from ...forces.contact_law import ContactLaw
+from ...units import si
 from ..marker import Marker
 from ..wrench import Pairs, velocity
 

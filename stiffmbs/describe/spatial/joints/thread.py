@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
-from ... import si
 from ...element import Symbolic
-from ...joints.kept_as_drawn import KeptAsDrawn
+from ...joints.offset_constraint import KeptAsDrawn
+from ...units import si
 from ..marker import Marker
 from ..primitives import along, angle_about_z
 

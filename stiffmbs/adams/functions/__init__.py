@@ -1,0 +1,1 @@
+"""Function expressions of Adams/Solver, translated to formulas of a scene."""

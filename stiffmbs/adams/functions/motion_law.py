@@ -1,0 +1,136 @@
+"""What a motion prescribes over time, in SI."""
+
+from __future__ import annotations
+
+import ast
+
+from ...describe.files.quoted import quoted
+from ...describe.formula.text import FormulaError, parse
+from ..statements.constraints import TRANSLATIONAL, Motion
+from .time_limit import time_limit
+from .translate import Translation
+from .trees import number, times, total
+
+ORDERS = ("position", "velocity")
+SAME = 1e-9
+"""How far an initial displacement may be from the drawn one to be the same, m or rad."""
+
+
+PATIENCE = 10.0
+"""Time, s, after which the search for an integral is given up."""
+LARGEST_EXPONENT = 32
+"""Of what is integrated: higher powers of sums are multiplied out into as many terms."""
+
+
+def _check_exponents(tree: ast.expr) -> None:
+    for node in ast.walk(tree):
+        match node:
+            case ast.BinOp(_, ast.Pow(), ast.Constant(int() | float() as power)) if abs(power) > LARGEST_EXPONENT:
+                raise ValueError(f"found the exponent {power}, expected one up to {LARGEST_EXPONENT}")
+
+
+class _WithoutInstants(ast.NodeTransformer):
+    """IF without its middle value, in place of which it has the one that follows in time.
+
+    That value holds for an instant alone.  As a motion it would be one without velocity there, where the motion goes on.
+    """
+
+    def visit_Call(self, node: ast.Call) -> ast.Call:
+        self.generic_visit(node)
+        match node:
+            case ast.Call(ast.Name("branch"), [x, below, _, above]):
+                return ast.Call(node.func, [x, below, below if _falls(x) else above, above], [])
+        return node
+
+
+def _falls(condition: ast.expr) -> bool:
+    """Whether an expression of time becomes less with it all along: ``0.5 - t``."""
+    import sympy as sp
+
+    t = sp.Symbol("t", real=True)
+    try:
+        slope = sp.diff(sp.sympify(ast.unparse(condition), locals={"t": t}), t)
+    except (sp.SympifyError, TypeError, AttributeError, ValueError, ArithmeticError, RecursionError):
+        return False
+    return bool(slope.is_negative)
+
+
+class Law:
+    """A motion's function.
+
+    Parameters
+    ----------
+    motion : Motion
+    translation : Translation
+    sort : str
+        Rotational or translational.
+    """
+
+    def __init__(self, motion: Motion, translation: Translation, sort: str) -> None:
+        self._motion, self._translation = motion, translation
+        units = translation.units
+        self._length = units.length if sort == TRANSLATIONAL else 1.0
+        self._unit = self._length / units.time**motion.order
+        start, velocity = motion.start
+        self._start = None if start is None else start * self._length
+        self._velocity = (velocity or 0.0) * self._length / units.time
+
+    def over_time(self, drawn: float) -> dict[str, str]:
+        """The position or the velocity that a drive prescribes, by its name in the scene.
+
+        A velocity is prescribed as such where the motion starts as the parts are drawn; otherwise, and an acceleration,
+        as the position that it integrates to.
+
+        Parameters
+        ----------
+        drawn : float
+            The displacement as the parts are drawn, m or rad.
+        """
+        order = self._motion.order
+        if order == 0 or (order == 1 and (self._start is None or abs(self._start - drawn) <= SAME)):
+            return {ORDERS[order]: self._formula()}
+        start = drawn if self._start is None else self._start
+        terms = [number(start)] if start else []
+        if order == 2 and self._velocity:
+            terms.append(times(ast.Name("t"), self._velocity))
+        terms.append(parse(self._integrated()))
+        return {"position": ast.unparse(total(terms))}
+
+    def _formula(self) -> str:
+        try:
+            formula = parse(self._translation.formula(self._motion.function, self._unit))
+        except FormulaError as error:
+            raise self._motion.function.fault(str(error)) from None
+        return ast.unparse(_WithoutInstants().visit(formula))
+
+    def _integrated(self) -> str:
+        """The function integrated from 0 to t, once or twice.
+
+        Raises
+        ------
+        DatasetFault
+            When the integral is no formula.
+        """
+        import sympy as sp
+
+        t, s = sp.Symbol("t", real=True), sp.Symbol("s", real=True)
+        function = self._motion.function
+        try:
+            formula = self._formula()
+            _check_exponents(parse(formula))
+            with time_limit(PATIENCE):
+                integral = sp.sympify(formula, locals={"t": t})
+                for _ in range(self._motion.order):
+                    integral = sp.integrate(integral.subs(t, s), (s, 0, t))
+                found = sp.simplify(integral)
+            parsed = parse(str(found))
+        except (sp.SympifyError, ValueError, TypeError, AttributeError, ArithmeticError, RecursionError, TimeoutError):
+            parsed = None
+        names = {node.id for node in ast.walk(parsed) if isinstance(node, ast.Name)} if parsed else {"?"}
+        if parsed is None or not names <= {"t", "pi", "sin", "cos", "exp", "sqrt", "log", "tan", "atan"}:
+            order = ("", "a velocity with ICDISP", "an acceleration")[self._motion.order]
+            raise function.fault(
+                f"found '{quoted(function.text)}' as {order}, whose integral is no formula here, expected a "
+                "displacement, or a function such as a polynomial or a sine"
+            )
+        return ast.unparse(parsed)

@@ -1,0 +1,235 @@
+"""Function expressions as formulas of a scene: SI on the outside, the dataset's units on the inside.
+
+What an expression measures is divided by the dataset's unit, so that its numbers keep their meaning; whoever takes the
+formula multiplies the result with the unit that it needs.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from ...describe.files.quoted import quoted
+from ...describe.units.quantity import CONSTANTS
+from ..scene.mechanism import Mechanism
+from ..scene.number_format import plain
+from .adams_functions import SPECIAL
+from .expression import IF, OMITTED
+from .function import Function
+from .trees import measured, over, power, product, times, total
+
+POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
+VELOCITIES, ANGULAR_VELOCITIES = ("VX", "VY", "VZ", "VM", "VR"), ("WX", "WY", "WZ", "WM")
+MAGNITUDES = ("DM", "VM", "VR", "WM")
+"""Measures that have no axes."""
+PLAIN = {
+    **{name: name.lower() for name in (
+        "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SINH", "COSH", "TANH", "EXP", "SQRT", "ABS", "MIN", "MAX",
+        "STEP", "STEP5", "LOG",
+    )},
+    IF: "branch",
+}  # fmt: skip
+"""Functions that the scene has too."""
+CURVES: dict[str, dict[str, Any]] = {
+    "AKISPL": {"akima": True},
+    "CUBSPL": {"ends": "not-a-knot"},
+    "LINE": {"lines": True},
+}
+"""Functions of splines, and how the scene's table goes through the points."""
+MOST_PARTS = 10_000
+"""Numbers, names and operations in the value of a VARIABLE, which stands in place of its name wherever that is used."""
+NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
+
+
+class Translation:
+    """Translates the expressions of one dataset.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+        self.units = mechanism.dataset.units
+
+    def formula(self, function: Function, unit: float = 1.0) -> str:
+        """The formula of an expression, times a unit.
+
+        Raises
+        ------
+        DatasetFault
+            When it uses what a scene's formulas do not have.
+        """
+        return ast.unparse(times(self.translated(function, ()), unit))
+
+    def translated(self, function: Function, within: tuple[int, ...]) -> ast.expr:
+        """The tree of an expression's formula; `within` are the variables that it is the value of."""
+
+        def translate(node: ast.expr) -> ast.expr:
+            match node:
+                case ast.BinOp(left, op, right):
+                    return ast.BinOp(translate(left), op, translate(right))
+                case ast.UnaryOp(op, operand):
+                    return ast.UnaryOp(op, translate(operand))
+                case ast.Name(name):
+                    return self.name(name, function)
+                case ast.Call(ast.Name("VARVAL"), arguments):
+                    return self.variable(identifier(arguments, 0, function), function, within)
+                case ast.Call(ast.Name(name), arguments):
+                    return self.call(name, arguments, function, translate)
+            return node
+
+        return translate(function.tree)
+
+    def name(self, name: str, function: Function) -> ast.expr:
+        """A constant, or time."""
+        if name == "TIME":
+            return over(ast.Name("t"), self.units.time)
+        if name == "PI":
+            return ast.Constant(CONSTANTS["pi"].value)
+        if name in NAMES:
+            return ast.Constant(NAMES[name])
+        if name == OMITTED:
+            raise function.fault(f"found nothing before a comma of '{quoted(function.text)}', expected a value")
+        raise function.fault(
+            f"found '{name}' in '{quoted(function.text)}', expected TIME, PI, DTOR, RTOD or a function"
+        )
+
+    def variable(self, ident: int, function: Function, within: tuple[int, ...]) -> ast.expr:
+        """The expression of a VARIABLE in place of its name."""
+        variable = self.mechanism.dataset.variables.get(ident)
+        if variable is None:
+            raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
+        if ident in within:
+            raise function.fault(f"found VARVAL({ident}), which depends on itself, expected one that does not")
+        value = self.translated(variable.function, (*within, ident))
+        if sum(1 for _ in ast.walk(value)) > MOST_PARTS:
+            raise function.fault(
+                f"found VARVAL({ident}), which has more than {MOST_PARTS} parts with the variables in it, expected fewer"
+            )
+        return value
+
+    def call(
+        self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
+    ) -> ast.expr:
+        """A measure, or a function of numbers."""
+        if name in (*POSITIONS, *ANGLES, *VELOCITIES, *ANGULAR_VELOCITIES):
+            return self.measure(name, arguments, function)
+        if name in PLAIN:
+            return ast.Call(ast.Name(PLAIN[name]), [translate(argument) for argument in arguments], [])
+        if name in SPECIAL:
+            try:
+                return SPECIAL[name](*map(translate, arguments))
+            except TypeError:
+                raise function.fault(
+                    f"found {len(arguments)} arguments of {name} in '{quoted(function.text)}', expected another number"
+                ) from None
+        if name in (*CURVES, "INTERP"):
+            return self.curve(name, arguments, function, translate)
+        if name == "ARYVAL":
+            return self.array_value(arguments, function)
+        raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected one that is read here")
+
+    def measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
+        """A displacement, velocity or angle between markers.
+
+        The velocity of i against j as seen from a third marker's part is the one as seen from ground less w x d, w being
+        that part's angular velocity and d the displacement of i from j.
+        """
+        i, j, axes, seen_from = self._markers(name, arguments, function)
+        if name in (*ANGLES, *ANGULAR_VELOCITIES):
+            unit = 1.0 if name in ANGLES else 1 / self.units.time
+        else:
+            unit = self.units.of(length=1, time=-1 if name in VELOCITIES else 0)
+        if name == "VM" and seen_from:
+            return ast.Call(ast.Name("sqrt"), [
+                total([power(self._relative(axis, i, j, "", seen_from, unit), 2) for axis in "xyz"])
+            ], [])  # fmt: skip
+        if name in ("VX", "VY", "VZ") and seen_from:
+            return self._relative(name[1].lower(), i, j, axes, seen_from, unit)
+        return over(measured(name.lower(), i, j, axes), unit)
+
+    def _relative(self, axis: str, i: str, j: str, axes: str, frame: str, unit: float) -> ast.expr:
+        u, v = {"x": ("y", "z"), "y": ("z", "x"), "z": ("x", "y")}[axis]
+        velocity = measured(f"v{axis}", i, j, axes)
+        turned = [
+            product(measured(f"w{a}", frame, "", axes), measured(f"d{b}", i, j, axes)) for a, b in ((u, v), (v, u))
+        ]
+        return over(ast.BinOp(ast.BinOp(velocity, ast.Sub(), turned[0]), ast.Add(), turned[1]), unit)
+
+    def _markers(self, name: str, arguments: list[ast.expr], function: Function) -> tuple[str, str, str, str]:
+        """The references of the markers i, j, of the axes and of the frame to see from; nothing stands for ground."""
+        idents = [identifier(arguments, k, function) for k in range(len(arguments))]
+        most = {"DM": 2, "AX": 2, "AY": 2, "AZ": 2, "VM": 3, "VR": 3, "WM": 3, "VX": 4, "VY": 4, "VZ": 4}.get(name, 3)
+        if not 1 <= len(idents) <= most or not idents[0]:
+            raise function.fault(
+                f"found {len(idents)} markers of {name} in '{quoted(function.text)}', expected 1 to {most}"
+            )
+        found = [self.reference(ident, function) if ident else "" for ident in idents]
+        i, j, *others = [*found, "", "", ""][:4]
+        axes, seen_from = ("", others[0]) if name in MAGNITUDES else (others[0], others[1])
+        return i, j, axes, "" if name in ("VR", "WM", *POSITIONS) or seen_from.startswith("ground") else seen_from
+
+    def reference(self, ident: int, function: Function) -> str:
+        """A marker as the scene writes it."""
+        marker = self.mechanism.dataset.markers.get(ident)
+        if marker is None:
+            raise function.fault(
+                f"found the marker {ident} in '{quoted(function.text)}', expected the number of a MARKER"
+            )
+        if marker.floating:
+            raise function.fault(
+                f"found the floating marker {ident} in '{quoted(function.text)}', expected a fixed one"
+            )
+        return self.mechanism.placed(marker).reference
+
+    def curve(
+        self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
+    ) -> ast.expr:
+        """A spline's value: AKISPL(x, z, id, order), CUBSPL of the same, INTERP(x, z, method, id, order)."""
+        x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
+        if name == "INTERP":
+            name = {1: "LINE", 3: "CUBSPL"}.get(identifier(rest, 0, function), "")
+            rest = rest[1:]
+        ident, order = identifier(rest, 0, function), identifier(rest, 1, function) if len(rest) > 1 else 0
+        spline = self.mechanism.dataset.splines.get(ident)
+        if spline is None:
+            raise function.fault(
+                f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE"
+            )
+        if order or not name:
+            raise function.fault(
+                f"found '{quoted(function.text)}', expected a spline's value, cubic or by straight lines"
+            )
+        table = f"{name}_{ident}"
+        points = [[plain(a), plain(b)] for a, b in zip(spline.x, spline.y, strict=True)]
+        self.mechanism.tables[table] = {"table": points, **CURVES[name]}
+        return ast.Call(ast.Name(table), [translate(x)], [])
+
+    def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
+        """A number out of an ARRAY."""
+        ident, at = (identifier(arguments, k, function) for k in range(2))
+        array = self.mechanism.dataset.arrays.get(ident)
+        if array is None or not 1 <= at <= len(array.numbers):
+            raise function.fault(f"found ARYVAL({ident}, {at}), expected an ARRAY and the place of one of its numbers")
+        return ast.Constant(array.numbers[at - 1])
+
+
+def identifier(arguments: Sequence[ast.expr], at: int, function: Function) -> int:
+    """An argument that is the number of a statement."""
+    match arguments[at] if at < len(arguments) else None:
+        case ast.Constant(int() as value):
+            return value
+        case ast.Name(name) if name == OMITTED:
+            return 0
+        case None:
+            raise function.fault(
+                f"found {len(arguments)} numbers of statements in '{quoted(function.text)}', expected more"
+            )
+        case node:
+            raise function.fault(
+                f"found '{ast.unparse(node)}' in '{quoted(function.text)}', expected the number of a statement"
+            )

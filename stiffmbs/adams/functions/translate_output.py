@@ -1,0 +1,164 @@
+"""Expressions that are only reported: besides what forces may use, accelerations, angles, and forces of elements."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator
+
+from ..scene.forces import TORQUE
+from ..scene.joints import markers_of, rod
+from ..statements.constraints import GeneralConstraint, Numbered
+from ..statements.forces import SingleForce, VectorForce
+from .function import Function
+from .translate import Translation, identifier
+from .trees import call, measured, name_of, number, over, power, times, total
+
+ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")
+ANGLES = ("PSI", "THETA", "PHI")
+FORCES = ("FM", "FX", "FY", "FZ", "TM", "TX", "TY", "TZ")
+"""In the order of the components that functions such as JOINT number from 1."""
+ELEMENTS = {
+    **{name: name for name in (
+        "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR",
+    )},
+    "VTORQ": "VTORQUE", "SPDP": "SPRINGDAMPER", "BUSH": "BUSHING",
+}  # fmt: skip
+"""The statements that functions of forces stand for."""
+EULER_PARAMETERS = 27
+"""The first argument of ORIENT that asks for a quaternion, scalar first."""
+ROUNDING = {
+    "MOD": "mod",
+    "INT": "trunc",
+    "AINT": "trunc",
+    "ANINT": "round",
+    "NINT": "round",
+    "CEIL": "ceil",
+    "FLOOR": "floor",
+}
+
+
+class OutputTranslation(Translation):
+    """Translates the expressions of requests and variables."""
+
+    def call(
+        self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
+    ) -> ast.expr:
+        if name in (*ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ANGLES):
+            return self._measure(name, arguments, function)
+        if name == "ORIENT":
+            return self._orientation(arguments, function)
+        if name in ELEMENTS:
+            return self._of_element(name, arguments, function)
+        if name in FORCES:
+            i, j, axes = (*(identifier(arguments, k, function) for k in range(len(arguments))), 0, 0)[:3]
+            return over(self.between(name, i, j, axes, function), self._force_unit(name))
+        if name in ROUNDING:
+            return call(ROUNDING[name], *map(translate, arguments))
+        return super().call(name, arguments, function, translate)
+
+    def _measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
+        found = [identifier(arguments, k, function) for k in range(len(arguments))]
+        if name in ACCELERATIONS and len(found) > 3 and found[3]:
+            raise function.fault(
+                f"found the acceleration {name} as seen from a marker, expected it as seen from ground"
+            )
+        i, j, axes = [*(self.reference(ident, function) if ident else "" for ident in found[:3]), "", "", ""][:3]
+        unit = {
+            ACCELERATIONS: self.units.of(length=1, time=-2), ANGULAR_ACCELERATIONS: self.units.of(time=-2), ANGLES: 1.0,
+        }  # fmt: skip
+        return over(measured(name.lower(), i, j, axes), next(u for names, u in unit.items() if name in names))
+
+    def _orientation(self, arguments: list[ast.expr], function: Function) -> ast.expr:
+        sort, component, i, j = (
+            *(identifier(arguments, k, function) for k in range(len(arguments))), 0, 0, 0, 0,
+        )[:4]  # fmt: skip
+        if sort != EULER_PARAMETERS or not 1 <= component <= 4 or not i:
+            raise function.fault(
+                f"found ORIENT({sort}, {component}, ...), expected Euler parameters, ORIENT(27, 1 to 4, i, j)"
+            )
+        other = self.reference(j, function) if j else ""
+        return measured(f"q{component - 1}", self.reference(i, function), other, "")
+
+    def _of_element(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
+        """JOINT(id, jflag, comp, rm) and its like."""
+        ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
+        found = self.mechanism.dataset.statements.get(ELEMENTS[name], {}).get(ident)
+        if found is None:
+            raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
+        if not 1 <= component <= len(FORCES):
+            raise function.fault(f"found the component {component} of {name}, expected 1 to {len(FORCES)}")
+        if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
+            raise function.fault(f"found the force of {found.label} on its marker J, which it does not have")
+        if on_j and isinstance(found, SingleForce) and found.action_only:
+            return number(0.0)
+        name = FORCES[component - 1]
+        return over(self._component(name, [(found, bool(on_j))], axes, function), self._force_unit(name))
+
+    def _force_unit(self, component: str) -> float:
+        return self.units.of(force=1, length=1 if component[0] == "T" else 0)
+
+    def between(self, component: str, i: int, j: int, axes: int, function: Function) -> ast.expr:
+        """The force on marker i by everything that acts between it and marker j, in SI."""
+        acting = list(self._acting(i, j))
+        for found, on_j in acting:
+            if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
+                raise function.fault(
+                    f"found the force of {found.label} on another marker than its I, expected it there"
+                )
+        if not acting:
+            raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
+        return self._component(component, acting, axes, function)
+
+    def _acting(self, i: int, j: int) -> Iterator[tuple[Numbered, bool]]:
+        """What acts between two markers, and whether the first of them is its marker j."""
+        for statements in self.mechanism.dataset.statements.values():
+            for found in statements.values():
+                first, others = self._ends(found)
+                if first == i and (not j or j in others):
+                    yield found, False
+                elif i in others and j == first:
+                    yield found, True
+
+    def _ends(self, found: object) -> tuple[int | None, tuple[int | None, ...]]:
+        if isinstance(found, GeneralConstraint):
+            first, *others = (*markers_of(found, self.mechanism), None)
+            return first, tuple(others)
+        if isinstance(found, VectorForce):
+            return found.i, (found.floating,)
+        if isinstance(found, Numbered) and found.keyword != "REQUEST":
+            return getattr(found, "i", None), (getattr(found, "j", None),)
+        return None, ()
+
+    def _component(
+        self, component: str, acting: list[tuple[Numbered, bool]], axes: int, function: Function
+    ) -> ast.expr:
+        way = self.reference(axes, function) if axes else ""
+        if component[1] == "M" and len(acting) > 1:
+            of_axes = [power(self._component(component[0] + axis, acting, axes, function), 2) for axis in "XYZ"]
+            return call("sqrt", total(of_axes))
+        terms = [
+            self._term(component, found, element, on_j, way)
+            for found, on_j in acting
+            for element in self._elements(found, component)
+        ]
+        return total(terms) if terms else number(0.0)
+
+    @staticmethod
+    def _term(component: str, found: Numbered, element: str, on_j: bool, way: str) -> ast.expr:
+        """What one element does to marker I or J; a floating marker is always where I is."""
+        floats = isinstance(found, VectorForce) and on_j
+        owner = name_of(element + (".j" if on_j and not floats else ""))
+        value = call(component.lower(), owner, *([name_of(way)] if way else []))
+        return times(value, -1.0) if floats and component[1] != "M" else value
+
+    @staticmethod
+    def _elements(found: Numbered, component: str) -> list[str]:
+        """The scene's elements that a statement has become, as far as they have the component."""
+        if isinstance(found, VectorForce):
+            both = any(found.force) and any(found.torque)
+            return (
+                [found.name, *([found.name + TORQUE] if both else [])]
+                if component[0] == "T" or any(found.force)
+                else []
+            )
+        return [found.name]

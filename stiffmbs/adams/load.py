@@ -1,0 +1,111 @@
+"""Scenes from datasets."""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..describe.files.scene_text import scene_text
+from ..describe.files.text_file import STANDARD_INPUT, checked, file_text, source_name
+from ..describe.scene import Scene, made_scene
+from ..errors import InputError
+from .scene.scene import scene
+from .statements.commands import read_commands
+from .statements.dataset import Dataset, read_dataset
+from .statements.fault import DatasetFault
+
+COMMANDS = ".acf"
+"""How the name of a command file ends."""
+ENCODING = "latin-1"
+"""Of a dataset that is not UTF-8, as older ones."""
+
+
+def read_adams(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "dataset") -> Scene:
+    """Read a scene from the text of a dataset.
+
+    Parameters
+    ----------
+    text : str
+    changes : sequence of (path, text)
+        Values put in place of those that the dataset gives, such as ``("bodies.PART_2.mass", "12 kg")``.
+    source : str
+        What messages call it.
+
+    Raises
+    ------
+    InputError
+        When a statement cannot be read, or what the dataset says makes no model; names the line and the statement.
+    """
+    dataset, found = _scene(text, source)
+    return made_scene(found, changes, source, lambda path: _line(dataset, path))
+
+
+def load_adams(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
+    """Read a scene from a dataset's file, and how to run it from the command file beside it; as `read_adams`."""
+    dataset, found = _scene(file_text(path, ENCODING), source_name(path))
+    _run_as_commanded(Path(path).with_suffix(COMMANDS), dataset, found)
+    return made_scene(found, changes, source_name(path), lambda path: _line(dataset, path))
+
+
+def convert_file(path: str | Path) -> str:
+    """The scene of a dataset's file as the text of a scene file, with names of Adams/View as comments.
+
+    Errors are those of `read_adams`.
+    """
+    dataset, found = _scene(file_text(path, ENCODING), source_name(path))
+    _run_as_commanded(Path(path).with_suffix(COMMANDS), dataset, found)
+    made_scene(copy.deepcopy(found), (), source_name(path), lambda path: _line(dataset, path))
+    return scene_text(_with_aliases(dataset, found))
+
+
+def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
+    """The scene with a comment beside what is called otherwise in Adams/View."""
+    from ruamel.yaml.comments import CommentedMap
+
+    aliases = {f"{x.label.replace('/', '_')}": x.alias for kind in dataset.statements.values() for x in kind.values()}
+    for section in ("bodies", "joints", "forces", "requests"):
+        if section in found:
+            found[section] = CommentedMap(found[section])
+            for name in found[section]:
+                if aliases.get(name, "") not in ("", name):
+                    found[section].yaml_add_eol_comment(aliases[name], name)
+    return found
+
+
+def _scene(text: str, source: str) -> tuple[Dataset, dict[str, Any]]:
+    text = checked(text, source)
+    try:
+        dataset = read_dataset(text)
+        return dataset, scene(dataset)
+    except DatasetFault as fault:
+        raise InputError(f"{source}, {fault}") from None
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from None
+
+
+def _run_as_commanded(path: Path, dataset: Dataset, found: dict[str, Any]) -> None:
+    """Take duration and output from the command file beside a dataset, if there is one."""
+    if path.stem == STANDARD_INPUT or not path.is_file():
+        return
+    try:
+        asked = read_commands(file_text(path, ENCODING), dataset.units)
+    except DatasetFault as fault:
+        raise InputError(f"{path}, {fault}") from None
+    if asked.run:
+        found["run"] = asked.run
+    told = [f"duration and output are those of {path.name}"] if asked.run else []
+    found["notes"] = [*found.get("notes", ()), *told, *asked.notes]
+
+
+def _line(dataset: Dataset, path: Sequence[Any]) -> int | None:
+    """The line of the statement that has become the part of the scene which a path leads to."""
+    for name in path[1:2]:
+        keyword, _, rest = str(name).rpartition("_")
+        number = re.match(r"\d+", rest)
+        if number and (found := dataset.statements.get(keyword, {}).get(int(number[0]))):
+            line: int = found.line
+            return line
+    return None

@@ -1,0 +1,118 @@
+"""Parts as bodies of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..statements.bodies import Marker, Part
+from ..statements.fault import DatasetFault
+from ..statements.geometry import IDENTITY, Frame
+from .initial_conditions import in_ground
+from .massless import SLIGHT, filled, lacks_inertia, slight_moment
+from .mechanism import Mechanism
+from .number_format import plain, quaternion, vector
+
+POINT_INERTIA = 1.0
+"""Moment of inertia over mass that a point mass gets in the scene, m^2; its orientation is held, so it has no effect."""
+
+
+def bodies(mechanism: Mechanism) -> dict[str, Any]:
+    """The bodies of the scene by name, with their markers."""
+    return {mechanism.body_name(part): _body(mechanism, part) for part in mechanism.moving}
+
+
+def ground_markers(mechanism: Mechanism) -> dict[str, Any]:
+    """The markers of the scene's ground."""
+    return {
+        name: placement
+        for part in mechanism.parts.values()
+        if part.ground
+        for name, placement in _markers(mechanism, part)
+    }
+
+
+def _body(mechanism: Mechanism, part: Part) -> dict[str, Any]:
+    drawn = mechanism.center(part).within(part.frame)
+    body: dict[str, Any] = {"mass": plain(part.mass), "inertia": _inertia(mechanism, part), **_pose("position", drawn)}
+    if part.velocity is not None:
+        body["velocity"] = vector(in_ground(mechanism, part, part.velocity, part.velocity_marker, IDENTITY))
+    if part.omega is not None:
+        omega = in_ground(mechanism, part, part.omega, part.omega_marker, drawn.axes)
+        body["omega"] = vector(drawn.axes.T @ omega)
+    if mechanism.moves_at_start:
+        body |= _left_open(part)
+    markers = dict(_markers(mechanism, part))
+    return body | ({"markers": markers} if markers else {})
+
+
+def _left_open(part: Part) -> dict[str, Any]:
+    """The velocities that a part does not state, which Adams lets follow those that are stated."""
+    rates = {"velocity": part.velocity, "omega": part.omega}
+    names = [name for name, rate in rates.items() if rate is None]
+    return {"open": names} if names else {}
+
+
+def _pose(point: str, frame: Frame) -> dict[str, Any]:
+    """Where a frame is, and how it is turned if it is."""
+    turned = {} if np.array_equal(frame.axes, IDENTITY) else {"orientation": quaternion(frame.axes)}
+    return {point: vector(frame.point), **turned}
+
+
+def _markers(mechanism: Mechanism, part: Part) -> list[tuple[str, dict[str, Any]]]:
+    own: list[Marker] = [m for m in mechanism.dataset.markers.values() if mechanism.part_of(m) is part]
+    places = [mechanism.placed(marker) for marker in own if not marker.floating]
+    places += [place for place in mechanism.further.values() if place.body == mechanism.body_name(part)]
+    return [(place.name, _pose("point", place.on_body)) for place in places]
+
+
+def _inertia(mechanism: Mechanism, part: Part) -> list[Any]:
+    """Moments about the centre of mass, in the axes of its marker; slight ones where the part has none."""
+    if part.point:
+        return vector([POINT_INERTIA * part.mass] * 3)
+    tensor = _tensor(mechanism, part)
+    if lacks_inertia(tensor):
+        places = (mechanism.placed(marker).drawn.point for marker in mechanism.dataset.markers.values())
+        tensor = filled(tensor, slight_moment(mechanism.least, places))
+    _check(part, tensor)
+    if np.array_equal(tensor, np.diag(np.diag(tensor))):
+        return vector(np.diag(tensor))
+    return [vector(row) for row in (tensor + tensor.T) / 2]
+
+
+def notes(mechanism: Mechanism) -> Iterator[str]:
+    """Which parts have been given inertia, a sentence."""
+    lacking = [p.label for p in mechanism.moving if not p.point and lacks_inertia(_tensor(mechanism, p))]
+    if lacking:
+        yield (
+            f"{', '.join(lacking)} {'have' if len(lacking) > 1 else 'has'} no moment of inertia about some axis, taken as "
+            f"{SLIGHT:g} of that of the lightest part's mass at the mechanism's reach"
+        )
+
+
+def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
+    """The tensor about the centre of mass, in the axes of its marker.
+
+    The products that a dataset gives are positive integrals of xy, xz and yz, and the moments are about the origin of
+    the inertia marker: the tensor has minus the products, and m (d^2 - d d^T) more than the one about the centre of
+    mass, d being the way from one to the other.
+    """
+    xx, yy, zz, xy, xz, yz = part.moments
+    tensor = np.array([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
+    if part.inertia_marker is not None and part.inertia_marker != part.center:
+        marker = mechanism.dataset.markers[part.inertia_marker].frame.seen_from(mechanism.center(part))
+        d = marker.point
+        tensor = marker.axes @ tensor @ marker.axes.T - part.mass * (d @ d * IDENTITY - np.outer(d, d))
+    return tensor
+
+
+def _check(part: Part, tensor: np.ndarray) -> None:
+    small, middle, large = np.linalg.eigvalsh(tensor)
+    if small <= 0 or large > (small + middle) * (1 + 1e-6):
+        raise DatasetFault(
+            part.line, part.label,
+            f"found principal moments of inertia {small:.4g}, {middle:.4g} and {large:.4g} kg m^2, expected three above "
+            "zero of which none is greater than the sum of the other two",
+        )  # fmt: skip

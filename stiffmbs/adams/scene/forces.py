@@ -1,0 +1,123 @@
+"""Forces as forces of a scene."""
+
+from __future__ import annotations
+
+from functools import singledispatchmethod
+from typing import Any
+
+from ..functions.function import Function
+from ..functions.translate import Translation
+from ..statements.constraints import TRANSLATIONAL
+from ..statements.elastic import Beam, Elastic, SpringDamper
+from ..statements.forces import SingleForce, VectorForce
+from .mechanism import Mechanism, Place
+from .number_format import plain, vector
+
+TORQUE = "_torque"
+"""Behind the name of a GFORCE: its torque, which is an element of its own in the scene."""
+
+
+class Forces:
+    """Makes the scene's forces.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    translation : Translation
+    """
+
+    def __init__(self, mechanism: Mechanism, translation: Translation) -> None:
+        self._mechanism, self._translation = mechanism, translation
+        self._units = mechanism.dataset.units
+
+    def all(self) -> dict[str, Any]:
+        """By name, in the order of the statements' kinds."""
+        found: dict[str, Any] = {}
+        for force in self._mechanism.dataset.forces:
+            found |= self._made(force)
+        return found
+
+    def _ends(self, force: SingleForce | SpringDamper | Elastic | Beam) -> tuple[Place, Place]:
+        return self._mechanism.place(force.i, force, "I"), self._mechanism.place(force.j, force, "J")
+
+    @singledispatchmethod
+    def _made(self, force: Any) -> dict[str, Any]:
+        raise TypeError(f"no force of the scene for {force!r}")
+
+    @_made.register
+    def _single(self, force: SingleForce) -> dict[str, Any]:
+        """A force along a line that drives the markers apart; a torque about the z axis of J; or one of them on I alone."""
+        i, j = self._ends(force)
+        linear = force.sort == TRANSLATIONAL
+        unit = self._units.of(force=1, length=0 if linear else 1)
+        law = self._translation.formula(force.function, unit)
+        if linear and not force.action_only:
+            return {force.name: {"type": "line_force", "i": i.reference, "j": j.reference, "force": law}}
+        kind = "force" if linear else "torque"
+        made: dict[str, Any] = {"type": kind, "i": i.reference}
+        if not force.action_only:
+            made["j"] = j.reference
+        return {force.name: made | {kind: [0, 0, law], "frame": j.reference}}
+
+    @_made.register
+    def _vector(self, force: VectorForce) -> dict[str, Any]:
+        """Components along the axes of RM, at I, and the opposite on the part of JFLOAT at the same point."""
+        i = self._mechanism.place(force.i, force, "I")
+        other = self._mechanism.place(force.floating, force, "JFLOAT")
+        frame = {} if force.axes is None else {"frame": self._mechanism.place(force.axes, force, "RM").reference}
+        made: dict[str, Any] = {}
+        for kind, functions, length in (("force", force.force, 0), ("torque", force.torque, 1)):
+            if not any(functions):
+                continue
+            law = [self._component(function, self._units.of(force=1, length=length)) for function in functions]
+            name = force.name + (TORQUE if made else "")
+            made[name] = {"type": kind, "i": i.reference, "j": other.body, kind: law, **frame}
+        return made
+
+    def _component(self, function: Function | None, unit: float) -> str | int:
+        return 0 if function is None else self._translation.formula(function, unit)
+
+    @_made.register
+    def _spring(self, spring: SpringDamper) -> dict[str, Any]:
+        """Adams counts a force that drives the markers apart, here a tension or a moment that brings them together."""
+        i, j = self._ends(spring)
+        linear = spring.sort == TRANSLATIONAL
+        free, kind = ("free_length", "spring_damper") if linear else ("free_angle", "torsion_spring")
+        numbers = {
+            "stiffness": spring.stiffness, "damping": spring.damping, free: spring.length, "preload": -spring.preload,
+        }  # fmt: skip
+        made = {"type": kind, "i": i.reference, "j": j.reference}
+        return {spring.name: made | {name: plain(value) for name, value in numbers.items() if value}}
+
+    @_made.register
+    def _elastic(self, force: Elastic) -> dict[str, Any]:
+        i, j = self._ends(force)
+        kind = force.keyword.lower()
+        made: dict[str, Any] = {"type": kind, "i": i.reference, "j": j.reference}
+        for name, rows in (("stiffness", force.stiffness), ("damping", force.damping)):
+            diagonal = [row[k] for k, row in enumerate(rows)]
+            coupled = any(part for k, row in enumerate(rows) for column, part in enumerate(row) if column != k)
+            if coupled:
+                made[name] = [vector(row) for row in rows]
+            elif any(diagonal):
+                made[name] = vector(diagonal)
+        if any(force.length):
+            made["free"] = vector(force.length)
+        if any(force.preload):
+            made["preload"] = vector(force.preload)
+        return {force.name: made}
+
+    @_made.register
+    def _beam(self, beam: Beam) -> dict[str, Any]:
+        i, j = self._ends(beam)
+        section = {
+            "length": beam.length, "young": beam.young, "shear_modulus": beam.shear_modulus, "area": beam.area,
+            "torsion": beam.torsion, "iyy": beam.iyy, "izz": beam.izz, "asy": beam.shear[0], "asz": beam.shear[1],
+        }  # fmt: skip
+        made: dict[str, Any] = {"type": "beam", "i": i.reference, "j": j.reference}
+        made |= {name: plain(value) for name, value in section.items() if value}
+        if isinstance(beam.damping, tuple):
+            made["damping"] = [vector(row) for row in beam.damping]
+        elif beam.damping:
+            made["damping_ratio"] = plain(beam.damping)
+        return {beam.name: made}

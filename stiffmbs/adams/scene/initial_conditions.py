@@ -1,0 +1,180 @@
+"""Initial conditions that joints state: velocities set parts in motion, displacements must be those that are drawn.
+
+A joint's initial velocity counts for a part that states none of its own; where both joined parts are known to move, it
+can only repeat what they do.  A part that nothing tells of is taken to be at rest, and follows those that are told of
+when the mechanism is assembled.  MSC Adams/Solver, JOINT statement, IC, ICROT, ICTRAN.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ..statements.bodies import Part, Vector
+from ..statements.constraints import ROTATIONAL, Joint
+from ..statements.dataset import Dataset
+from ..statements.geometry import IDENTITY
+from .mechanism import Mechanism, Place
+
+SAME = 1e-6
+"""How far what a joint and its parts state may be apart, in m, rad, and per s."""
+Key = tuple[bool, int]
+Twist = tuple[np.ndarray, np.ndarray]
+"""Velocity of the centre of mass and angular velocity of a part, in ground axes."""
+
+
+def set_in_motion(mechanism: Mechanism) -> Dataset:
+    """The dataset with the velocities that joints state as those of parts.
+
+    Raises
+    ------
+    DatasetFault
+        Where a joint's initial conditions are not those of its parts.
+    """
+    dataset = mechanism.dataset
+    known = {_key(part): _stated(mechanism, part) for part in mechanism.parts.values() if _states(part)}
+    told = set(known)
+    stating = [joint for joint in dataset.joints.values() if joint.start and joint.ident not in _driven(dataset)]
+    for joint in stating:
+        _check_displacements(mechanism, joint)
+    waiting = [joint for joint in stating if any(velocity is not None for _, _, velocity in joint.start)]
+    while waiting:
+        joint = next((joint for joint in waiting if any(key in known for key in _joined(mechanism, joint))), waiting[0])
+        waiting.remove(joint)
+        if not any(key in known for key in _joined(mechanism, joint)):  # at rest until it follows
+            at_rest = _joined(mechanism, joint)[1]
+            known[at_rest] = np.zeros(3), np.zeros(3)
+            told.add(at_rest)
+        _move(mechanism, joint, known)
+    statements = {keyword: dict(numbered) for keyword, numbered in dataset.statements.items()}
+    for key, twist in known.items():
+        if key not in told:
+            part = mechanism.parts[key]
+            statements["POINT_MASS" if part.point else "PART"][part.ident] = _moving(mechanism, part, twist)
+    return replace(dataset, statements=statements)
+
+
+def notes(dataset: Dataset) -> Iterator[str]:
+    """Which initial conditions have no effect, a sentence."""
+    left_out = [joint.label for joint in dataset.joints.values() if joint.start and joint.ident in _driven(dataset)]
+    if left_out:
+        yield f"initial conditions of {', '.join(left_out)} are left out: a MOTION says where they start"
+
+
+def _driven(dataset: Dataset) -> set[int | None]:
+    return {motion.joint for motion in dataset.motions.values()}
+
+
+def _key(part: Part) -> Key:
+    return part.point, part.ident
+
+
+def _states(part: Part) -> bool:
+    return part.ground or part.velocity is not None or part.omega is not None
+
+
+def _stated(mechanism: Mechanism, part: Part) -> Twist:
+    """What a part states of its motion, zero for what it does not."""
+    drawn = mechanism.center(part).within(part.frame)
+    return (
+        in_ground(mechanism, part, part.velocity, part.velocity_marker, IDENTITY),
+        in_ground(mechanism, part, part.omega, part.omega_marker, drawn.axes),
+    )
+
+
+def _joined(mechanism: Mechanism, joint: Joint) -> tuple[Key, Key]:
+    """The parts of markers I and J."""
+    mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    i, j = (mechanism.part_of(mechanism.dataset.markers[ident]) for ident in (joint.i, joint.j))
+    return _key(i), _key(j)
+
+
+def _move(mechanism: Mechanism, joint: Joint, known: dict[Key, Twist]) -> None:
+    """Add the motion of one part of a joint to those that are known, or check that both are as the joint states."""
+    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    one, other = _joined(mechanism, joint)
+    axis = j.drawn.axes[:, 2]
+    rates = {sort == ROTATIONAL: velocity or 0.0 for sort, _, velocity in joint.start}
+    sliding, turning = rates.get(False, 0.0) * axis, rates.get(True, 0.0) * axis
+    if one in known and other in known:
+        _check_velocities(mechanism, joint, i, j, known)
+        return
+    if one in known:
+        omega = known[one][1] - turning
+        at_i = _at(mechanism, one, known[one], i)
+        velocity = at_i - sliding - np.cross(omega, i.drawn.point - j.drawn.point)
+        known[other] = _of_center(mechanism, other, velocity, omega, j)
+        return
+    at_i = _at(mechanism, other, known[other], i) + sliding
+    known[one] = _of_center(mechanism, one, at_i, known[other][1] + turning, i)
+
+
+def _center(mechanism: Mechanism, key: Key) -> np.ndarray:
+    part = mechanism.parts[key]
+    return mechanism.center(part).within(part.frame).point
+
+
+def _at(mechanism: Mechanism, key: Key, twist: Twist, place: Place) -> np.ndarray:
+    """Velocity of a part where a marker is, m/s."""
+    velocity, omega = twist
+    return np.asarray(velocity + np.cross(omega, place.drawn.point - _center(mechanism, key)))
+
+
+def _of_center(mechanism: Mechanism, key: Key, velocity: np.ndarray, omega: np.ndarray, place: Place) -> Twist:
+    """The motion of a part by the velocity of its marker."""
+    return velocity + np.cross(omega, _center(mechanism, key) - place.drawn.point), omega
+
+
+def _moving(mechanism: Mechanism, part: Part, twist: Twist) -> Part:
+    """The part with a velocity in ground axes, and an angular velocity in those of its centre of mass."""
+    velocity, omega = twist[0], mechanism.center(part).within(part.frame).axes.T @ twist[1]
+    stated: list[Vector] = [(float(v[0]), float(v[1]), float(v[2])) for v in (velocity, omega)]
+    return replace(part, velocity=stated[0], omega=stated[1], velocity_marker=None, omega_marker=None)
+
+
+def _check_displacements(mechanism: Mechanism, joint: Joint) -> None:
+    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    for sort, displacement, _ in joint.start:
+        _compare(joint, sort, "displacement", displacement, drawn_displacement(sort, i, j))
+
+
+def _check_velocities(mechanism: Mechanism, joint: Joint, i: Place, j: Place, known: dict[Key, Twist]) -> None:
+    one, other = _joined(mechanism, joint)
+    axis = j.drawn.axes[:, 2]
+    for sort, _, stated in joint.start:
+        if stated is None:
+            continue
+        found = (
+            known[one][1] - known[other][1]
+            if sort == ROTATIONAL
+            else _at(mechanism, one, known[one], i) - _at(mechanism, other, known[other], i)
+        )
+        _compare(joint, sort, "velocity", stated, float(found @ axis))
+
+
+def _compare(joint: Joint, sort: str, name: str, stated: float, found: float) -> None:
+    if abs(stated - found) > SAME * max(1.0, abs(found)):
+        raise joint.fault(
+            f"found the {sort.lower()} {name} {stated:.6g} at the start where the parts have {found:.6g} (in SI), "
+            "expected the same in their PART statements"
+        )
+
+
+def drawn_displacement(sort: str, i: Place, j: Place) -> float:
+    """The displacement of a joint as the parts are drawn, m or rad."""
+    a, b = i.drawn, j.drawn
+    if sort != ROTATIONAL:
+        return float((a.point - b.point) @ b.axes[:, 2])
+    x = a.axes[:, 0]
+    return float(np.arctan2(x @ b.axes[:, 1], x @ b.axes[:, 0]))
+
+
+def in_ground(
+    mechanism: Mechanism, part: Part, rates: Vector | None, marker: int | None, axes: np.ndarray
+) -> np.ndarray:
+    """Velocities that are given in a marker's axes (or in `axes`, without one) in ground axes; zero without any."""
+    if rates is None:
+        return np.zeros(3)
+    return (axes if marker is None else mechanism.place(marker, part, "VM or WM").drawn.axes) @ np.array(rates)

@@ -1,0 +1,129 @@
+"""Joints, primitives and general constraints as joints of a scene."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..functions.translate import ANGULAR_VELOCITIES as TURNING
+from ..functions.translate import VELOCITIES, Translation
+from ..statements.constraints import GeneralConstraint, Joint
+from ..statements.geometry import Frame
+from .mechanism import Mechanism, Place
+from .number_format import plain, quaternion, vector
+from .racks import rolling
+
+KINDS = {
+    "REVOLUTE": "revolute",
+    "TRANSLATIONAL": "prismatic",
+    "CYLINDRICAL": "cylindrical",
+    "SPHERICAL": "spherical",
+    "FIXED": "fixed",
+    "UNIVERSAL": "universal",
+    "PLANAR": "planar",
+    "CONVEL": "constant_velocity",
+    "ATPOINT": "spherical",
+    "INLINE": "point_on_line",
+    "INPLANE": "point_on_plane",
+    "ORIENTATION": "orientation",
+    "PARALLEL_AXES": "parallel",
+    "PERPENDICULAR": "perpendicular",
+}
+"""Joints that take their two markers as they are."""
+Z_ALONG_X = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+"""Axes whose z is the x axis of those that they are given in."""
+Z_ALONG_Y = Z_ALONG_X.T
+
+
+def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    """The joints of the scene by name, without those that motions and relations make."""
+    dataset = mechanism.dataset
+    found: dict[str, Any] = {}
+    for joint in (*dataset.joints.values(), *dataset.primitives.values()):
+        found[joint.name] = _joint(joint, mechanism)
+    for constraint in dataset.general_constraints.values():
+        found[constraint.name] = _general(constraint, mechanism, translation)
+    return found
+
+
+def held(mechanism: Mechanism) -> dict[str, Any]:
+    """Joints that keep point masses from turning."""
+    return {
+        f"{mechanism.body_name(part)}_axes": {
+            "type": "orientation", "i": mechanism.body_name(part), "j": _on_ground(mechanism.center(part).within(part.frame)),
+        }
+        for part in mechanism.moving
+        if part.point
+    }  # fmt: skip
+
+
+def _on_ground(frame: Frame) -> Any:
+    if np.array_equal(frame.axes, np.eye(3)):
+        return "ground"
+    return {"body": "ground", "orientation": quaternion(frame.axes)}
+
+
+def _joint(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
+    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    match joint.kind:
+        case "HOOKE":
+            return {"type": "universal", "i": turned(i, Z_ALONG_X), "j": turned(j, Z_ALONG_Y)}
+        case "SCREW":
+            return {"type": "thread", "i": i.reference, "j": j.reference, "pitch": plain(joint.pitch)}
+        case "RACKPIN":
+            return rolling(joint, mechanism)
+    return {"type": KINDS[joint.kind], "i": i.reference, "j": j.reference}
+
+
+def turned(place: Place, axes: np.ndarray) -> dict[str, Any]:
+    """A marker with other axes, which are given in its own."""
+    return {
+        "body": place.body, "point": vector(place.on_body.point), "orientation": quaternion(place.on_body.axes @ axes),
+    }  # fmt: skip
+
+
+def _general(constraint: GeneralConstraint, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    distance = rod(constraint)
+    if distance is not None:
+        *ends, length = distance
+        i, j = (mechanism.place(ident, constraint, "the marker").reference for ident in ends)
+        return {"type": "distance", "i": i, "j": j, "length": plain(length * mechanism.dataset.units.length)}
+    called = {name.id for node in ast.walk(constraint.function.tree) for name in _callee(node)}
+    kind = "velocity_equation" if called & {*VELOCITIES, *TURNING} else "equation"
+    reported = {} if constraint.i is None else {"i": mechanism.place(constraint.i, constraint, "I").reference}
+    return {"type": kind, **reported, "zero": translation.formula(constraint.function)}
+
+
+def _callee(node: ast.AST) -> Iterator[ast.Name]:
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+        yield node.func
+
+
+def rod(constraint: GeneralConstraint) -> tuple[int, int, float] | None:
+    """The markers of a distance that stays as long as a number says, and that number; None for anything else."""
+    match constraint.function.tree:
+        case ast.BinOp(
+            ast.Call(ast.Name("DM"), [ast.Constant(int() as a), ast.Constant(int() as b)]),
+            ast.Sub(),
+            ast.Constant(int() | float() as length),
+        ) if a and b and length:
+            return (b, a, length) if constraint.i == b else (a, b, length)
+    return None
+
+
+def markers_of(constraint: GeneralConstraint, mechanism: Mechanism) -> tuple[int, ...]:
+    """The markers that a general constraint's function names: the one that its reaction is asked for on first."""
+    named = [
+        argument.value
+        for node in ast.walk(constraint.function.tree)
+        if isinstance(node, ast.Call)
+        for argument in node.args
+        if isinstance(argument, ast.Constant)
+        and isinstance(argument.value, int)
+        and argument.value in mechanism.dataset.markers
+    ]
+    first = [] if constraint.i is None else [constraint.i]
+    return tuple(dict.fromkeys([*first, *named]))

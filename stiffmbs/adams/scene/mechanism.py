@@ -1,0 +1,182 @@
+"""Parts and markers as bodies and markers of a scene: names, own axes, where everything is at the start.
+
+A body's origin and axes are those of its centre-of-mass marker, which Adams' requests, moments of inertia and initial
+angular velocities refer to; the part's own axes do not occur in the scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...describe.marker import GROUND
+from ..statements.bodies import Marker, Part
+from ..statements.constraints import Numbered
+from ..statements.dataset import Dataset
+from ..statements.fault import DatasetFault
+from ..statements.geometry import IDENTITY, Frame
+from .massless import SLIGHT, lightest, weighed
+from .number_format import plain
+
+ORIGIN = Frame(np.zeros(3), IDENTITY)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A marker of the scene.
+
+    Attributes
+    ----------
+    body : str
+        The body that carries it, or ground.
+    name : str
+        Its own name on that body.
+    on_body : Frame
+        In the body's axes.
+    drawn : Frame
+        In ground axes, at the start.
+    """
+
+    body: str
+    name: str
+    on_body: Frame
+    drawn: Frame
+
+    @property
+    def reference(self) -> str:
+        """As the scene writes it."""
+        return f"{self.body}.{self.name}" if self.name else self.body
+
+
+class Mechanism:
+    """A dataset's parts and markers, looked up by number.
+
+    Parameters
+    ----------
+    dataset : Dataset
+
+    Attributes
+    ----------
+    least : float
+        Mass of the lightest part that has any, kg.
+    further : mapping of str to Place
+        Markers that the dataset does not have, by their references; see `tip`.
+    tables : mapping of str to table
+        Of the scene, by name: splines that functions have called so far, in the dataset's units.
+
+    Raises
+    ------
+    DatasetFault
+        When there is no ground part or no other, a marker is on a part that is not there, or a mass is below zero.
+    """
+
+    def __init__(self, dataset: Dataset) -> None:
+        self.dataset = dataset
+        self.further: dict[str, Place] = {}
+        self.tables: dict[str, dict[str, Any]] = {}
+        self.least = lightest(dataset.parts)
+        self.parts = {(part.point, part.ident): weighed(part, self.least) for part in dataset.parts}
+        grounds = [part for part in dataset.parts if part.ground]
+        if len(grounds) > 1:
+            raise DatasetFault(grounds[1].line, grounds[1].label, f"found GROUND, which {grounds[0].label} is already")
+        for marker in dataset.markers.values():
+            if (marker.on_point_mass, marker.owner) not in self.parts:
+                kind = "POINT_MASS" if marker.on_point_mass else "PART"
+                raise DatasetFault(
+                    marker.line, marker.label, f"found {kind} = {marker.owner}, which the dataset does not have"
+                )
+        for part in self.moving:
+            self._check(part)
+
+    def _check(self, part: Part) -> None:
+        if not part.mass > 0:
+            found = f"MASS = {plain(part.mass)!r} kg" if part.mass else "no part with a MASS"
+            raise DatasetFault(part.line, part.label, f"found {found}, expected a mass above zero")
+        if part.center is None and part.mass >= self.least:
+            raise DatasetFault(part.line, part.label, "found no CM, expected the marker at its centre of mass")
+        for name, ident in (("CM", part.center), ("IM", part.inertia_marker)):
+            marker = self.dataset.markers.get(ident) if ident is not None else None
+            if ident is not None and (marker is None or self.part_of(marker) is not part):
+                raise DatasetFault(part.line, part.label, f"found {name} = {ident}, expected a marker of this part")
+
+    def tip(self, place: Place) -> str:
+        """A marker at the end of the z axis of another one, 1 m from it, as the scene writes it.
+
+        With it formulas measure that axis: ``dx(tip, marker, other)`` is its component along the x axis of the other.
+        """
+        return self.moved(place, f"{place.name}_z", place.drawn.axes[:, 2]).reference
+
+    def moved(self, place: Place, name: str, way: np.ndarray) -> Place:
+        """A further marker of the scene: another one, moved on its body by a way in ground axes (m) at the start."""
+        seen = place.drawn.axes.T @ way
+        found = Place(
+            place.body, name, *(Frame(seen, IDENTITY).within(frame) for frame in (place.on_body, place.drawn))
+        )
+        self.further[found.reference] = found
+        return found
+
+    @cached_property
+    def moving(self) -> tuple[Part, ...]:
+        """All parts but ground."""
+        return tuple(part for part in self.parts.values() if not part.ground)
+
+    @cached_property
+    def moves_at_start(self) -> bool:
+        """Whether any part states a velocity."""
+        return any(part.velocity is not None or part.omega is not None for part in self.moving)
+
+    def part_of(self, marker: Marker) -> Part:
+        """The part that carries a marker."""
+        return self.parts[marker.on_point_mass, marker.owner]
+
+    @staticmethod
+    def body_name(part: Part) -> str:
+        """A part's name in the scene."""
+        if part.ground:
+            return GROUND
+        return f"{'POINT_MASS' if part.point else 'PART'}_{part.ident}"
+
+    def center(self, part: Part) -> Frame:
+        """A part's centre-of-mass marker in the part's own axes; of ground, its origin in ground axes."""
+        if part.center is None:
+            return ORIGIN
+        return self.dataset.markers[part.center].frame
+
+    def notes(self) -> Iterator[str]:
+        """What the parts say that has no place in a scene, a sentence each."""
+        weightless = [part.label for part in self.moving if part.mass < self.least]
+        if weightless:
+            yield (
+                f"{', '.join(weightless)} {'have' if len(weightless) > 1 else 'has'} no MASS, taken as {SLIGHT:g} of the "
+                "lightest part's"
+            )
+        exact = [part.label for part in self.moving if part.exact]
+        if exact:
+            yield f"EXACT of {', '.join(exact)} is left out: assembly may move every part"
+
+    def place(self, ident: int, user: Numbered | Part, name: str = "I") -> Place:
+        """The marker that a statement names.
+
+        Raises
+        ------
+        DatasetFault
+            When there is none of that number.
+        """
+        marker = self.dataset.markers.get(ident)
+        if marker is None:
+            raise DatasetFault(user.line, user.label, f"found {name} = {ident}, expected the number of a marker")
+        return self.placed(marker)
+
+    def placed(self, marker: Marker) -> Place:
+        """A marker on its body and in ground axes.  A floating one has no place of its own: it stands for its body."""
+        part = self.part_of(marker)
+        center = self.center(part)
+        if part.ground:
+            on_ground = marker.frame.within(part.frame)
+            return Place(GROUND, f"MARKER_{marker.ident}", on_ground, on_ground)
+        on_body = ORIGIN if marker.floating else marker.frame.seen_from(center)
+        return Place(self.body_name(part), f"MARKER_{marker.ident}", on_body, on_body.within(center.within(part.frame)))

@@ -1,0 +1,72 @@
+"""Motions as drives of a scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..functions.motion_law import Law
+from ..functions.translate import Translation
+from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Joint, Motion
+from .initial_conditions import drawn_displacement
+from .mechanism import Mechanism
+from .relations import SORTS, coordinate
+
+LENGTHS = ("X", "Y", "Z")
+
+
+def motions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    """The scene's drives by name."""
+    return {
+        motion.name: _of_joint(motion, mechanism, translation)
+        if motion.joint is not None
+        else _between_markers(motion, mechanism, translation)
+        for motion in mechanism.dataset.motions.values()
+    }
+
+
+def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    joint = mechanism.dataset.joints.get(motion.joint or 0)
+    if joint is None:
+        raise motion.fault(f"found JOINT = {motion.joint}, expected the number of a JOINT")
+    sort = _sort(motion, joint)
+    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    law = Law(motion, translation, sort)
+    drawn = drawn_displacement(sort, i, j)
+    return {"type": "drive", "joint": coordinate(joint, sort), **law.over_time(drawn)}
+
+
+def _sort(motion: Motion, joint: Joint) -> str:
+    own = SORTS.get(joint.kind)
+    if joint.kind == "CYLINDRICAL":
+        own = motion.sort
+    if own is None or motion.sort not in (None, own):
+        raise motion.fault(
+            f"found {motion.sort or 'neither ROTATIONAL nor TRANSLATIONAL'} of {joint.label}, {joint.kind}, expected a "
+            "revolute, translational or cylindrical joint and a motion that it has"
+        )
+    return own
+
+
+def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    """A component between two markers, along the axes of J or by the angles of three turns about x, y and z."""
+    assert motion.i is not None and motion.j is not None and motion.component is not None
+    i, j = mechanism.place(motion.i, motion, "I"), mechanism.place(motion.j, motion, "J")
+    relative = i.drawn.seen_from(j.drawn)
+    component = motion.component
+    drive = {"type": "drive", "i": i.reference, "j": j.reference}
+    if component in LENGTHS:
+        way = f"d{component.lower()}({i.reference}, {j.reference}, {j.reference})"
+        drawn = float(relative.point[LENGTHS.index(component)])
+        return {**drive, "coordinate": way, **Law(motion, translation, TRANSLATIONAL).over_time(drawn)}
+    A = relative.axes  # Rx(b1) Ry(b2) Rz(b3): AX gives b1, and AZ of J against I gives -b3
+    angle, drawn = {
+        "B1": (f"ax({i.reference}, {j.reference})", float(np.arctan2(-A[1, 2], A[2, 2]))),
+        "B2": (
+            f"asin(dx({mechanism.tip(i)}, {i.reference}, {j.reference}))",
+            float(np.arcsin(np.clip(A[0, 2], -1, 1))),
+        ),
+        "B3": (f"-az({j.reference}, {i.reference})", float(np.arctan2(-A[0, 1], A[0, 0]))),
+    }[component]
+    return {**drive, "coordinate": angle, **Law(motion, translation, ROTATIONAL).over_time(drawn)}

@@ -1,0 +1,138 @@
+"""Racks and pinions: one motion where the pitch line of the rack touches the pinion.
+
+Marker I is on the pinion, its z is the pinion's axis; marker J is on the rack, whose teeth run along z.  The pitch line is
+half the pitch diameter from the axis, on the side of it where the rack is drawn.  A rack that is drawn across the axis does
+not tell its side: it is then at -y of marker I, whose x is along the rack (MSC Adams, constraint modify joint rackpin).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..statements.constraints import Joint
+from .gears import meshed
+from .mechanism import Mechanism, Place
+
+ACROSS = 1e-3
+"""Of half the pitch diameter: how near a rack's line is to cross the pinion's axis."""
+SAME = 1e-9
+"""Of the pitch diameter: how near to the pitch line a rack's own line is taken for it."""
+SKEWED = 0.1
+"""Cosine of the angle between the pinion's axis and the rack from which on marker I is not turned as the pinion is."""
+PARALLEL = 1e-6
+"""Sine of the angle between axes that are taken to be parallel."""
+VISIBLE = 1e-3
+"""Of half the pitch diameter: how far a rack that is drawn elsewhere than there is told."""
+
+
+def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
+    """The equation that the teeth add, with the force of the pitch line on the pinion.
+
+    Where one carrier has the pinion on a hinge and the rack on a guide, it is that of a gear: one of displacements.
+
+    Raises
+    ------
+    DatasetFault
+        When neither the rack's place nor marker I tells on which side of the pinion the rack is.
+    """
+    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    outward = _outward(joint, i, j)
+    off = joint.diameter / 2 - float(_beside(i, j) @ outward)
+    carried = _carried(joint, i, j, mechanism)
+    if carried is not None:
+        hinge, guide, seat = carried
+        along, line = j.drawn.axes[:, 2], j.drawn.point + off * outward
+        touched = line + ((i.drawn.point - line) @ along) * along
+        contact = mechanism.moved(seat, f"{seat.name}_teeth_{joint.ident}", touched - seat.drawn.point)
+        return meshed(joint, (hinge.ident, guide.ident), contact, mechanism) | {"i": i.reference, "j": j.reference}
+    line_marker = mechanism.moved(j, f"{j.name}_pitch", off * outward) if abs(off) > SAME * abs(joint.diameter) else j
+    I, J = i.reference, line_marker.reference
+    turning = f"(wx({I}, ground, {J}) * dy({J}, {I}, {J}) - wy({I}, ground, {J}) * dx({J}, {I}, {J}))"
+    return {
+        "type": "velocity_equation", "i": I, "j": j.reference, "zero": f"vz({J}, {I}, {J}) - {turning}",
+    }  # fmt: skip
+
+
+def _carried(joint: Joint, i: Place, j: Place, mechanism: Mechanism) -> tuple[Joint, Joint, Place] | None:
+    """The hinge of the pinion and the guide of the rack on one carrier, and the guide's marker there; None without."""
+    hinges = {
+        seat.body: other
+        for other, own, seat in _joints_of(i.body, "REVOLUTE", mechanism)
+        if _alike(own.drawn.axes[:, 2], i.drawn.axes[:, 2])
+    }
+    for guide, own, seat in _joints_of(j.body, "TRANSLATIONAL", mechanism):
+        if seat.body in hinges and _alike(own.drawn.axes[:, 2], j.drawn.axes[:, 2]):
+            return hinges[seat.body], guide, seat
+    return None
+
+
+def _alike(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two axes are parallel, in either sense."""
+    return bool(np.linalg.norm(np.cross(one, other)) < PARALLEL)
+
+
+def _joints_of(body: str, kind: str, mechanism: Mechanism) -> Iterator[tuple[Joint, Place, Place]]:
+    """Joints of a kind on a body, with their markers there and on the other body."""
+    for joint in mechanism.dataset.joints.values():
+        if joint.kind == kind:
+            ends = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+            for own, seat in (ends, ends[::-1]):
+                if own.body == body:
+                    yield joint, own, seat
+
+
+def _axis(i: Place, j: Place) -> np.ndarray | None:
+    """The pinion's axis across the rack; None where marker I is not turned as the pinion is."""
+    along, axis = j.drawn.axes[:, 2], i.drawn.axes[:, 2]
+    if abs(along @ axis) > SKEWED:
+        return None
+    axis = axis - (along @ axis) * along
+    return np.asarray(axis / np.linalg.norm(axis))
+
+
+def _beside(i: Place, j: Place) -> np.ndarray:
+    """The way from the pinion's axis to the rack's line across both, m; from marker I where it is not on the axis."""
+    along, axis, gap = j.drawn.axes[:, 2], _axis(i, j), j.drawn.point - i.drawn.point
+    gap = gap - (gap @ along) * along
+    return np.asarray(gap if axis is None else gap - (gap @ axis) * axis)
+
+
+def _crosses(joint: Joint, gap: np.ndarray) -> bool:
+    return bool(np.linalg.norm(gap) <= ACROSS * abs(joint.diameter) / 2)
+
+
+def _outward(joint: Joint, i: Place, j: Place) -> np.ndarray:
+    """The direction from the pinion's axis to the rack."""
+    gap = _beside(i, j)
+    if not _crosses(joint, gap):
+        return np.asarray(gap / np.linalg.norm(gap))
+    axis, along = _axis(i, j), float(i.drawn.axes[:, 0] @ j.drawn.axes[:, 2])
+    if axis is None or abs(along) < 0.5:
+        raise joint.fault(
+            "found the rack's line (the z axis of J) across the pinion's axis (the z axis of I) and not along its x axis, "
+            "expected it half the pitch diameter beside the axis, or along the x axis of I"
+        )
+    return -np.sign(along) * np.cross(axis, j.drawn.axes[:, 2])
+
+
+def notes(mechanism: Mechanism) -> Iterator[str]:
+    """What is taken for granted of racks, a sentence each."""
+    for joint in mechanism.dataset.joints.values():
+        if joint.kind != "RACKPIN":
+            continue
+        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+        gap, radius = _beside(i, j), abs(joint.diameter) / 2
+        distance = float(np.linalg.norm(gap))
+        if _crosses(joint, gap):
+            yield (
+                f"{joint.label}: the rack's line goes through the pinion's axis, and the rack is taken to be at -y of "
+                f"MARKER/{joint.i}, half the pitch diameter away"
+            )
+        elif abs(distance - radius) > VISIBLE * radius:
+            yield (
+                f"{joint.label}: the rack's line is drawn {distance:.6g} m from the pinion's axis, and its teeth are taken to "
+                f"be where PD says, {radius:.6g} m from it"
+            )

@@ -1,0 +1,77 @@
+"""Couplers: linear equations between the displacements of joints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Coupler, Joint, Numbered
+from .initial_conditions import drawn_displacement
+from .mechanism import Mechanism
+from .number_format import plain
+
+SORTS = {"REVOLUTE": ROTATIONAL, "TRANSLATIONAL": TRANSLATIONAL}
+"""Of the joints with one displacement."""
+
+
+def relations(mechanism: Mechanism) -> dict[str, Any]:
+    """The scene's couplers by name."""
+    return {coupler.name: _coupled(coupler, mechanism) for coupler in mechanism.dataset.couplers.values()}
+
+
+def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, Any]:
+    """Scales times displacements add up to nothing."""
+    tied = [coupled_joint(coupler, ident, mechanism) for ident in coupler.joints]
+    sorts = [_sort(coupler, joint, sort) for joint, sort in zip(tied, coupler.sorts, strict=True)]
+    units = [1.0 if sort == ROTATIONAL else mechanism.dataset.units.length for sort in sorts]
+    scales = [scale / unit for scale, unit in zip(coupler.scales, units, strict=True)]
+    return _tied(tied, sorts, [scale / scales[0] for scale in scales], mechanism)
+
+
+def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: Mechanism) -> dict[str, Any]:
+    """A coupler of two joints; for more an equation between their displacements, which holds as the parts are drawn."""
+    if len(tied) == 2:
+        first, second = (coordinate(joint, sort) for joint, sort in zip(tied, sorts, strict=True))
+        return {"type": "coupler", "joint_1": first, "joint_2": second, "scale": plain(-scales[1])}
+    terms, at_start = [], 0.0
+    for joint, sort, scale in zip(tied, sorts, scales, strict=True):
+        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+        I, J = i.reference, j.reference
+        measure = f"az({I}, {J})" if sort == ROTATIONAL else f"dz({I}, {J}, {J})"
+        terms.append(f"{plain(scale)!r} * {measure}")
+        at_start += scale * drawn_displacement(sort, i, j)
+    ends = {
+        "i": mechanism.place(tied[0].i, tied[0], "I").reference,
+        "j": mechanism.place(tied[0].j, tied[0], "J").reference,
+    }
+    return {"type": "equation", **ends, "zero": " + ".join([*terms, *([repr(plain(-at_start))] if at_start else [])])}
+
+
+def coordinate(joint: Joint, sort: str) -> str:
+    """A displacement of a joint as the scene names it."""
+    if joint.kind in SORTS:
+        return joint.name
+    return f"{joint.name}.{'angle' if sort == ROTATIONAL else 'displacement'}"
+
+
+def coupled_joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:
+    """A joint that a coupler or a gear names.
+
+    Raises
+    ------
+    DatasetFault
+        When there is none of that number, or it has no displacement to tie.
+    """
+    joint = mechanism.dataset.joints.get(ident)
+    if joint is None:
+        raise user.fault(f"found JOINTS = {ident}, expected the number of a JOINT")
+    if joint.kind not in (*SORTS, "CYLINDRICAL"):
+        raise user.fault(f"found {joint.label}, {joint.kind}, expected a revolute, translational or cylindrical joint")
+    return joint
+
+
+def _sort(user: Numbered, joint: Joint, sort: str | None) -> str:
+    """Which displacement of a joint is meant."""
+    own = SORTS.get(joint.kind, sort)
+    if own is None or (sort is not None and sort != own):
+        raise user.fault(f"found {sort or 'no TYPE'} of {joint.label}, {joint.kind}, expected {own or 'T or R'}")
+    return own

@@ -1,0 +1,109 @@
+"""Requests and variables as requests of a scene."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Any
+
+from ..functions.function import Function
+from ..functions.translate_output import FORCES, OutputTranslation
+from ..functions.trees import measured
+from ..statements.fault import DatasetFault
+from ..statements.outputs import Request
+from .mechanism import Mechanism
+
+MARKED = {
+    "DISPLACEMENT": ("DX", "DY", "DZ", "PSI", "THETA", "PHI"),
+    "VELOCITY": ("VX", "VY", "VZ", "WX", "WY", "WZ"),
+    "ACCELERATION": ("ACCX", "ACCY", "ACCZ", "WDTX", "WDTY", "WDTZ"),
+}
+"""What a request reports between two markers."""
+CALLED = {"DX": "x", "DY": "y", "DZ": "z"}
+"""Components that Adams calls otherwise than the function that measures them."""
+
+
+class Requests:
+    """Makes the scene's requests.
+
+    Attributes
+    ----------
+    notes : list of str
+        What cannot be reported, a sentence each.
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self._mechanism, self._translation = mechanism, OutputTranslation(mechanism)
+        self.notes: list[str] = []
+
+    def all(self) -> dict[str, Any]:
+        """By name: a request's components by theirs, a variable as it is."""
+        found: dict[str, Any] = {}
+        for request in self._mechanism.dataset.requests.values():
+            components = self._between_markers(request) if request.sort else self._functions(request)
+            if components:
+                found[request.name] = components
+        for variable in self._mechanism.dataset.variables.values():
+            formula = self._formula(variable.function, variable.label)
+            if formula is not None:
+                found[variable.name] = formula
+        return found
+
+    def _between_markers(self, request: Request) -> dict[str, str]:
+        """Displacement, velocity, acceleration or force of marker I against J, along the axes of RM; in SI."""
+        assert request.sort is not None and request.i is not None
+        if request.sort == "FORCE":
+            return self._force(request)
+        idents = (request.i, request.j, request.axes)
+        function = Function(request.sort, ast.Constant(0), request.line, request.label)
+        try:
+            i, j, axes = (self._translation.reference(ident, function) if ident else "" for ident in idents)
+        except DatasetFault as fault:
+            self.notes.append(f"{fault}; the request is left out")
+            return {}
+        names = MARKED[request.sort]
+        return {
+            CALLED.get(name, name.lower()): ast.unparse(
+                measured(name.lower(), i, j, "" if name in ("PSI", "THETA", "PHI") else axes)
+            )
+            for name in names
+        }
+
+    def _force(self, request: Request) -> dict[str, str]:
+        function = Function("FORCE", ast.Constant(0), request.line, request.label)
+        found = {}
+        for name in FORCES:
+            try:
+                tree = self._translation.between(name, request.i or 0, request.j or 0, request.axes or 0, function)
+            except DatasetFault as fault:
+                self.notes.append(f"{fault}; the request is left out")
+                return {}
+            found[name.lower()] = ast.unparse(tree)
+        return found
+
+    def _functions(self, request: Request) -> dict[str, str]:
+        """The functions of a request, in the dataset's own units."""
+        if request.computed:
+            self.notes.append(
+                f"line {request.line}, {request.label}: {', '.join(request.computed)} of a user's own subroutine is left out "
+                "of the results"
+            )
+        found = {}
+        for k, (column, function) in enumerate(request.functions):
+            formula = self._formula(function, f"{request.label}, {column}")
+            if formula is not None:
+                found[self._name(request, column, k)] = formula
+        return found
+
+    @staticmethod
+    def _name(request: Request, column: str, k: int) -> str:
+        """What a column is called: as the request says, if that can be a channel's name."""
+        given = request.names[k] if k < len(request.names) else ""
+        return given if re.fullmatch(r"[A-Za-z_]\w*", given) else column.lower()
+
+    def _formula(self, function: Function, label: str) -> str | None:
+        try:
+            return self._translation.formula(function)
+        except DatasetFault as fault:
+            self.notes.append(f"{fault}; {label} is left out of the results")
+            return None

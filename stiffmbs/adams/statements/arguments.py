@@ -1,0 +1,180 @@
+"""The arguments of a statement by name: abbreviations resolved, values read as numbers, identifiers or functions."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...describe.files.quoted import quoted
+from .fault import DatasetFault
+from .text import Piece, Statement
+
+_ASSIGNED = re.compile(r"([A-Za-z_]\w*)\s*=\s*(.*)", re.DOTALL)
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)(D?)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Argument:
+    """A named argument: what stands after its ``=``, cut at the outermost commas (nothing for a word alone)."""
+
+    name: str
+    values: tuple[str, ...]
+    line: int
+
+
+class Arguments:
+    """What a statement says, by the full names of its arguments.
+
+    Parameters
+    ----------
+    statement : Statement
+    keyword : str
+        Its full name.
+    names : sequence of str
+        The arguments that it may have.  An abbreviation stands for the first that it begins.
+    functions : sequence of str
+        Those whose value is a function expression, in which an outermost comma is none of its own.
+
+    Raises
+    ------
+    DatasetFault
+        For an argument that the statement does not have, or that stands twice.
+    """
+
+    def __init__(self, statement: Statement, keyword: str, names: Sequence[str], functions: Sequence[str] = ()) -> None:
+        self.statement, self.keyword = statement, keyword
+        self.label = f"{keyword}/{quoted(statement.ident)}" if statement.ident else keyword
+        self._names, self._functions = names, functions
+        self._found: dict[str, Argument] = {}
+        name, line = "", statement.line
+        texts: list[str] = []
+        for piece in statement.pieces:
+            if name and self._continues(name, texts, piece):
+                texts.append(piece.text)
+                continue
+            self._keep(name, texts, line)
+            name, texts, line = *self._opened(piece), piece.line
+        self._keep(name, texts, line)
+
+    def _continues(self, name: str, texts: list[str], piece: Piece) -> bool:
+        """Whether a piece goes on with the argument before it."""
+        if _ASSIGNED.fullmatch(piece.text) or not texts:
+            return False
+        if name in self._functions:
+            return piece.on_new_line and not (_WORD.fullmatch(piece.text) and self._full(piece.text))
+        return not (_WORD.fullmatch(piece.text) and self._full(piece.text))
+
+    def _opened(self, piece: Piece) -> tuple[str, list[str]]:
+        """The full name that a piece starts with, and its first value."""
+        assigned = _ASSIGNED.fullmatch(piece.text)
+        word = assigned[1] if assigned else piece.text
+        name = self._full(word) if _WORD.fullmatch(word) else ""
+        if not name:
+            raise self.fault(f"found '{quoted(piece.text)}', expected one of {', '.join(self._names)}", piece.line)
+        return name, [assigned[2].strip()] if assigned else []
+
+    def _full(self, word: str) -> str:
+        """The argument that a word or its abbreviation stands for; nothing where there is none."""
+        word = word.upper()
+        if word in self._names:
+            return word
+        return next((name for name in self._names if name.startswith(word)), "")
+
+    def _keep(self, name: str, texts: list[str], line: int) -> None:
+        if not name:
+            return
+        if name in self._found:
+            raise self.fault(f"found {name} twice, expected it once", line)
+        values = (" ".join(texts),) if name in self._functions and texts else tuple(texts)
+        self._found[name] = Argument(name, values, line)
+
+    def fault(self, reason: str, line: int | None = None) -> DatasetFault:
+        """What to raise where this statement is wrong."""
+        return DatasetFault(line or self.statement.line, self.label, reason)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._found
+
+    def line(self, name: str) -> int:
+        """Where an argument stands; the statement's own line where it is missing."""
+        return self._found[name].line if name in self._found else self.statement.line
+
+    def ident(self) -> int:
+        """The statement's number."""
+        return _integer(self, self.statement.ident, "after the slash", self.statement.line)
+
+    def one_of(self, *words: str) -> str | None:
+        """Which of some words stands in the statement; None without any."""
+        found = [word for word in words if word in self]
+        if len(found) > 1:
+            raise self.fault(f"found {' and '.join(found)}, expected one of them", self.line(found[1]))
+        return found[0] if found else None
+
+    def text(self, name: str) -> str | None:
+        """An argument's value as written."""
+        return ", ".join(self._found[name].values) if name in self else None
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        """An argument's values as written; none where it is missing."""
+        return self._found[name].values if name in self else ()
+
+    def numbers(self, name: str, *counts: int) -> tuple[float, ...] | None:
+        """An argument's numbers, as many as one of `counts`; None where it is missing.  Degrees become radians."""
+        if name not in self:
+            return None
+        values = tuple(number(text) for text in self._found[name].values)
+        wanted = " or ".join(map(str, counts))
+        if None in values or (counts and len(values) not in counts):
+            raise self.fault(
+                f"found {name} = {quoted(self.text(name))}, expected {wanted or 'only'} numbers", self.line(name)
+            )
+        return tuple(value for value in values if value is not None)
+
+    def number(self, name: str) -> float | None:
+        """An argument's only number; None where it is missing."""
+        values = self.numbers(name, 1)
+        return None if values is None else values[0]
+
+    def idents(self, name: str, *counts: int) -> tuple[int, ...]:
+        """The numbers of statements that an argument names; none where it is missing."""
+        if name not in self:
+            return ()
+        found = tuple(_integer(self, text, name, self.line(name)) for text in self._found[name].values)
+        if counts and len(found) not in counts:
+            raise self.fault(
+                f"found {name} = {quoted(self.text(name))}, expected {' or '.join(map(str, counts))} numbers of statements",
+                self.line(name),
+            )
+        return found
+
+    def reference(self, name: str) -> int | None:
+        """The number of the one statement that an argument names; None where it is missing."""
+        found = self.idents(name, 1)
+        return found[0] if found else None
+
+    def required(self, name: str) -> int:
+        """As `reference`, of an argument that must not be missing."""
+        found = self.reference(name)
+        if found is None:
+            raise self.fault(f"found no {name}, expected {name} = the number of a statement")
+        return found
+
+
+def number(text: str) -> float | None:
+    """The number that a text is, in radians where a D for degrees follows it; None for any other text, and beyond all bounds."""
+    found = _NUMBER.fullmatch(text.replace(" ", ""))
+    if found is None:
+        return None
+    value = float(found[1].upper().replace("D", "E"))
+    if math.isinf(value):  # too many digits or too large an exponent
+        return None
+    return math.radians(value) if found[2] else value
+
+
+def _integer(arguments: Arguments, text: str, where: str, line: int) -> int:
+    if not re.fullmatch(r"\d{1,18}", text.strip()):
+        raise arguments.fault(f"found '{quoted(text)}' {where}, expected the number of a statement", line)
+    return int(text)

@@ -1,0 +1,229 @@
+"""Joints, motions and other constraints.  MSC Adams/Solver, JOINT, JPRIM, GCON, MOTION, COUPLER and GEAR statements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..functions.function import Function, required_function
+from .arguments import Arguments
+from .fault import DatasetFault
+from .text import Statement
+from .units import Units
+
+JOINT_KINDS = (
+    "REVOLUTE", "TRANSLATIONAL", "CYLINDRICAL", "SPHERICAL", "FIXED", "UNIVERSAL", "HOOKE", "PLANAR", "SCREW", "CONVEL",
+    "RACKPIN",
+)  # fmt: skip
+PRIMITIVES = ("ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
+COMPONENTS = ("X", "Y", "Z", "B1", "B2", "B3")
+ROTATIONAL, TRANSLATIONAL = "ROTATIONAL", "TRANSLATIONAL"
+Start = tuple[str, float, float | None]
+"""An initial condition of a joint."""
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """What a statement with a number is known by."""
+
+    ident: int
+    line: int
+    alias: str
+    keyword: str
+
+    @property
+    def label(self) -> str:
+        return f"{self.keyword}/{self.ident}"
+
+    @property
+    def name(self) -> str:
+        """Of what is made of it in the scene."""
+        return f"{self.keyword}_{self.ident}"
+
+    def fault(self, reason: str) -> DatasetFault:
+        """What to raise where the statement makes no sense in its dataset."""
+        return DatasetFault(self.line, self.label, reason)
+
+
+@dataclass(frozen=True)
+class Joint(Numbered):
+    """A joint or a primitive between two markers.
+
+    Attributes
+    ----------
+    kind : str
+        One of `JOINT_KINDS` or `PRIMITIVES`.
+    i, j : int
+        Markers.
+    pitch : float
+        Of a screw, m per turn.
+    diameter : float
+        Pitch diameter of a pinion, m.
+    start : tuple of (str, float, float or None)
+        Initial conditions: rotational or translational, displacement and velocity, rad or m, per s; None where no
+        velocity is given.
+    """
+
+    kind: str
+    i: int
+    j: int
+    pitch: float = 0.0
+    diameter: float = 0.0
+    start: tuple[Start, ...] = ()
+
+
+@dataclass(frozen=True)
+class GeneralConstraint(Numbered):
+    """An expression that stays zero; the reaction is asked for on a marker."""
+
+    function: Function
+    i: int | None
+
+
+@dataclass(frozen=True)
+class Motion(Numbered):
+    """A prescribed motion of a joint, or of one component between two markers.
+
+    Attributes
+    ----------
+    joint : int or None
+    sort : str or None
+        Rotational or translational, where it is said.
+    i, j : int or None
+    component : str or None
+        One of `COMPONENTS`.
+    order : int
+        Which derivative the function prescribes: 0, 1 or 2.
+    start : tuple of float
+        Initial displacement and velocity, in the dataset's units; None where they are not given.
+    """
+
+    function: Function
+    order: int
+    joint: int | None = None
+    sort: str | None = None
+    i: int | None = None
+    j: int | None = None
+    component: str | None = None
+    start: tuple[float | None, float | None] = (None, None)
+
+
+@dataclass(frozen=True)
+class Coupler(Numbered):
+    """Joint displacements times scales add up to zero; the scales are in SI."""
+
+    joints: tuple[int, ...]
+    sorts: tuple[str | None, ...]
+    scales: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Gear(Numbered):
+    """Two joints on one carrier whose parts have a common velocity at a marker, along its z axis."""
+
+    joints: tuple[int, int]
+    contact: int
+
+
+def read_joint(statement: Statement, units: Units) -> Joint:
+    """A joint between two markers."""
+    found = Arguments(statement, "JOINT", (*JOINT_KINDS, "I", "J", "PITCH", "PD", "IC", "ICROT", "ICTRAN"))
+    kind = found.one_of(*JOINT_KINDS)
+    if kind is None:
+        raise found.fault(f"found no kind of joint, expected one of {', '.join(JOINT_KINDS)}")
+    pitch, diameter = (found.number(name) for name in ("PITCH", "PD"))
+    for wanted, name, value in (("SCREW", "PITCH", pitch), ("RACKPIN", "PD", diameter)):
+        if kind == wanted and not value:
+            raise found.fault(f"found no {name}, expected a number other than zero", found.line(name))
+    starts = (_start(found, name, sort, units) for name, sort in _STARTS)
+    return Joint(
+        found.ident(), statement.line, statement.alias, "JOINT", kind, found.required("I"), found.required("J"),
+        (pitch or 0.0) * units.length, (diameter or 0.0) * units.length,
+        tuple(start for start in starts if start is not None),
+    )  # fmt: skip
+
+
+_STARTS = (("ICROT", ROTATIONAL), ("ICTRAN", TRANSLATIONAL), ("IC", ""))
+
+
+def _start(found: Arguments, name: str, sort: str, units: Units) -> Start | None:
+    values = found.numbers(name, 1, 2)
+    if values is None:
+        return None
+    if not sort:
+        sort = ROTATIONAL if "REVOLUTE" in found else TRANSLATIONAL
+    length = units.length if sort == TRANSLATIONAL else 1.0
+    velocity = values[1] * length / units.time if len(values) > 1 else None
+    return sort, values[0] * length, velocity
+
+
+def read_primitive(statement: Statement, units: Units) -> Joint:
+    """A joint primitive between two markers."""
+    found = Arguments(statement, "JPRIM", (*PRIMITIVES, "I", "J"))
+    kind = found.one_of(*PRIMITIVES)
+    if kind is None:
+        raise found.fault(f"found no kind of primitive, expected one of {', '.join(PRIMITIVES)}")
+    return Joint(
+        found.ident(), statement.line, statement.alias, "JPRIM", kind, found.required("I"), found.required("J")
+    )
+
+
+def read_general_constraint(statement: Statement, units: Units) -> GeneralConstraint:
+    """An expression that stays zero."""
+    found = Arguments(statement, "GCON", ("I", "FUNCTION"), ("FUNCTION",))
+    function = required_function(found, "FUNCTION")
+    return GeneralConstraint(found.ident(), statement.line, statement.alias, "GCON", function, found.reference("I"))
+
+
+_MOTION = (
+    "JOINT", "I", "J", *COMPONENTS, ROTATIONAL, TRANSLATIONAL, "DISPLACEMENT", "VELOCITY", "ACCELERATION", "ICDISP",
+    "ICVEL", "FUNCTION",
+)  # fmt: skip
+
+
+def read_motion(statement: Statement, units: Units) -> Motion:
+    """A prescribed motion."""
+    found = Arguments(statement, "MOTION", _MOTION, ("FUNCTION",))
+    component = found.one_of(*COMPONENTS)
+    order = found.one_of("DISPLACEMENT", "VELOCITY", "ACCELERATION") or "DISPLACEMENT"
+    joint, i, j = (found.reference(name) for name in ("JOINT", "I", "J"))
+    if joint is None and None in (i, j, component):
+        raise found.fault(f"found no JOINT, expected JOINT, or I and J with one of {', '.join(COMPONENTS)}")
+    return Motion(
+        found.ident(), statement.line, statement.alias, "MOTION", required_function(found, "FUNCTION"),
+        ("DISPLACEMENT", "VELOCITY", "ACCELERATION").index(order), joint, found.one_of(ROTATIONAL, TRANSLATIONAL),
+        i, j, component, (found.number("ICDISP"), found.number("ICVEL")),
+    )  # fmt: skip
+
+
+def read_coupler(statement: Statement, units: Units) -> Coupler:
+    """Two or three joints tied by a linear equation; without a first scale it is 1."""
+    found = Arguments(statement, "COUPLER", ("JOINTS", "TYPE", "SCALES", "FUNCTION", "ROUTINE"))
+    if "FUNCTION" in found:
+        raise found.fault("found FUNCTION, which is computed by a subroutine, expected SCALES", found.line("FUNCTION"))
+    joints = found.idents("JOINTS", 2, 3)
+    scales = found.numbers("SCALES", len(joints) - 1, len(joints))
+    if not joints or scales is None:
+        raise found.fault("found no JOINTS or no SCALES, expected two or three joints and their scales")
+    scales = (*(1.0,) * (len(joints) - len(scales)), *scales)
+    sorts = tuple(_sort(found, letter) for letter in (found.text("TYPE") or "").split(":") if letter.strip())
+    if sorts and len(sorts) != len(joints):
+        raise found.fault(f"found TYPE = {found.text('TYPE')}, expected T or R for every joint", found.line("TYPE"))
+    return Coupler(
+        found.ident(), statement.line, statement.alias, "COUPLER", joints, sorts or (None,) * len(joints), scales
+    )
+
+
+def _sort(found: Arguments, letter: str) -> str:
+    for sort in (ROTATIONAL, TRANSLATIONAL):
+        if sort.startswith(letter.strip().upper()):
+            return sort
+    raise found.fault(f"found TYPE = {found.text('TYPE')}, expected T or R for every joint", found.line("TYPE"))
+
+
+def read_gear(statement: Statement, units: Units) -> Gear:
+    """A pair of gears, of any mix of revolute, translational and cylindrical joints."""
+    found = Arguments(statement, "GEAR", ("JOINTS", "J1", "J2", "CV"))
+    joints = found.idents("JOINTS", 2) or (*found.idents("J1", 1), *found.idents("J2", 1))
+    if len(joints) != 2:
+        raise found.fault("found no JOINTS, expected the two joints that the gear ties")
+    return Gear(found.ident(), statement.line, statement.alias, "GEAR", (joints[0], joints[1]), found.required("CV"))

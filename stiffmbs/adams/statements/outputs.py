@@ -1,0 +1,116 @@
+"""Requests, variables, arrays and splines.  MSC Adams/Solver, REQUEST, VARIABLE, ARRAY and SPLINE statements."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+from ..functions.function import Function, is_subroutine, read_function, required_function
+from .arguments import Arguments
+from .constraints import Numbered
+from .text import Statement
+from .units import Units
+
+SORTS = ("DISPLACEMENT", "VELOCITY", "ACCELERATION", "FORCE")
+COLUMNS = tuple(f"F{k}" for k in range(1, 9))
+FUNCTIONS = (*COLUMNS, "FUNCTION")
+
+
+@dataclass(frozen=True)
+class Request(Numbered):
+    """Quantities to report.
+
+    Attributes
+    ----------
+    sort : str or None
+        One of `SORTS`, between markers `i` and `j` (ground where it is None), in the axes of marker `axes` (or ground).
+    functions : tuple of (str, Function)
+        By column (or FUNCTION), in place of those.
+    computed : tuple of str
+        The columns that a user's own subroutine computes, which are left out.
+    names : tuple of str
+        Of the columns, where the statement gives any.
+    comment : str
+    """
+
+    sort: str | None
+    i: int | None
+    j: int | None
+    axes: int | None
+    functions: tuple[tuple[str, Function], ...]
+    computed: tuple[str, ...]
+    names: tuple[str, ...]
+    comment: str
+
+
+@dataclass(frozen=True)
+class Variable(Numbered):
+    """A named expression."""
+
+    function: Function
+
+
+@dataclass(frozen=True)
+class Spline(Numbered):
+    """Points of a curve, in the dataset's units, the arguments increasing."""
+
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    lines_outside: bool
+
+
+@dataclass(frozen=True)
+class Array(Numbered):
+    """A list of numbers."""
+
+    numbers: tuple[float, ...]
+
+
+_REQUEST = (
+    *SORTS, "I", "J", "RM", "COMMENT", *COLUMNS, "FUNCTION", "TITLE", "CNAMES", "CUNITS", "RESULTS_NAME",
+    "ROUTINE",
+)  # fmt: skip
+
+
+def read_request(statement: Statement, units: Units) -> Request:
+    """Quantities to report: displacements, velocities, accelerations or forces between markers, or functions."""
+    found = Arguments(statement, "REQUEST", _REQUEST, FUNCTIONS)
+    sort = found.one_of(*SORTS)
+    i, j, axes = (found.reference(name) or None for name in ("I", "J", "RM"))
+    computed = tuple(column for column in FUNCTIONS if is_subroutine(found, column))
+    read = {column: read_function(found, column) for column in FUNCTIONS if column not in computed}
+    functions = tuple((column, function) for column, function in read.items() if function is not None)
+    if sort is None and not functions and not computed:
+        raise found.fault(f"found no quantity, expected one of {', '.join(SORTS)} or {COLUMNS[1]} = an expression")
+    if sort is not None and i is None:
+        raise found.fault(f"found no I, expected the marker whose {sort.lower()} is asked for")
+    return Request(
+        found.ident(), statement.line, statement.alias, "REQUEST", sort, i, j, axes,
+        functions, computed, tuple(text.strip().strip("\"'") for text in found.texts("CNAMES")), found.text("COMMENT") or "",
+    )  # fmt: skip
+
+
+def read_variable(statement: Statement, units: Units) -> Variable:
+    """A named expression; its initial value is needed by an iteration that has no place here."""
+    found = Arguments(statement, "VARIABLE", ("IC", "FUNCTION"), ("FUNCTION",))
+    function = required_function(found, "FUNCTION")
+    return Variable(found.ident(), statement.line, statement.alias, "VARIABLE", function)
+
+
+def read_spline(statement: Statement, units: Units) -> Spline:
+    """A curve by points."""
+    found = Arguments(statement, "SPLINE", ("X", "Y", "LINEAR_EXTRAPOLATE", "FILE", "BLOCK", "CHANNEL"))
+    if "FILE" in found:
+        raise found.fault("found FILE, expected the points in X and Y", found.line("FILE"))
+    x, y = found.numbers("X"), found.numbers("Y")
+    if x is None or y is None or len(x) != len(y):
+        raise found.fault(f"found {len(x or ())} X and {len(y or ())} Y, expected as many of each")
+    if len(x) < 4 or any(after <= before for before, after in itertools.pairwise(x)):
+        raise found.fault("found less than four X or such that do not increase, expected four or more increasing ones")
+    return Spline(found.ident(), statement.line, statement.alias, "SPLINE", x, y, "LINEAR_EXTRAPOLATE" in found)
+
+
+def read_array(statement: Statement, units: Units) -> Array:
+    """A list of numbers; arrays of states, inputs and outputs belong to statements that are not read."""
+    found = Arguments(statement, "ARRAY", ("IC", "SIZE", "NUMBERS", "X", "Y", "U", "VARIABLES"))
+    return Array(found.ident(), statement.line, statement.alias, "ARRAY", found.numbers("NUMBERS") or ())

@@ -1,0 +1,163 @@
+"""The text of a dataset as statements: title, comments, continuation lines, END.
+
+The first line is the title.  ``!`` starts a comment, ``,`` at the start of a line (or ``&`` at the end of the line
+before) continues a statement, ``;`` ends one, and nothing counts after END.  The commas of the outermost level cut a
+statement into pieces; ``\\`` ends a function.  MSC Adams/Solver, "Using statements to define your model".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ...describe.files.text_file import lines
+
+_HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:/\s*((?:\w+(?=\s*(?:[,\x00]|\Z)))?))?\s*(.*)", re.DOTALL)
+"""The name, the number after the slash where there is one, and the rest."""
+_ALIAS = re.compile(r"!\s*adams_view_name\s*=\s*'([^']*)'", re.IGNORECASE)
+_TWO_VALUES = re.compile(r"[\w.)]\s*\x00\s*[\w.]|[\d.)]\s*\x00\s*\(")
+_LINE_COMMA = "\x00"
+"""Stands for a comma that starts a continuation line: it parts arguments, but not the terms of a function."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a statement between two of its outermost commas.
+
+    Attributes
+    ----------
+    text : str
+    line : int
+        Where it starts in the file.
+    on_new_line : bool
+        Whether its comma is the first sign of a continuation line.
+    ended : bool
+        Whether a backslash ended it.
+    """
+
+    text: str
+    line: int
+    on_new_line: bool = False
+    ended: bool = False
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement as written.
+
+    Attributes
+    ----------
+    word : str
+        What stands before the slash, in capitals.
+    ident : str
+        What stands after it.
+    pieces : tuple of Piece
+    line : int
+    alias : str
+        The name in Adams/View, where a comment before the statement tells it.
+    """
+
+    word: str
+    ident: str
+    pieces: tuple[Piece, ...]
+    line: int
+    alias: str = ""
+
+
+def statements(text: str) -> tuple[str, tuple[Statement, ...], bool]:
+    """The title, the statements in their order, and whether END was found."""
+    title, *rest = lines(text) or [""]
+    found, ended = _statements(rest, 2)
+    return title.strip(), found, ended
+
+
+def untitled(text: str) -> tuple[tuple[Statement, ...], bool]:
+    """The statements of a dataset whose title is missing, and whether END was found."""
+    return _statements(lines(text), 1)
+
+
+def commands(text: str) -> tuple[Statement, ...]:
+    """The commands of a command file, which has no title."""
+    return _statements(lines(text), 1)[0]
+
+
+def _statements(texts: list[str], first: int) -> tuple[tuple[Statement, ...], bool]:
+    """The statements of lines that count from a first number, and whether END was found."""
+    found: list[Statement] = []
+    open_lines: list[tuple[int, str]] = []
+    alias = next_alias = ""
+    joined = False
+    for number, line in enumerate(texts, start=first):
+        alias_here = _ALIAS.search(line)
+        if alias_here:
+            next_alias = alias_here[1]
+        for k, part in enumerate(_uncommented(line).split(";")):
+            if not part.strip():
+                continue
+            continues = joined or (k == 0 and part.lstrip().startswith(","))
+            if not continues:
+                found += _made(open_lines, alias)
+                open_lines, alias, next_alias = [], next_alias, ""
+                if re.fullmatch(r"\s*END\s*", part, re.IGNORECASE):
+                    return tuple(found), True
+            if continues and not joined:
+                part = _LINE_COMMA + part.lstrip()[1:]
+            joined = part.rstrip().endswith("&")
+            open_lines.append((number, part.rstrip().removesuffix("&") if joined else part))
+    return (*found, *_made(open_lines, alias)), False
+
+
+def _uncommented(line: str) -> str:
+    """A line without its comment; an exclamation mark between double quotes is none."""
+    quoted = False
+    for k, sign in enumerate(line):
+        if sign == '"' and (quoted or '"' in line[k + 1 :]):
+            quoted = not quoted
+        if sign == "!" and not quoted:
+            return line[:k]
+    return line
+
+
+def _made(parts: list[tuple[int, str]], alias: str) -> Iterator[Statement]:
+    if not parts:
+        return
+    text = "\n".join(part for _, part in parts)
+    head = _HEAD.match(text)
+    first = parts[0][0]
+    if head is None:
+        yield Statement(re.sub(rf"[\s{_LINE_COMMA}]+", " ", text).strip()[:20], "", (), first, alias)
+        return
+    start = head.start(3)
+    numbers = [number for number, part in parts for _ in range(len(part) + 1)]
+    yield Statement(
+        head[1].upper(), head[2] or "", tuple(_pieces(text[start:], numbers[start:] or [first])), first, alias
+    )
+
+
+def _pieces(text: str, numbers: list[int]) -> Iterator[Piece]:
+    """The parts of a statement between the commas of its outermost level."""
+    depth, start, on_new_line, quoted = 0, 0, False, False
+    for k, sign in enumerate(text + ","):
+        if sign == '"':
+            quoted = not quoted
+        if quoted and k < len(text):
+            continue
+        depth += (sign == "(") - (sign == ")")
+        outermost = depth <= 0 or k == len(text)
+        if sign in (",", _LINE_COMMA, "\\") and outermost:
+            yield from _piece(text[start:k], numbers[start:], on_new_line, sign == "\\")
+            start, on_new_line = k + 1, sign == _LINE_COMMA
+
+
+def _piece(text: str, numbers: list[int], on_new_line: bool, ended: bool) -> Iterator[Piece]:
+    """One part, unless it is empty: its line, and its text with continuation lines joined."""
+    before = len(text) - len(text.lstrip())
+    joined = re.sub(r"\s+", " ", _without_line_commas(text)).strip()
+    if joined or ended:
+        yield Piece(joined, numbers[min(before, len(numbers) - 1)], on_new_line, ended)
+
+
+def _without_line_commas(text: str) -> str:
+    """A function's arguments that stand on several lines: the comma of a new line counts where two values meet."""
+    return _TWO_VALUES.sub(lambda found: found[0].replace(_LINE_COMMA, ","), text).replace(_LINE_COMMA, " ")

@@ -1,0 +1,1 @@
+"""The commands of ``stiffmbs``, one file each."""

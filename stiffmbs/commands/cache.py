@@ -1,0 +1,65 @@
+"""The command ``stiffmbs cache``."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import click
+
+from ..compile.machine.cache import DIRECTORY_VARIABLE, KERNEL, RECORD, ROUTINE, cache_directory
+
+WORDS = {RECORD: "derived kinds", KERNEL: "kernels", ROUTINE: "routines", "other": "of other versions or machines"}
+
+
+@click.group()
+def cache() -> None:
+    """Show, clear or fill the cache of compiled equations.
+
+    It lies in the user's cache directory, or where the variable STIFFMBS_CACHE says, and can be removed at any time.
+    """
+
+
+@cache.command()
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+def show(as_json: bool) -> None:
+    """Say where the cache lies and what it holds."""
+    from ..compile.machine.cache_contents import stored
+
+    found = stored()
+    if as_json:
+        kinds = {kind: {"entries": own.entries, "bytes": own.size} for kind, own in found.items()}
+        click.echo(json.dumps({"directory": str(cache_directory()), **kinds}))
+        return
+    click.echo(f"{cache_directory()}  (chosen by {DIRECTORY_VARIABLE}, or the user's cache directory)")
+    for kind, own in found.items():
+        click.echo(f"  {WORDS[kind]:30} {own.entries:6} entries {own.size / 1e6:9.2f} MB")
+
+
+@cache.command()
+def clear() -> None:
+    """Remove all entries; the next runs compile anew."""
+    from ..compile.machine.cache_contents import clear as cleared
+
+    try:
+        removed = cleared()
+    except OSError as error:
+        click.echo(f"stiffmbs: {cache_directory()}: {error.strerror}", err=True)
+        sys.exit(1)
+    click.echo(f"removed {removed.entries} entries, {removed.size / 1e6:.2f} MB, from {cache_directory()}")
+
+
+@cache.command(short_help="Compile all usual elements and all solvers ahead.")
+def warm() -> None:
+    """Compile all kinds of elements in their usual forms and all solvers, so that first runs need not wait."""
+    from ..compile.machine.cache_contents import stored
+    from ..jobs.warm import warm as fill
+
+    fill()
+    own = [found for kind, found in stored().items() if kind in (RECORD, KERNEL, ROUTINE)]
+    if not any(found.entries for found in own):
+        click.echo(f"stiffmbs: {cache_directory()} cannot be written to: nothing is kept", err=True)
+        sys.exit(1)
+    click.echo(
+        f"{sum(found.entries for found in own)} entries, {sum(found.size for found in own) / 1e6:.2f} MB, in {cache_directory()}"
+    )

@@ -1,0 +1,132 @@
+"""The command as a process: signals, memory, and a standard output that is full or closed, each without a traceback."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import signal
+import sys
+import threading
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import click
+
+from ..describe.files.quoted import quoted
+from ..interrupts import INTERRUPTED
+
+FAILED = 1
+OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
+ASKING_TO_END = ("SIGINT", "SIGTERM")
+STANDARD_FILES = (0, 1, 2)
+
+
+class Process(click.Group):
+    """A group of commands that ends with an exit status and a sentence, whatever happens.
+
+    SIGTERM does what Ctrl-C does: a run that has begun keeps its results, with exit status 1; anything else ends with 130.
+    """
+
+    def main(self, *arguments: Any, **options: Any) -> Any:
+        """Run the command that is asked for; see `click.Command.main`."""
+        closed = _with_standard_files()
+        with _signals(), warnings.catch_warnings():
+            # Numbers that overflow are told where they end up, in sentences.
+            warnings.simplefilter("ignore", RuntimeWarning)
+            try:
+                status = _status(lambda: super(Process, self).main(*arguments, **{**options, "standalone_mode": False}))
+            finally:
+                written = _flushed()
+        if closed:
+            _tell("standard output is closed: nothing is shown")
+        sys.exit(status or (0 if written and not closed else FAILED))
+
+
+def _status(command: Any) -> int:
+    """The exit status of a command; a sentence is told for what went wrong."""
+    try:
+        ended = command()
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 0 if end.code is None else FAILED
+    except click.exceptions.Exit as end:
+        return end.exit_code
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except (KeyboardInterrupt, click.Abort):
+        _tell("interrupted")
+        return INTERRUPTED
+    except MemoryError:
+        _tell("found too little memory, expected more, or a smaller scene with fewer output points")
+        return FAILED
+    except OSError as error:
+        _tell(_reason(error))
+        return FAILED
+    return ended if isinstance(ended, int) else 0
+
+
+def _reason(error: OSError) -> str:
+    if error.errno == errno.ENOMEM:
+        return "found too little memory, expected more, or a smaller scene with fewer output points"
+    if error.filename is None and error.errno in OF_OUTPUT:
+        return f"standard output: cannot be written ({error.strerror})"
+    where = f"{quoted(str(error.filename))}: " if error.filename is not None else ""
+    return f"{where}found an error of the operating system ({quoted(error.strerror or str(error))})"
+
+
+def _tell(sentence: str) -> None:
+    with contextlib.suppress(OSError, ValueError):
+        click.echo(f"stiffmbs: {sentence}", err=True)
+
+
+def _with_standard_files() -> bool:
+    """Let no file that is opened later take the place of a standard one; whether standard output is closed."""
+    closed = sys.stdout is None
+    if not closed and sys.stdout is not sys.__stdout__:  # a test's, or another program's
+        return False
+    for number in STANDARD_FILES:
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)
+    if closed:
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 as long as the process
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    return closed
+
+
+def _flushed() -> bool:
+    """Whether all that was printed has been written; what cannot be is given up, so that the interpreter doesn't try again."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        pass
+    except OSError as error:
+        _tell(f"standard output: cannot be written ({error.strerror})")
+    except ValueError:
+        return True
+    else:
+        return True
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return False
+
+
+@contextlib.contextmanager
+def _signals() -> Iterator[None]:
+    """Let requests to end interrupt a command; after it, as its process ends, they are of no use any more."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    numbers = [getattr(signal, name) for name in ASKING_TO_END if hasattr(signal, name)]
+    before = [signal.signal(number, signal.default_int_handler) for number in numbers]
+    try:
+        yield
+    finally:
+        own = sys.stdout is sys.__stdout__
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, signal.SIG_IGN if own else handler)

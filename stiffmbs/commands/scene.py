@@ -1,0 +1,119 @@
+"""What commands on a scene share: options that change it, solving it, refusing it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+import click
+
+from ..describe.files.text_file import STANDARD_INPUT, source_name
+from ..describe.scene import Scene
+from ..errors import AssemblyError, InputError, StiffmbsError
+
+if TYPE_CHECKING:
+    from ..results.solution import Solution
+
+WRONG_INPUT, STOPPED_EARLY = 2, 1
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def _pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, str]]:
+    pairs = []
+    for value in values:
+        path, equals, text = value.partition("=")
+        if not equals or not path:
+            raise click.BadParameter(f"found '{value}', expected PATH=VALUE such as bodies.cart.mass=12")
+        pairs.append((path.strip(), text))
+    return pairs
+
+
+CHANGES = click.option(
+    "--set",
+    "changes",
+    multiple=True,
+    callback=_pairs,
+    metavar="PATH=VALUE",
+    help="Change a value of the scene, such as bodies.cart.mass=12, or a parameter, N=40; any number of times.",
+)
+
+
+def solving_options(command: Command) -> Command:
+    """The options ``--rtol``, ``--duration``, ``--solver`` and ``--set`` of a command; see `changes_of`."""
+    options = (
+        click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
+        click.option("--duration", help="Time to solve, s, or with a unit."),
+        click.option("--solver", help="bdf, projected, kinematic or auto."),
+        CHANGES,
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def changes_of(options: dict[str, Any]) -> list[tuple[str, str]]:
+    """All changes that the options of `solving_options` ask for, as paths and values."""
+    chosen = [(f"run.{name}", options[name]) for name in ("rtol", "duration", "solver")]
+    return options["changes"] + [(path, value) for path, value in chosen if value is not None]
+
+
+def solve_scene(path: str, scene: Scene, verified: bool) -> Solution:
+    """Solve a scene with a progress bar.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        The latter names the file.
+    """
+    from .progress import ProgressBar
+
+    if verified:
+        from ..verification.verify import verify as solve
+    else:
+        from ..jobs.run import run as solve
+    start = scene.run.start
+    with in_file(path), ProgressBar(start, start + scene.run.duration) as progress:
+        return solve(scene, watch=progress)
+
+
+@contextmanager
+def in_file(path: str) -> Iterator[None]:
+    """Put the file's name before what is found wrong with a scene after it was read."""
+    try:
+        yield
+    except (InputError, AssemblyError) as error:
+        raise type(error)(f"{source_name(path)}: {error}") from None
+
+
+def refuse_own_input(option: str, scene: str, output: Path) -> None:
+    """Refuse to write over the file that is read, by whatever name it is called.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        same = scene != STANDARD_INPUT and os.path.samefile(scene, output)
+    except (OSError, ValueError):  # one of them is not there
+        return
+    if same:
+        raise InputError(f"{option} {output}: found the file that is read, {scene}, expected another one")
+
+
+def file_beside(scene: str, ending: str) -> Path:
+    """Where a command writes that is not told where: a file in the working folder, named after the scene."""
+    return Path(f"{'stdin' if scene == STANDARD_INPUT else Path(scene).stem}{ending}")
+
+
+def refuse(scene: str, error: StiffmbsError, as_json: bool = False) -> NoReturn:
+    """End the command with one sentence on what is wrong with the input."""
+    from ..show.summary import error_as_json
+
+    if as_json:
+        click.echo(error_as_json(scene, str(error)))
+    click.echo(f"stiffmbs: {error}", err=True)
+    sys.exit(WRONG_INPUT)

@@ -1,0 +1,1 @@
+"""Inputs over time: where they have features, where they end."""

@@ -1,0 +1,82 @@
+"""Instants at which an input begins, ends or bends: integrators stop there and start anew.
+
+At rest a BDF code takes ever longer steps and would jump over a short pulse without seeing it; a step across a corner
+loses its order.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
+from ...describe.formula.field import TIME, reading_order
+from ...errors import InputError
+from .of_time import Input
+from .zeros import AT_ONCE, ZERO, TooMany, zeros
+
+APART = 1e-12
+"""Part of the times themselves by which two corners differ at the least."""
+
+
+def corner_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
+    """The corners in time of some inputs, strictly between start and end, in order.
+
+    Parameters
+    ----------
+    inputs : sequence of Input
+    start, end : float
+        s.
+    """
+    found = np.concatenate([np.empty(0), *(times for each in inputs for times in _of_input(each, start, end))])
+    found = np.sort(found[(found > start) & (found < end)])
+    apart = APART * max(abs(start), abs(end), 1e-300)
+    return found[np.diff(found, prepend=-np.inf) > apart]
+
+
+def _of_input(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
+    try:
+        yield from _passages(given, start, end)
+    except TooMany as error:
+        raise InputError(f"'{given.text}': {error}") from None
+
+
+def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
+    seen = set()
+    for node in reading_order(given.tree):
+        for condition, levels in _conditions(given, node, start, end):
+            key = ast.dump(condition), levels.tobytes()
+            if (
+                key in seen
+                or not len(levels)
+                or not any(isinstance(part, ast.Name) and part.id == TIME for part in ast.walk(condition))
+            ):
+                continue
+            seen.add(key)
+            values, ranges = partial(given.at, part=condition), partial(given.within, part=condition)
+            yield zeros(values, ranges, start, end, levels)
+
+
+def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Iterator[tuple[ast.expr, np.ndarray]]:
+    """What passes a level at the corners of a function (as `stiffmbs.compile.symbolic.symbols.CORNERED` says for the state)."""
+    match node:
+        case ast.Call(ast.Name("abs" | "sign"), [x]) | ast.Call(ast.Name("branch"), [x, _, _, _]):
+            yield x, ZERO
+        case ast.Call(ast.Name("min" | "max"), [first, *others]):
+            for k, other in enumerate(others):
+                before = ast.Call(node.func, [first, *others[:k]], []) if k else first
+                yield ast.BinOp(before, ast.Sub(), other), ZERO
+        case ast.Call(ast.Name("step" | "step5"), [x, x0, _, x1, _]):
+            yield from ((ast.BinOp(x, ast.Sub(), end_of_ramp), ZERO) for end_of_ramp in (x0, x1))
+        case ast.Call(ast.Name(name), [argument]) if name in given.tables:
+            yield argument, given.tables[name].corners_between(*_range(given, argument, start, end))
+
+
+def _range(given: Input, part: ast.expr, start: float, end: float) -> tuple[float, float]:
+    """Bounds of a part of an input."""
+    edges = np.linspace(start, end, AT_ONCE + 1)
+    with np.errstate(all="ignore"):
+        low, high = given.within(edges[:-1], edges[1:], part=part).value
+    return float(np.nanmin(low, initial=np.inf)), float(np.nanmax(high, initial=-np.inf))

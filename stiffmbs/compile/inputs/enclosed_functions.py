@@ -1,0 +1,147 @@
+"""Enclosures of the functions that formulas may call."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...describe.formula.value import step5_value, step_value
+from .enclosure import Enclosure, absolute, atan2, branch, exp, log, maximum, minimum, scaled, sign
+from .ranges import EVERYWHERE, Range, between_turns, hull, power_range, product, real_power_range, wave
+
+FACTORIALS = (1.0, 1.0, 2.0, 6.0)
+
+
+def _turned(phase: float) -> Callable[[Enclosure], Enclosure]:
+    """The cosine wave with a top at `phase`; each derivative is the wave a quarter of a turn before."""
+    return lambda x: x.composed(lambda k: wave(x.value, phase - k * np.pi / 2) / FACTORIALS[k])
+
+
+sin, cos = _turned(np.pi / 2), _turned(0.0)
+
+
+def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
+    """cosh or sinh; their derivatives are each other."""
+
+    def of(x: Enclosure) -> Enclosure:
+        def outer(k: int) -> Range:
+            return (between_turns(np.cosh, x.value, (0.0,)) if even == (k % 2 == 0) else np.sinh(x.value)) / FACTORIALS[
+                k
+            ]
+
+        return x.composed(outer)
+
+    return of
+
+
+def tanh(x: Enclosure) -> Enclosure:
+    """T' = 1 - T^2, T''/2 = -T T', T'''/6 = -T' (1 - 3 T^2)/3."""
+    T = np.tanh(x.value)
+    rate = between_turns(lambda z: 1 / np.cosh(z) ** 2, x.value, (0.0,))
+
+    def outer(k: int) -> Range:
+        third = scaled(1 / 3, 3 * power_range(T, 2) - 1)
+        return (T, rate, -product(T, rate)[::-1], product(rate, third))[k]
+
+    return x.composed(outer)
+
+
+def atan(x: Enclosure) -> Enclosure:
+    """With D = 1/(1 + x^2): D, -x D^2, (4 x^2 D - 1) D^2 / 3 ... of a circle's angle."""
+
+    def outer(k: int) -> Range:
+        if k == 0:
+            return np.arctan(x.value)
+        # x = tan(a): the derivatives are cos^2 a, -sin a cos^3 a, -(1 - 4 sin^2 a) cos^4 a / 3, which turn at fixed angles
+        angle = np.arctan(x.value)
+        return (
+            lambda: between_turns(lambda a: np.cos(a) ** 2, angle, (0.0,)),
+            lambda: between_turns(lambda a: -np.sin(a) * np.cos(a) ** 3, angle, (-np.pi / 6, np.pi / 6)),
+            lambda: between_turns(
+                lambda a: (4 * np.sin(a) ** 2 - 1) * np.cos(a) ** 4 / 3, angle, (-np.pi / 4, 0.0, np.pi / 4)
+            ),
+        )[k - 1]()
+
+    return x.composed(outer)
+
+
+def asin(x: Enclosure) -> Enclosure:
+    """With P = 1 - x^2: P^(-1/2), x P^(-3/2)/2, (1 + 2 x^2) P^(-5/2)/6."""
+    inside = np.clip(x.value, -1.0, 1.0)
+    squared = power_range(inside, 2)
+    P = 1.0 - squared[::-1]
+
+    def outer(k: int) -> Range:
+        if k == 0:
+            return np.where((x.value[1] < -1) | (x.value[0] > 1), np.nan, np.arcsin(inside))
+        if k == 1:
+            return real_power_range(P, -0.5)
+        if k == 2:
+            return product(inside / 2, real_power_range(P, -1.5))
+        return product((1 + 2 * squared) / 6, real_power_range(P, -2.5))
+
+    return x.composed(outer)
+
+
+def _step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any, value: Callable[..., Any], ramp: Callable[..., Enclosure]) -> Any:
+    z = (x - x0) / (x1 - x0)
+    return h0 + (h1 - h0) * (ramp(z) if isinstance(z, Enclosure) else value(z, 0.0, 0.0, 1.0, 1.0))
+
+
+def _within(z: Range) -> tuple[Range, np.ndarray, np.ndarray]:
+    """The part of a range between 0 and 1, whether it holds one of these, and whether it is beyond them."""
+    inside = np.clip(z, 0.0, 1.0)
+    beyond = (z[1] <= 0) | (z[0] >= 1)
+    return inside, ((z[0] < 0) | (z[1] > 1)) & ~beyond, beyond
+
+
+def _cubic_ramp(z: Enclosure) -> Enclosure:
+    """z^2 (3 - 2 z) between 0 and 1; its second derivative jumps at both."""
+    inside, crosses, beyond = _within(z.value)
+
+    def outer(k: int) -> Range:
+        if k == 0:
+            return inside**2 * (3 - 2 * inside)
+        if k == 1:
+            return between_turns(lambda y: 6 * y * (1 - y), inside, (0.5,))
+        curved = 3 - 6 * inside[::-1] if k == 2 else np.where(crosses, EVERYWHERE, -2.0)
+        return np.where(beyond, 0.0, np.where(crosses, hull(curved, np.zeros_like(inside)), curved))
+
+    return z.composed(outer)
+
+
+def _quintic_ramp(z: Enclosure) -> Enclosure:
+    """z^3 (10 - 15 z + 6 z^2) between 0 and 1; its third derivative jumps at both."""
+    inside, crosses, beyond = _within(z.value)
+    turn = np.sqrt(3) / 6
+
+    def outer(k: int) -> Range:
+        if k == 0:
+            return inside**3 * (10 - 15 * inside + 6 * inside**2)
+        if k == 1:
+            return between_turns(lambda y: 30 * (y * (1 - y)) ** 2, inside, (0.5,))
+        if k == 2:
+            return between_turns(lambda y: 30 * y * (1 - y) * (1 - 2 * y), inside, (0.5 - turn, 0.5 + turn))
+        bent = between_turns(lambda y: 10 * (1 - 6 * y + 6 * y * y), inside, (0.5,))
+        return np.where(beyond, 0.0, np.where(crosses, hull(bent, np.zeros_like(inside)), bent))
+
+    return z.composed(outer)
+
+
+def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    return _step(x, x0, h0, x1, h1, step_value, _cubic_ramp)
+
+
+def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    return _step(x, x0, h0, x1, h1, step5_value, _quintic_ramp)
+
+
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "sin": sin, "cos": cos, "tan": lambda x: sin(x) / cos(x), "sqrt": lambda x: x**0.5, "exp": exp, "log": log,
+    "sinh": _hyperbolic(False), "cosh": _hyperbolic(True), "tanh": tanh, "atan": atan, "asin": asin,
+    "acos": lambda x: np.pi / 2 - asin(x), "atan2": atan2, "abs": absolute, "sign": sign,
+    "min": minimum, "max": maximum, "step": step, "step5": step5, "branch": branch,
+}  # fmt: skip
+"""The functions of formulas."""

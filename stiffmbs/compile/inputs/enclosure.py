@@ -1,0 +1,250 @@
+"""Ranges of a formula and of its Taylor coefficients over many stretches of time at once, so that nothing in it is missed.
+
+Interval arithmetic with forward differentiation: Moore, Kearfott, Cloud, Introduction to Interval Analysis (2009),
+chapters 2, 6 and 9.  Ends are not rounded outwards; a range that overlooks zero by rounding overlooks it by as much.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .ranges import (  # fmt: skip
+    EVERYWHERE,
+    Range,
+    around_zero,
+    hull,
+    power_range,
+    product,
+    real_binomial,
+    real_power_range,
+    total,
+)
+
+ROUNDING = 1e-15
+"""Of a value at the middle of a stretch."""
+Outer = Callable[[int], Range]
+"""The range of the k-th Taylor coefficient of a function of one variable, over the range of that."""
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """Where a formula's values and its derivatives in time lie, stretch by stretch; infinite where there is no bound.
+
+    Attributes
+    ----------
+    coefficients : tuple of ndarray, shape (2, n)
+        Ranges of f, f', f''/2, f'''/6, ... ; those that are left out are zero.
+    order : int
+        The highest that is computed.
+    """
+
+    coefficients: tuple[Range, ...]
+    order: int = 1
+
+    __array_ufunc__ = None  # numpy's numbers leave arithmetic with an enclosure to it
+
+    @classmethod
+    def of_time(cls, low: np.ndarray, high: np.ndarray, order: int = 1) -> Enclosure:
+        """Time itself."""
+        return cls((np.array([low, high]), np.ones((2, len(low)))), order)
+
+    @property
+    def value(self) -> Range:
+        """Where the values lie."""
+        return self.coefficients[0]
+
+    @property
+    def slope(self) -> Range:
+        """Where the slopes lie."""
+        return self[1]
+
+    def __getitem__(self, k: int) -> Range:
+        """The range of the k-th coefficient, also of one that is left out."""
+        return self.coefficients[k] if k < len(self.coefficients) else np.zeros_like(self.value)
+
+    def constant(self, value: Any) -> Enclosure:
+        """A number as an enclosure like this one; an enclosure as it is."""
+        if isinstance(value, Enclosure):
+            return value
+        return Enclosure((np.full_like(self.value, float(value)),), self.order)
+
+    def __neg__(self) -> Enclosure:
+        return Enclosure(tuple(-c[::-1] for c in self.coefficients), self.order)
+
+    def __pos__(self) -> Enclosure:
+        return self
+
+    def __add__(self, other: Any) -> Enclosure:
+        if not isinstance(other, Enclosure):
+            return Enclosure((self.value + float(other), *self.coefficients[1:]), self.order)
+        long, short = sorted((self.coefficients, other.coefficients), key=len, reverse=True)
+        added = tuple(total(a, b) for a, b in zip(long, short, strict=False))
+        return Enclosure((*added, *long[len(short) :]), self.order)
+
+    def __sub__(self, other: Any) -> Enclosure:
+        return self + -other
+
+    def __mul__(self, other: Any) -> Enclosure:
+        if not isinstance(other, Enclosure):
+            factor = float(other)
+            ordered = slice(None, None, 1 if factor >= 0 else -1)
+            scaled = (c[ordered] * factor if factor else np.zeros_like(c) for c in self.coefficients)
+            return Enclosure(tuple(scaled), self.order)
+        a, b = self.coefficients, other.coefficients
+        found = []
+        for k in range(min(self.order + 1, len(a) + len(b) - 1)):
+            pairs = [(a[i], b[k - i]) for i in range(len(a)) if 0 <= k - i < len(b)]
+            found.append(total(*(product(x, y) for x, y in pairs)))
+        return Enclosure(tuple(found), self.order)
+
+    def __truediv__(self, other: Any) -> Enclosure:
+        return self * (other**-1.0 if isinstance(other, Enclosure) else np.float64(1.0) / other)
+
+    def __pow__(self, power: Any) -> Enclosure:
+        if isinstance(power, Enclosure):
+            if len(power.coefficients) > 1 or np.any(power.value != power.value[0, 0]):
+                return exp(log(self) * power)
+            power = float(power.value[0, 0])
+        range_of = power_range if power == int(power) else real_power_range
+        return self.composed(lambda k: scaled(real_binomial(power, k), range_of(self.value, power - k)))
+
+    def __radd__(self, other: Any) -> Enclosure:
+        return self + other
+
+    def __rsub__(self, other: Any) -> Enclosure:
+        return -self + other
+
+    def __rmul__(self, other: Any) -> Enclosure:
+        return self * other
+
+    def __rtruediv__(self, other: Any) -> Enclosure:
+        return self**-1.0 * other
+
+    def __rpow__(self, other: Any) -> Enclosure:
+        return exp(self * np.log(other)) if other > 0 else self.constant(other) ** self
+
+    def composed(self, outer: Outer) -> Enclosure:
+        """A function of this one, by the ranges of its Taylor coefficients (Faa di Bruno's formula up to the third)."""
+        if len(self.coefficients) == 1:
+            return Enclosure((outer(0),), self.order)
+        found = [outer(0)]
+        u = [self[k] for k in range(self.order + 1)]
+        if self.order >= 1:
+            found.append(product(outer(1), u[1]))
+        if self.order >= 2:
+            squared = power_range(u[1], 2)
+            found.append(total(product(outer(1), u[2]), product(outer(2), squared)))
+        if self.order >= 3:
+            mixed = 2.0 * product(outer(2), product(u[1], u[2]))
+            found.append(total(product(outer(1), u[3]), mixed, product(outer(3), power_range(u[1], 3))))
+        return Enclosure(tuple(found), self.order)
+
+    def where(self, here: np.ndarray, other: Enclosure) -> Enclosure:
+        """This one on some stretches, another one on the others."""
+        highest = max(len(self.coefficients), len(other.coefficients))
+        return Enclosure(tuple(np.where(here, self[k], other[k]) for k in range(highest)), self.order)
+
+    def narrowed(self, middle: np.ndarray, half: np.ndarray) -> Enclosure:
+        """The same with the values at the middles of the stretches known, and half of their lengths (mean value form)."""
+        low, high = self.value
+        reach = half * np.abs(self.slope).max(axis=0)
+        rounding = ROUNDING * np.abs(middle)
+        narrower = np.array([np.fmax(low, middle - reach - rounding), np.fmin(high, middle + reach + rounding)])
+        return Enclosure((narrower, *self.coefficients[1:]), self.order)
+
+    def derivative(self) -> Enclosure:
+        """Of f; one order less is known of it."""
+        shifted = tuple(k * c for k, c in enumerate(self.coefficients))[1:] or (np.zeros_like(self.value),)
+        return Enclosure(shifted, self.order - 1)
+
+
+def scaled(factor: float, x: Range) -> Range:
+    """A range times a number; zero times infinity is zero."""
+    if factor == 0.0:
+        return np.zeros_like(x)
+    return factor * (x if factor > 0 else x[::-1])
+
+
+def unbounded(value: Range, order: int, slope: Range = EVERYWHERE) -> Enclosure:
+    """Values in a range; nothing is known of their derivatives but perhaps of the first."""
+    everywhere = np.broadcast_to(EVERYWHERE, value.shape)
+    return Enclosure((value, np.broadcast_to(slope, value.shape), *[everywhere] * (order - 1)), order)
+
+
+def either(parts: list[Enclosure], jumps: bool) -> Enclosure:
+    """One of several, whichever; where they may follow each other by a jump, slopes are unbounded."""
+    value = hull(*(part.value for part in parts))
+    return unbounded(value, parts[0].order, EVERYWHERE if jumps else hull(*(part.slope for part in parts)))
+
+
+def exp(x: Enclosure) -> Enclosure:
+    values = np.exp(x.value)
+    return x.composed(lambda k: values / (1.0, 1.0, 2.0, 6.0)[k])
+
+
+def log(x: Enclosure) -> Enclosure:
+    def outer(k: int) -> Range:
+        if k == 0:
+            return np.log(np.where(x.value[1] < 0, np.nan, np.maximum(x.value, 0.0)))
+        return scaled((-1.0) ** (k + 1) / k, real_power_range(x.value, -k))
+
+    return x.composed(outer)
+
+
+def absolute(x: Enclosure) -> Enclosure:
+    straddles = (x.value[0] < 0) & (x.value[1] > 0)
+    one_sided = x.where(x.value[0] >= 0, -x)
+    both = unbounded(power_range(x.value, 2) ** 0.5, x.order, hull(x.slope, -x.slope[::-1]))
+    return both.where(straddles, one_sided)
+
+
+def sign(x: Enclosure) -> Enclosure:
+    return unbounded(np.sign(x.value), x.order).where(around_zero(x.value), Enclosure((np.sign(x.value),), x.order))
+
+
+def _choice(greatest: bool) -> Callable[..., Enclosure]:
+    """min or max: one of them where its range is beyond the other's, else whichever."""
+
+    def pair(a: Enclosure, b: Enclosure) -> Enclosure:
+        low, high = (a, b) if greatest else (b, a)
+        value = np.maximum(a.value, b.value) if greatest else np.minimum(a.value, b.value)
+        open_one = unbounded(value, a.order, hull(a.slope, b.slope))
+        settled = b.where(low.value[1] <= high.value[0], a)
+        return settled.where((a.value[1] <= b.value[0]) | (b.value[1] <= a.value[0]), open_one)
+
+    def of(*parts: Any) -> Enclosure:
+        known = next(part for part in parts if isinstance(part, Enclosure))
+        chosen, *others = (known.constant(part) for part in parts)
+        for other in others:
+            chosen = pair(chosen, other)
+        return chosen
+
+    return of
+
+
+minimum, maximum = _choice(False), _choice(True)
+
+
+def branch(x: Any, below: Any, at: Any, above: Any) -> Enclosure:
+    """One of three by the sign of the first; it jumps where that may be zero."""
+    known = next(part for part in (x, below, at, above) if isinstance(part, Enclosure))
+    sign_of, *values = (known.constant(part) for part in (x, below, at, above))
+    settled = values[0].where(sign_of.value[1] < 0, values[2])
+    return either(values, jumps=True).where(around_zero(sign_of.value), settled)
+
+
+def atan2(y: Any, x: Any) -> Enclosure:
+    """By the corners of the box of x and y; it jumps where that meets the negative x axis."""
+    known = y if isinstance(y, Enclosure) else x
+    y, x = known.constant(y), known.constant(x)
+    jumps = (x.value[0] <= 0) & (y.value[0] <= 0) & (y.value[1] >= 0)
+    corners = np.array([np.arctan2(y.value[i], x.value[j]) for i in (0, 1) for j in (0, 1)])
+    value = np.array([corners.min(axis=0), corners.max(axis=0)])
+    turning = (y.derivative() * x - x.derivative() * y) / (x**2.0 + y**2.0)
+    rates = (turning[k] / (k + 1) for k in range(known.order))
+    jumping = unbounded(np.broadcast_to([[-np.pi], [np.pi]], value.shape), known.order)
+    return jumping.where(jumps, Enclosure((value, *rates), known.order))

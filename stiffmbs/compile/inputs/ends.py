@@ -1,0 +1,227 @@
+"""Instants at which a formula of time has a pole, or from which on it has no value: no motion follows it any further.
+
+The ranges of a formula over stretches of time are bounded by interval arithmetic (`stiffmbs.compile.inputs.enclosure`).  A stretch
+without a bound is divided until it is as short as time can be told apart; values close to it then tell a pole from a gap that
+closes, as that of sin(t)/t at zero.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...describe.element import Element
+from ...describe.formula.field import TIME, Formula, is_measure, reading_order
+from ...describe.formula.text import UNIT, evaluate
+from ..system import System
+from .enclosed_functions import FUNCTIONS
+from .enclosure import Enclosure
+from .of_time import Input
+
+AT_ONCE, MOST_DIVISIONS = 32, 500
+"""Parts into which a stretch is divided at once, and divisions after which the search is given up: solvers then find the end."""
+SHORTEST = 1e-13
+"""Length of a stretch, in parts of the times themselves, that is not divided any further."""
+NEAR, NEARER = 1e-6, 1e-10
+"""Distances, in parts of the times themselves, at which values on both sides are compared."""
+GROWS = 3.0
+"""Factor by which values must grow from the one distance to the other: that of a pole of order 1/8."""
+LARGEST, DISTANCES = 1e8, np.geomspace(0.1, NEAR, 16)
+"""Growth towards a pole that solvers can follow, and distances at which it is looked for, in parts of the times themselves."""
+DOMAINS = {"sqrt": (0.0, np.inf), "log": (0.0, np.inf), "asin": (-1.0, 1.0), "acos": (-1.0, 1.0)}
+"""Arguments for which a function has a value."""
+RISKY = (*DOMAINS, "tan", "exp", "sinh", "cosh")
+"""Functions that some arguments leave without a finite value."""
+
+Values = Callable[[float], float | None]
+
+
+@dataclass(frozen=True)
+class InputEnd:
+    """Where a formula of time ends.
+
+    Attributes
+    ----------
+    t : float
+        s.
+    near : float
+        Distance, s, from which on its values lose digits.
+    element, text : str
+        The element, and the part of its formula.
+    pole : bool
+        Whether it grows without bound there; else it has no value beyond.
+    """
+
+    t: float
+    near: float
+    element: str
+    text: str
+    pole: bool
+
+    def sentence(self) -> str:
+        """That a run ends there."""
+        found = "grows without bound" if self.pole else "has no value beyond"
+        return (
+            f"stopped at t = {self.t:.9g} s: '{self.element}' has no finite value there, as '{self.text}' {found}; "
+            "expected an input with a value over the whole run: give another formula, or end the run before"
+        )
+
+
+def first_input_end(system: System, start: float, end: float) -> InputEnd | None:
+    """The first instant of a run at which a formula of time ends; None where all have values.
+
+    Parameters
+    ----------
+    system : System
+    start, end : float
+        s.
+    """
+    found = [
+        each for group in system.groups for name, element in zip(group.names, group.elements, strict=True)
+        for each in _of_element(name, element, start, end)
+    ]  # fmt: skip
+    return min(found, key=lambda each: each.t, default=None)
+
+
+def _of_element(name: str, element: Element, start: float, end: float) -> Iterator[InputEnd]:
+    for _, formula in element.parts(Formula):
+        for part in _parts_of_time(formula.tree, formula):
+            for node in reading_order(part):
+                if _is_risky(node):
+                    yield from _of_node(name, formula, part, node, start, end)
+
+
+def _parts_of_time(node: ast.expr, formula: Formula) -> Iterator[ast.expr]:
+    """The largest parts that depend on time alone; not the arguments of tables, which go on in straight lines."""
+    if _is_of_time(node, formula):
+        yield node
+    elif not (isinstance(node, ast.Call) and (is_measure(node) or _is_table(node, formula))):
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.expr):
+                yield from _parts_of_time(child, formula)
+
+
+def _is_of_time(node: ast.expr, formula: Formula) -> bool:
+    """Whether a part holds neither coordinates nor measures, tables or variables of its field."""
+    for part in ast.walk(node):
+        of_state = isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values
+        of_field = isinstance(part, ast.Name) and part.id in (*formula.variables, *formula.tables)
+        if of_state or of_field or is_measure(part):
+            return False
+    return True
+
+
+def _is_table(node: ast.Call, formula: Formula) -> bool:
+    return isinstance(node.func, ast.Name) and node.func.id in formula.tables
+
+
+def _is_risky(node: ast.expr) -> bool:
+    """Whether a node may have no finite value where its parts have one, and depends on time."""
+    match node:
+        case ast.BinOp(_, ast.Div(), part) | ast.BinOp(part, ast.Pow(), ast.UnaryOp() | ast.BinOp()):
+            pass
+        case ast.BinOp(part, ast.Pow(), ast.Constant(int())):
+            return False
+        case ast.BinOp(_, ast.Pow(), _):
+            part = node
+        case ast.Call(ast.Name(name), _) if name in RISKY:
+            part = node
+        case _:
+            return False
+    return any(isinstance(each, ast.Name) and each.id == TIME for each in ast.walk(part))
+
+
+def _of_node(
+    name: str, formula: Formula, part: ast.expr, node: ast.expr, start: float, end: float
+) -> Iterator[InputEnd]:
+    """The first end of a part of a formula that comes from one node of it."""
+
+    evaluated = Input(part, formula.text, formula.values, {})
+
+    def value(t: float) -> float | None:
+        with np.errstate(all="ignore"):  # cosh may overflow in a denominator
+            found = float(evaluated.at(np.array([t]))[0])
+        return found if np.isfinite(found) else None
+
+    for low, high in _without_bound(formula, node, start, end):
+        size = max(abs(low), abs(high), end - start)
+        pole = _is_pole(value, low, high, size)
+        if pole or _has_no_value_beyond(value, high, size):
+            near = _pole_distance(value, low, size) if pole else NEARER * size
+            yield InputEnd(low, near, name, ast.unparse(node), pole)
+            return
+
+
+def _without_bound(formula: Formula, node: ast.expr, start: float, end: float) -> Iterator[tuple[float, float]]:
+    """The shortest stretches over which a node has no bounded range, one after the other, at some distance from each other."""
+    waiting, divisions, passed = [(start, end)], 0, start
+    while waiting and divisions < MOST_DIVISIONS:
+        first, last = waiting.pop()
+        size = max(abs(first), abs(last), end - start)
+        if last < passed:
+            continue
+        if last - first <= SHORTEST * size:
+            yield first, last
+            passed = last + NEAR * size
+            continue
+        edges = np.linspace(first, last, AT_ONCE + 1)
+        with np.errstate(all="ignore"):
+            bounded = _is_bounded(formula, node, edges[:-1], edges[1:])
+        divisions += 1
+        waiting += [(float(edges[k]), float(edges[k + 1])) for k in np.flatnonzero(~bounded)[::-1]]
+
+
+def _is_bounded(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Whether a node's range over each stretch is bounded, and its argument nowhere outside the node's domain."""
+    bounded = np.isfinite(_range(formula, node, low, high)).all(axis=0)
+    match node:
+        case ast.Call(ast.Name(name), [argument]) if name in DOMAINS:
+            least, most = DOMAINS[name]
+        case ast.BinOp(argument, ast.Pow(), _):
+            least, most = 0.0, np.inf
+        case _:
+            return bounded
+    inside = _range(formula, argument, low, high)
+    return bounded & (inside[0] >= least) & (inside[1] <= most)
+
+
+def _range(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Least and greatest values of a node over stretches of time, shape (2, n)."""
+    t = Enclosure.of_time(low, high)
+
+    def constant(number: float) -> Enclosure:
+        return t.constant(number)
+
+    def names(name: str) -> Enclosure:
+        return t if name == TIME else constant(formula.values[name])
+
+    return evaluate(node, names, FUNCTIONS, constant).value
+
+
+def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
+    """Whether values grow on one side or the other, the nearer the instant."""
+    for at, way in ((low, -1.0), (high, 1.0)):
+        far, near = value(at + way * NEAR * size), value(at + way * NEARER * size)
+        if far is not None and near is not None and abs(near) > GROWS * abs(far) > 0.0:
+            return True
+    return False
+
+
+def _has_no_value_beyond(value: Values, high: float, size: float) -> bool:
+    return all(value(high + distance * size) is None for distance in (NEARER, 10 * NEARER))
+
+
+def _pole_distance(value: Values, t: float, size: float) -> float:
+    """How far before a pole solvers are to stop: nearer, too few digits are left of the time, or the values are too large."""
+    largest = None
+    for distance in DISTANCES * size:
+        found = value(t - distance)
+        if found is None:
+            continue
+        largest = LARGEST * max(1.0, abs(found)) if largest is None else largest
+        if abs(found) > largest:
+            return float(distance)
+    return NEAR * size

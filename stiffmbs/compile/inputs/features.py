@@ -1,0 +1,144 @@
+"""Where in time the inputs of a scene have features: corners to stop at, and the longest step that still sees the rest.
+
+Step control trusts what it has seen: after a rest its steps jump over a pulse.  Before a run, each input is cut into
+pieces until a cubic represents it, by ranges of its Taylor coefficients (Moore, Kearfott, Cloud, 2009, chapter 9), so
+that no feature hides between samples.  A step may not be longer than a few of the pieces that it touches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from ..system import System
+from .breakpoints import corner_times
+from .of_time import inputs_of
+from .pieces import Bounds, InputPieces
+
+PIECES_OF_A_STEP = 7.0
+"""Lengths of a piece that a step may have: half a turn of a sine."""
+ALIKE = 2.0
+"""Factor within which bounds of neighbouring pieces are taken for the same, the smaller one."""
+
+
+@dataclass(frozen=True)
+class InputFeatures:
+    """The features of all inputs between two times.
+
+    Attributes
+    ----------
+    corners : ndarray
+        Instants to stop and start anew at, s.
+    starts, longest : ndarrays
+        From each of these times on, up to the next: the longest step that may touch it, s; empty where nothing bounds
+        a step.
+    note : str
+        What the user should know of them; empty for nothing.
+    """
+
+    corners: np.ndarray = field(default_factory=lambda: np.empty(0))
+    starts: np.ndarray = field(default_factory=lambda: np.empty(0))
+    longest: np.ndarray = field(default_factory=lambda: np.empty(0))
+    note: str = ""
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """The end of each stretch."""
+        return np.append(self.starts[1:], np.inf)
+
+    def longest_step(self, t: float) -> float:
+        """The longest step from a time on, s (as `stiffmbs.solve.native.longest_step`)."""
+        if not len(self.starts):
+            return np.inf
+        k = max(int(np.searchsorted(self.starts, t, side="right")) - 1, 0)
+        h = float(self.longest[k])
+        while k + 1 < len(self.starts) and self.starts[k + 1] < t + h:
+            k += 1
+            h = min(h, max(float(self.longest[k]), float(self.starts[k]) - t))
+        return h
+
+    def within(self, start: float, end: float) -> InputFeatures:
+        """Those between two times."""
+        inside = (self.starts < end) & (self.ends > start)
+        corners = self.corners[(self.corners > start) & (self.corners < end)]
+        return InputFeatures(corners, self.starts[inside], self.longest[inside], self.note)
+
+    def narrowest(self) -> tuple[float, float]:
+        """The length of the narrowest feature, s, and when it begins; infinite where there is none."""
+        found = [(np.inf, 0.0)]
+        if len(self.corners) > 1:
+            gaps = np.diff(self.corners)
+            found.append((float(np.min(gaps)), float(self.corners[np.argmin(gaps)])))
+        if len(self.longest):
+            k = int(np.argmin(self.longest))
+            found.append((float(self.longest[k]), float(self.starts[k])))
+        return min(found)
+
+    def instants(self, start: float, end: float, spacing: float, most: int) -> np.ndarray:
+        """Instants that show the features narrower than a spacing: a few within each, at most so many."""
+        narrow = np.isfinite(self.longest) & (self.longest < spacing)
+        begin, until = np.maximum(self.starts[narrow], start), np.minimum(self.ends[narrow], end)
+        count = np.ceil((until - begin) / self.longest[narrow] * INSTANTS).astype(np.int64)
+        if np.sum(count) > most:
+            count = np.maximum(count * most // np.sum(count), 1)
+        parts = [np.linspace(a, b, n + 1) for a, b, n in zip(begin, until, count, strict=True) if b > a]
+        gaps = np.concatenate([[start], self.corners, [end]])
+        close = np.flatnonzero(np.diff(gaps) < spacing)[: most // INSTANTS]
+        between = gaps[close, None] + np.diff(gaps)[close, None] * np.linspace(0, 1, INSTANTS + 1)
+        return np.unique(np.concatenate([*parts, between.ravel()]))
+
+
+INSTANTS = 8
+"""Instants that show a narrow feature."""
+
+
+def input_features(system: System, start: float, end: float) -> InputFeatures:
+    """The features of a system's inputs between two times.
+
+    Raises
+    ------
+    InputError
+        When an input has too many corners.
+    """
+    inputs = inputs_of(system)
+    corners = corner_times(inputs, start, end)
+    pieces = [InputPieces(each, np.concatenate([[start], corners, [end]])) for each in inputs]
+    bounds = [each.bounds() for each in pieces]
+    estimated = [given.text for given, each in zip(inputs, pieces, strict=True) if each.estimated]
+    note = (
+        f"'{estimated[0]}' has too many features to be listed: steps follow from a sample of them" if estimated else ""
+    )
+    return InputFeatures(corners, *_together(bounds, corners, start, end), note)
+
+
+def _together(bounds: Sequence[Bounds], corners: np.ndarray, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
+    """The least of all bounds on steps; nothing where none is shorter than the time between corners."""
+    starts = np.unique(np.concatenate([[start], corners, *(each.starts for each in bounds)]))
+    longest = np.full(len(starts), np.inf)
+    for each in bounds:
+        k = np.searchsorted(each.starts, starts, side="right") - 1
+        longest = np.fmin(longest, np.where(k >= 0, PIECES_OF_A_STEP * each.lengths[k], np.inf))
+    ends_of_legs = np.concatenate([[start], corners, [end]])
+    leg = np.clip(np.searchsorted(ends_of_legs, starts, side="right") - 1, 0, len(ends_of_legs) - 2)
+    longest = np.where(longest < np.diff(ends_of_legs)[leg], longest, np.inf)
+    if not np.isfinite(longest).any():
+        return np.empty(0), np.empty(0)
+    return _merged(starts, longest)
+
+
+def _merged(starts: np.ndarray, longest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Neighbours with bounds that are alike as one stretch with the smaller bound."""
+    kept_starts, kept = [float(starts[0])], [float(longest[0])]
+    least = most = kept[0]
+    for t, bound in zip(starts[1:].tolist(), longest[1:].tolist(), strict=True):
+        least, most = min(least, bound), max(most, bound)
+        if least == most or most <= ALIKE * least:
+            kept[-1] = least
+        else:
+            kept_starts.append(t)
+            kept.append(bound)
+            least = most = bound
+    return np.array(kept_starts), np.array(kept)

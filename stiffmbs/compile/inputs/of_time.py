@@ -1,0 +1,241 @@
+"""What a scene prescribes over time: tables of time, and the largest parts of formulas that know nothing but time."""
+
+from __future__ import annotations
+
+import ast
+import copy
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any, get_args
+
+import numpy as np
+
+from ...describe.element import Element
+from ...describe.formula.field import TIME, Formula, FormulaOf, is_measure, reading_order
+from ...describe.formula.text import BINARY, UNARY, UNIT
+from ...describe.formula.value import branch_value, step5_value, step_value
+from ...describe.table import Table
+from ..system import System
+from .enclosed_functions import FUNCTIONS as ENCLOSED
+from .enclosure import Enclosure
+from .table_ranges import TableRanges
+
+WRITTEN = "written"
+"""The attribute of a node that keeps what it says."""
+TABLE = "table"
+"""The name under which a field's own table of time is called."""
+
+
+@dataclass(frozen=True, eq=False)
+class Input:
+    """An expression of time alone.
+
+    Attributes
+    ----------
+    tree : ast.expr
+    text : str
+        For messages.
+    values : mapping of str to float
+        Parameters, units and constants by name.
+    tables : mapping of str to TableRanges
+    """
+
+    tree: ast.expr
+    text: str
+    values: Mapping[str, float]
+    tables: Mapping[str, TableRanges]
+
+    def at(self, t: np.ndarray, part: ast.expr | None = None) -> np.ndarray:
+        """The values of the expression, or of a part of it, at many instants, shape (n,)."""
+        values = _Evaluation(t, self.values, self._of_arrays()).value(part or self.tree)
+        return np.broadcast_to(np.asarray(values, dtype=float), t.shape)
+
+    def within(self, low: np.ndarray, high: np.ndarray, order: int = 1, part: ast.expr | None = None) -> Enclosure:
+        """Ranges of its values and Taylor coefficients over many stretches of time."""
+        t = Enclosure.of_time(low, high, order)
+        middle = _Evaluation((low + high) / 2, self.values, self._of_arrays())
+        tables = {name: _by_argument(table.values, table.enclosed) for name, table in self.tables.items()}
+        evaluation = _Ranges(t, self.values, _OF_ENCLOSURES | tables, middle, (high - low) / 2)
+        return t.constant(evaluation.value(part or self.tree))
+
+    def _of_arrays(self) -> dict[str, Callable[..., Any]]:
+        return _OF_ARRAYS | {name: table.values for name, table in self.tables.items()}
+
+
+class _Evaluation:
+    """The values of parts of a formula in one algebra; a part that is repeated is evaluated once."""
+
+    def __init__(self, t: Any, values: Mapping[str, float], functions: Mapping[str, Callable[..., Any]]) -> None:
+        self._t, self._values, self._functions = t, values, functions
+        self._known: dict[str, Any] = {}
+
+    def value(self, node: ast.expr) -> Any:
+        """The value of a node."""
+        match node:
+            case ast.Constant(int() | float() as number):
+                return float(number)
+            case ast.Name(name):
+                return self._t if name == TIME else self._values[name]
+            case ast.Attribute(_, name):
+                return self._values[f"{UNIT}.{name}"]
+        key = _written(node)
+        if key not in self._known:
+            self._known[key] = self._computed(node)
+        return self._known[key]
+
+    def _computed(self, node: ast.expr) -> Any:
+        match node:
+            case ast.BinOp(left, op, right):
+                return BINARY[type(op)](*(_number(self.value(side)) for side in (left, right)))
+            case ast.UnaryOp(op, operand):
+                return UNARY[type(op)](self.value(operand))
+            case ast.Call(ast.Name(name), arguments):
+                return self._functions[name](*(self.value(argument) for argument in arguments))
+        raise TypeError(f"no such part of a formula: {ast.dump(node)}")
+
+
+class _Ranges(_Evaluation):
+    """Enclosures of parts of a formula, made narrower by the values at the middle of each stretch (mean value form)."""
+
+    def __init__(
+        self, t: Enclosure, values: Mapping[str, float], functions: Mapping[str, Callable[..., Any]], middle: _Evaluation,
+        half: np.ndarray,
+    ) -> None:  # fmt: skip
+        super().__init__(t, values, functions)
+        self._middle, self._half = middle, half
+
+    def _computed(self, node: ast.expr) -> Any:
+        found = super()._computed(node)
+        return found.narrowed(self._middle.value(node), self._half) if isinstance(found, Enclosure) else found
+
+
+def _written(node: ast.expr) -> str:
+    """What a node says, the same for the same text; found once for each node."""
+    known: str | None = getattr(node, WRITTEN, None)
+    if known is None:
+        known = ast.dump(node)
+        setattr(node, WRITTEN, known)
+    return known
+
+
+def _number(value: Any) -> Any:
+    """Plain numbers as numpy's, which divide by zero without an exception."""
+    return np.float64(value) if isinstance(value, float) else value
+
+
+def inputs_of(system: System) -> list[Input]:
+    """The inputs over time of all elements, each expression once."""
+    found: dict[tuple[object, ...], Input] = {}
+    known: dict[int, TableRanges] = {}
+
+    def ranges_of(table: Table) -> TableRanges:
+        return known.setdefault(id(table), known.get(id(table)) or TableRanges(table))
+
+    for group in system.groups:
+        for element in group.elements:
+            for written, text, values, tables in _expressions(element):
+                tree = _WithoutRoots().visit(copy.deepcopy(written))
+                key = (
+                    ast.dump(tree),
+                    tuple(sorted(values.items())),
+                    tuple((n, id(t)) for n, t in sorted(tables.items())),
+                )
+                if key not in found:
+                    found[key] = Input(tree, text, values, {name: ranges_of(table) for name, table in tables.items()})
+    return list(found.values())
+
+
+class _WithoutRoots(ast.NodeTransformer):
+    """Writes sqrt(x^2), sqrt(x*x) and (x^2)^0.5 as abs(x): they have its corner, which no range of a root shows."""
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        match node:
+            case ast.Call(ast.Name("sqrt"), [inner]) if (x := _squared(inner)) is not None:
+                return ast.Call(ast.Name("abs", ast.Load()), [x], [])
+        return node
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        self.generic_visit(node)
+        match node:
+            case ast.BinOp(inner, ast.Pow(), ast.Constant(0.5)) if (x := _squared(inner)) is not None:
+                return ast.Call(ast.Name("abs", ast.Load()), [x], [])
+        return node
+
+
+def _squared(node: ast.expr) -> ast.expr | None:
+    """What a node is the square of."""
+    match node:
+        case ast.BinOp(x, ast.Pow(), ast.Constant(2)):
+            return x
+        case ast.BinOp(x, ast.Mult(), y) if ast.dump(x) == ast.dump(y):
+            return x
+    return None
+
+
+def _expressions(element: Element) -> Iterator[tuple[ast.expr, str, Mapping[str, float], Mapping[str, Table]]]:
+    for _, formula in element.parts(Formula):
+        for part in _of_time_alone(formula.tree, formula):
+            names = [node.func.id for node in ast.walk(part) if isinstance(node, ast.Call)]  # type: ignore[attr-defined]
+            used = {name: formula.tables[name] for name in names if name in formula.tables}
+            yield part, formula.text, formula.values, used
+    for name, table in element.parts(Table):
+        if _is_of_time(element, name):
+            called = ast.Call(ast.Name(TABLE, ast.Load()), [ast.Name(TIME, ast.Load())], [])
+            yield called, f"the table {name}", {}, {TABLE: table}
+
+
+def _is_of_time(element: Element, name: str) -> bool:
+    """Whether a field's formula or table is one of time: it then has no variables of its own."""
+    field = type(element).model_fields[name]
+    marks = [mark for mark in _marks(field.metadata, field.annotation) if isinstance(mark, FormulaOf)]
+    return any(not mark.variables for mark in marks)
+
+
+def _marks(metadata: list[object], annotation: object) -> Iterator[object]:
+    yield from metadata
+    yield from getattr(annotation, "__metadata__", ())
+    for part in get_args(annotation):
+        yield from _marks([], part)
+
+
+def _of_time_alone(node: ast.expr, formula: Formula) -> Iterator[ast.expr]:
+    """The largest parts of a formula that use time and nothing of the state."""
+    if is_measure(node):
+        return
+    if _uses(node, formula, time=True) and not _uses(node, formula, time=False):
+        yield node
+        return
+    children = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
+    for child in children:
+        if isinstance(child, ast.expr) and not isinstance(node, ast.Attribute):
+            yield from _of_time_alone(child, formula)
+
+
+def _uses(tree: ast.expr, formula: Formula, time: bool) -> bool:
+    """Whether a part of a formula uses time, or else anything of the state or of the field's variables."""
+    for node in reading_order(tree):
+        match node:
+            case ast.Name(name) if name == TIME if time else name in formula.variables:
+                return True
+            case ast.Attribute(ast.Name(owner)) if owner != UNIT and not time:
+                return True
+        if not time and is_measure(node):
+            return True
+    return False
+
+
+def _by_argument(of_numbers: Callable[..., Any], of_enclosures: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of formulas, also of the constants in them."""
+    return lambda *x: (of_enclosures if any(isinstance(part, Enclosure) for part in x) else of_numbers)(*x)
+
+
+_SAME_NAME = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign")
+_OF_ARRAYS: dict[str, Callable[..., Any]] = {
+    **{name: getattr(np, name) for name in _SAME_NAME},
+    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2,
+    "min": lambda *values: reduce(np.minimum, values), "max": lambda *values: reduce(np.maximum, values),
+    "step": step_value, "step5": step5_value, "branch": branch_value,
+}  # fmt: skip
+_OF_ENCLOSURES = {name: _by_argument(of_arrays, ENCLOSED[name]) for name, of_arrays in _OF_ARRAYS.items()}

@@ -1,0 +1,162 @@
+"""Ranges of tables: of their values and Taylor coefficients over stretches of their argument."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ...describe.table import Table
+from ..table_values import curve, parts_of
+from .enclosure import Enclosure
+from .ranges import EVERYWHERE, Range, between_turns, hull
+from .zeros import MOST, TooMany
+
+
+class TableRanges:
+    """A table as a function of arrays and of enclosures.
+
+    Parameters
+    ----------
+    table : Table
+
+    Attributes
+    ----------
+    corners : ndarray
+        Arguments at which it has corners, those of one period if it is periodic.
+    period : float
+        Zero where it is not periodic.
+    """
+
+    def __init__(self, table: Table) -> None:
+        self._values = curve(table)
+        _, self._x, self._pieces = parts_of(table)
+        self._smooth = 1 if table.lines else 2 if table.akima else 3
+        self.period = self._x[-1] - self._x[0] if table.ends == "periodic" else 0.0
+        self.corners = _corners(table, self._x)
+        h = np.diff(self._x)
+        whole = np.array([np.zeros_like(h), h])
+        with np.errstate(all="ignore"):
+            self._most = [_Most(self._of_pieces(np.arange(len(h)), whole, k)) for k in range(4)]
+
+    def values(self, arguments: np.ndarray) -> np.ndarray:
+        """Values, as kernels compute them."""
+        return self._values(arguments)
+
+    def corners_between(self, low: float, high: float) -> np.ndarray:
+        """Arguments within a range at which it has corners."""
+        if not self.period:
+            return self.corners[(self.corners >= low) & (self.corners <= high)]
+        first, last = np.floor((low - self._x[0]) / self.period), np.ceil((high - self._x[0]) / self.period)
+        if not (last - first) * len(self.corners) <= MOST:
+            raise TooMany(
+                f"a periodic table has more than {MOST:.0e} corners between {low:g} and {high:g}, expected fewer"
+            )
+        turns = np.arange(first, last + 1)
+        found = np.unique((self.corners + turns[:, None] * self.period).ravel())
+        return found[(found >= low) & (found <= high)]
+
+    def enclosed(self, argument: Enclosure) -> Enclosure:
+        """Ranges of the table of an argument."""
+        low, high = argument.value
+        bounded = np.isfinite(low) & np.isfinite(high)
+        a, b = np.where(bounded, low, self._x[0]), np.where(bounded, high, self._x[-1])
+        outer = self._around(a, b) if self.period else self._over(a, b)
+        return argument.composed(lambda k: np.where(bounded, outer(k), EVERYWHERE))
+
+    def _around(self, a: np.ndarray, b: np.ndarray) -> Callable[[int], Range]:
+        """Ranges of Taylor coefficients of a periodic table: up to the end of a period, and on from its start."""
+        first, last, period = self._x[0], self._x[-1], self.period
+        length = np.minimum(b - a, period)
+        begin = first + np.mod(a - first, period)
+        end = begin + length
+        before, behind = self._over(begin, np.minimum(end, last)), self._over(np.full_like(a, first), end - period)
+        wraps = end > last
+        return lambda k: np.where(wraps, self._joined(before(k), behind(k), k), before(k))
+
+    def _joined(self, before: Range, behind: Range, k: int) -> Range:
+        return hull(before, behind) if k <= self._smooth else np.broadcast_to(EVERYWHERE, before.shape)
+
+    def _over(self, a: np.ndarray, b: np.ndarray) -> Callable[[int], Range]:
+        """Ranges of Taylor coefficients over stretches; beyond its ends a table goes on straight."""
+        x = self._x
+        inside = np.clip([a, b], x[0], x[-1])
+        first, last = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
+        last = np.maximum(np.where(inside[1] <= x[last], last - 1, last), first)
+        same = first == last
+        z_first = np.array([inside[0] - x[first], np.where(same, inside[1], x[first + 1]) - x[first]])
+        z_last = np.array([np.where(same, inside[0], x[last]) - x[last], inside[1] - x[last]])
+        outside = (a < x[0]) | (b > x[-1])
+        beyond = (b <= x[0]) | (a >= x[-1])
+
+        def outer(k: int) -> Range:
+            found = hull(self._of_pieces(first, z_first, k), self._of_pieces(last, z_last, k))
+            between = last > first + 1
+            found = np.where(
+                between, hull(found, self._most[k].over(first + 1, np.where(between, last, first + 2))), found
+            )
+            if k > self._smooth:
+                found = np.where(same, found, EVERYWHERE)
+            if k == 0:
+                ends = self._values(np.array([a, b]))
+                return np.where(outside, hull(found, ends[[0, 0]], ends[[1, 1]]), found)
+            if k > 1:
+                crossed = hull(found, np.zeros_like(found)) if k == 2 else np.broadcast_to(EVERYWHERE, found.shape)
+                return np.where(beyond, 0.0, np.where(outside, crossed, found))
+            return found
+
+        return outer
+
+    def _of_pieces(self, piece: np.ndarray, z: Range, k: int) -> Range:
+        """The range of the k-th Taylor coefficient within pieces, over stretches from their starts."""
+        a, b, c, d = self._pieces[piece].T
+        if k == 3:
+            return np.array([np.minimum(a, 0.0), np.maximum(a, 0.0)])  # with 0, so that no cubic passes for smooth
+        if k == 2:
+            return np.sort(3 * a * z + b, axis=0)
+        if k == 1:
+            return between_turns(lambda y: (3 * a * y + 2 * b) * y + c, z, (-b / (3 * a),))
+        root = np.sqrt(b * b - 3 * a * c)
+        far = -(b + np.copysign(root, b))
+        return between_turns(lambda y: ((a * y + b) * y + c) * y + d, z, (far / (3 * a), c / far))
+
+
+def _corners(table: Table, x: np.ndarray) -> np.ndarray:
+    """Ends of a table; all its points if it is of straight lines, else those where it leaves or reaches a flat part."""
+    y = np.array([value for _, value in table.table])
+    if table.lines:
+        slopes = np.diff(y) / np.diff(x)
+        bends = np.flatnonzero(np.diff(slopes)) + 1
+    else:
+        flat = np.abs(np.diff(y)) <= FLAT * np.max(np.abs(y), initial=0.0)
+        bends = np.flatnonzero(flat[1:] != flat[:-1]) + 1
+        if table.ends == "periodic" and not flat.any():
+            return np.empty(0)
+    return x[np.unique(np.concatenate([[0], bends, [len(x) - 1]]))]
+
+
+FLAT = 1e-12
+"""Change between two points of a table, in parts of its largest value, up to which it is flat there."""
+
+
+class _Most:
+    """The hull of any successive ranges, by hulls of 1, 2, 4, ... of them (a sparse table)."""
+
+    def __init__(self, ranges: Range) -> None:
+        self._levels = [ranges]
+        while 2 * (reach := 2 ** (len(self._levels) - 1)) <= ranges.shape[1]:
+            before = self._levels[-1]
+            self._levels.append(hull(before[:, :-reach], before[:, reach:]))
+
+    def over(self, first: np.ndarray, end: np.ndarray) -> Range:
+        """The hulls from each first one to before each end; ends that are too far are cut."""
+        count = self._levels[0].shape[1]
+        end = np.clip(end, 1, count)
+        first = np.clip(first, 0, end - 1)
+        level = np.frexp(end - first)[1] - 1
+        found = np.empty((2, len(first)))
+        for k in np.unique(level):
+            here = level == k
+            ranges = self._levels[k]
+            found[:, here] = hull(ranges[:, first[here]], ranges[:, end[here] - 2**k])
+        return found

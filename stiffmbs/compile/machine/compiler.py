@@ -1,0 +1,200 @@
+"""Compiled functions: machine code from the cache, or translated, compiled by LLVM and cached."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from . import cache as store
+
+_CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
+_SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A compiled function: its address for other compiled code, and a way to call it from Python.
+
+    Pointers are passed as addresses (``array.ctypes.data``); the interpreter lock is released during a call.
+    """
+
+    address: int
+    call: Callable[..., Any]
+
+
+Signatures = tuple[tuple[str, str], ...]
+"""Names of functions and their C signatures."""
+
+
+@dataclass(frozen=True)
+class _Source:
+    """Functions to be compiled together: their names in a namespace, which is made when asked for."""
+
+    signatures: Signatures
+    namespace: Callable[[], Mapping[str, Any]]
+    text: str = ""
+    """What defines them if that is in no file."""
+
+
+@cache
+def compiled_source(source: str, name: str, signature: str) -> Compiled:
+    """Compile a function from generated source, or load it from the cache.
+
+    Parameters
+    ----------
+    source : str
+        Python text in the language of `stiffmbs.compile.machine.translate`; defines `name`.
+    name : str
+        The function's name.
+    signature : str
+        Such as ``void(int64, float64*)``.
+    """
+
+    def namespace() -> dict[str, Any]:
+        names: dict[str, Any] = {}
+        exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations
+        return names
+
+    entry = store.name_of(store.KERNEL, source, _language_text(), _called_text(), signature)
+    return _loaded(entry, _Source(((name, signature),), namespace, source))[name]
+
+
+@cache
+def _called_text() -> str:
+    """The text of what generated sources call."""
+    native = Path(__file__).parent / "native"
+    return "\0".join(
+        (native / f"{name}.py").read_text(encoding="utf-8")
+        for name in ("nonsmooth", "continuous_angle", "spline", "rotation_vector")
+    )
+
+
+@cache
+def compiled_routines(module: str, signatures: Signatures) -> dict[str, Compiled]:
+    """Compile functions of one of the package's ``native`` modules together, or load them from the cache."""
+    entry = store.name_of(store.ROUTINE, _language_text(), _native_text(), module, repr(signatures))
+    return _loaded(entry, _Source(signatures, lambda: vars(importlib.import_module(module))))
+
+
+@cache
+def _language_text() -> str:
+    """The text of the translator."""
+    return _joined(sorted((Path(__file__).parent / "translate").glob("*.py")))
+
+
+@cache
+def _native_text() -> str:
+    """The text of all native modules and of what they are laid out by: a routine may be built of any of them."""
+    here = Path(__file__).parent
+    files = [*sorted(here.parents[1].glob("**/native/*.py")), here / "layout.py"]
+    return _joined(files)
+
+
+def _joined(files: list[Path]) -> str:
+    return "\0".join(path.read_text(encoding="utf-8") for path in files)
+
+
+def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
+    code = _unpacked(entry, store.read(entry))
+    found = _linked(code, entry, source.signatures) if code else None
+    if found is None:
+        code = _object_code(source, _symbol(entry, ""))
+        store.write(entry, _header(entry, code) + code)
+        found = _linked(code, entry, source.signatures)
+    assert found is not None, entry
+    return found
+
+
+def _unpacked(entry: str, stored: bytes | None) -> bytes | None:
+    """The code of an entry; None where it holds anything else, as LLVM ends the process on what is no object code."""
+    head, end, code = (stored or b"").partition(b"\n")
+    return code if head + end == _header(entry, code) else None
+
+
+def _header(entry: str, code: bytes) -> bytes:
+    return f"{entry} {len(code)}\n".encode()
+
+
+def _symbol(entry: str, name: str) -> str:
+    """The name of a function in object code: no other of this process has it."""
+    return f"stiffmbs_{entry}_{name}"
+
+
+def _new_target() -> Any:
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=3,
+        codemodel="jitdefault",
+        jit=True,
+    )
+
+
+@cache
+def _engine() -> Any:
+    """The one engine that holds all compiled code of this process (it owns its target machine)."""
+    import llvmlite.binding as llvm
+
+    target = _new_target()
+    module = llvm.parse_assembly("")
+    module.triple = llvm.get_process_triple()
+    return llvm.create_mcjit_compiler(module, target)
+
+
+@cache
+def _emitter() -> Any:
+    return _new_target()
+
+
+def _object_code(source: _Source, prefix: str) -> bytes:
+    """Object code with a C function for each name, which begins with the prefix there."""
+    import llvmlite.binding as llvm
+
+    from .translate.unit import Entry, assembly
+
+    namespace = source.namespace()
+    entries = [Entry(namespace[name], prefix + name, *_c_types(signature)) for name, signature in source.signatures]
+    module = llvm.parse_assembly(assembly(entries, source.text))
+    module.triple = llvm.get_process_triple()
+    builder = llvm.create_pass_builder(_emitter(), llvm.create_pipeline_tuning_options(speed_level=3))
+    builder.getModulePassManager().run(module, builder)
+    return _emitter().emit_object(module)
+
+
+def _linked(code: bytes, entry: str, signatures: Signatures) -> dict[str, Compiled] | None:
+    """The functions of an entry by their names; None where the code holds others."""
+    import llvmlite.binding as llvm
+
+    engine, found = _engine(), {}
+    for name, signature in signatures:
+        symbol = _symbol(entry, name)
+        if not engine.get_function_address(symbol):
+            engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+            engine.finalize_object()
+        address = engine.get_function_address(symbol)
+        if not address:
+            return None
+        found[name] = Compiled(address, _prototype(signature)(address))
+    return found
+
+
+def _prototype(signature: str) -> Any:
+    arguments, result = _c_types(signature)
+    return ctypes.CFUNCTYPE(_CTYPES[result], *(ctypes.c_void_p if "*" in kind else _CTYPES[kind] for kind in arguments))
+
+
+def _c_types(signature: str) -> tuple[list[str], str]:
+    match = _SIGNATURE.match(signature)
+    assert match is not None, signature
+    result, arguments = match.groups()
+    return [kind.strip() for kind in arguments.split(",") if kind.strip()], result

@@ -1,0 +1,67 @@
+"""Pointers from addresses, calls of kernels by address, and named views of tables of addresses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..layout import ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, INT, MECHANICS, POINTERS, SCHEME, STATE, Layout
+from ..translate.code import Code, constant
+from ..translate.values import Builtin, Operand, Record, Value, builtin
+
+
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Marks a function for use in compiled routines: written in the language of `stiffmbs.compile.machine.translate`."""
+    return function
+
+
+def _pointer(code: Code, kind: str, address: Operand) -> Value:
+    return code.put_value(kind, f"inttoptr {code.integer(address).typed} to ptr")
+
+
+@builtin
+def floats(code: Code, address: Operand) -> Value:
+    """The doubles at an address."""
+    return _pointer(code, "floats", address)
+
+
+@builtin
+def ints(code: Code, address: Operand) -> Value:
+    """The 64-bit integers at an address."""
+    return _pointer(code, "ints", address)
+
+
+@builtin
+def shifted(code: Code, pointer: Value, count: Operand) -> Value:
+    """The pointer to the item `count` places on."""
+    return Value(pointer.kind, code.item(pointer, count).text)
+
+
+@builtin
+def call_kernel(code: Code, kernel: Operand, *arguments: Value) -> None:
+    """Call a kernel (`stiffmbs.compile.terms.KERNEL_SIGNATURE`) by its address."""
+    function = code.put_value("ints", f"inttoptr {code.integer(kernel).typed} to ptr")
+    code.put(f"call void {function.text}({', '.join(argument.typed for argument in arguments)})")
+
+
+def view_of(name: str, layout: Layout) -> Builtin:
+    """A function of compiled code that turns a table laid out by `layout` into a record of pointers and numbers."""
+
+    def view(code: Code, table: Value) -> Record:
+        fields = {}
+        for column, (field, kind) in enumerate(layout.items()):
+            entry = code.load(code.item(table, constant(column)))
+            fields[field] = entry if kind == INT else _pointer(code, POINTERS[kind], entry)
+        return Record(name, fields)
+
+    return Builtin(view)
+
+
+state_view = view_of("State", STATE)
+equations_view = view_of("Equations", EQUATIONS)
+factors_view = view_of("Factors", FACTORS)
+ida_view = view_of("Ida", IDA)
+mechanics_view = view_of("Mechanics", MECHANICS)
+scheme_view = view_of("Scheme", SCHEME)
+explicit_view = view_of("Explicit", EXPLICIT)
+eliminated_view = view_of("Eliminated", ELIMINATED)

@@ -1,0 +1,51 @@
+"""The compiled routines of the native modules, by name and signature."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from .compiler import Compiled, compiled_routines
+
+Signatures = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Routine:
+    """A function of a ``native`` module: compiled, or loaded from the cache, when first asked for.
+
+    Attributes
+    ----------
+    module, name, signature : str
+    others : tuple of (name, signature)
+        Functions of the module that are compiled with it, as what they share is the most of each of them.
+    """
+
+    module: str
+    name: str
+    signature: str
+    others: Signatures = ()
+
+    def load(self) -> Callable[..., Any]:
+        """The function, for calls from Python; pointers are passed as addresses."""
+        return self._compiled().call
+
+    def address(self) -> int:
+        """The function's address, for calls from compiled code."""
+        return self._compiled().address
+
+    def _compiled(self) -> Compiled:
+        together = tuple(sorted(((self.name, self.signature), *self.others)))
+        return compiled_routines(self.module, together)[self.name]
+
+
+def together(module: str, **signatures: str) -> tuple[Routine, ...]:
+    """Functions of one native module that are compiled together."""
+    return tuple(
+        Routine(module, name, signature, tuple(other for other in signatures.items() if other[0] != name))
+        for name, signature in signatures.items()
+    )
+
+
+TERMS = Routine("stiffmbs.compile.machine.native.evaluate", "terms", "void(float64, int64, int64*)")

@@ -1,0 +1,167 @@
+"""Functions with all that they call, as one module of LLVM's assembly."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from .code import Code
+from .expressions import Expressions
+from .statements import Statements, parameters
+from .values import LLVM_TYPES, Operand, Record, Untranslatable, Value, Wider
+
+KINDS = {"int64": "int", "int32": "int32", "float64": "float", "int64*": "ints", "float64*": "floats"}
+"""The kinds of the arguments of C functions."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A function that is to be called from outside.
+
+    Attributes
+    ----------
+    function : callable
+        Written in the language (`stiffmbs.compile.machine.translate`).
+    symbol : str
+        The name of the C function.
+    arguments : list of str
+        The C types of its arguments, of `KINDS`.
+    result : str
+        The C type of what it returns, or ``void``.
+    """
+
+    function: Callable[..., Any]
+    symbol: str
+    arguments: Sequence[str]
+    result: str
+
+
+def assembly(entries: Sequence[Entry], text: str = "") -> str:
+    """Translate functions, with all that they call, into a module of LLVM's assembly.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+    text : str, optional
+        The source that the functions are defined in; the files they come from by default.
+
+    Raises
+    ------
+    Untranslatable
+        When something is not of the language; names function and line.
+    """
+    unit = Unit()
+    for entry in entries:
+        tree = _functions(text)[entry.function.__name__] if text else _tree(entry.function)
+        values = [Value(KINDS[kind], "") for kind in entry.arguments]
+        wanted = None if entry.result == "void" else KINDS[entry.result]
+        unit.write(tree, entry.function.__globals__, entry.symbol, values, wanted, "")
+    return unit.text()
+
+
+class Unit:
+    """The functions translated so far, once for each set of kinds that they are called with."""
+
+    def __init__(self) -> None:
+        self._texts: list[str] = []
+        self._declared: set[str] = set()
+        self._known: dict[tuple[Any, ...], tuple[str, str | None]] = {}
+        self._begun: set[tuple[Any, ...]] = set()
+
+    def text(self) -> str:
+        """The module."""
+        return "\n".join([*sorted(self._declared), *self._texts])
+
+    def declare(self, declaration: str) -> None:
+        """Note a function that is found elsewhere."""
+        self._declared.add(declaration)
+
+    def called(self, code: Code, function: Callable[..., Any], values: Sequence[Operand]) -> Value | None:
+        """Write the call of a function in the language, after translating it where it is new."""
+        key = (function, *(value.name if isinstance(value, Record) else _kind(value) for value in values))
+        if key not in self._known:
+            if key in self._begun:
+                raise Untranslatable(f"'{function.__name__}' calls itself")
+            self._begun.add(key)
+            symbol = f"{function.__name__}.{len(self._begun)}"
+            kind = self.write(_tree(function), function.__globals__, symbol, values, None, "internal ")
+            self._known[key] = symbol, kind
+        symbol, kind = self._known[key]
+        given = ", ".join(part.typed for value in values for part in _parts(value))
+        call = f'call {LLVM_TYPES[kind] if kind else "void"} @"{symbol}"({given})'
+        if kind:
+            return code.put_value(kind, call)
+        code.put(call)
+        return None
+
+    def called_library(self, code: Code, symbol: str, *values: Value) -> Value:
+        """Write the call of a function of floats that LLVM or the C library has."""
+        declared = ", ".join(["double"] * len(values))
+        self.declare(f'declare double @"{symbol}"({declared}) nounwind willreturn memory(none)')
+        given = ", ".join(code.converted(value, "float").typed for value in values)
+        return code.put_value("float", f'call double @"{symbol}"({given})')
+
+    def write(
+        self,
+        tree: ast.FunctionDef,
+        outside: Mapping[str, Any],
+        symbol: str,
+        values: Sequence[Operand],
+        wanted: str | None,
+        linkage: str,
+    ) -> str | None:
+        """Translate one function for arguments of the kinds of `values`; the kind of what it returns."""
+        wider: dict[str, str] = {}
+        while True:
+            try:
+                text, kind = self._translated(tree, outside, symbol, values, wanted, wider)
+                break
+            except Wider as found:
+                wider[found.name] = found.kind
+            except Untranslatable as error:
+                raise Untranslatable(f"{tree.name}: {error}") from None
+        self._texts.append(f"define {linkage}{text}")
+        return kind
+
+    def _translated(
+        self,
+        tree: ast.FunctionDef,
+        outside: Mapping[str, Any],
+        symbol: str,
+        values: Sequence[Operand],
+        wanted: str | None,
+        wider: Mapping[str, str],
+    ) -> tuple[str, str | None]:
+        code = Code(self)
+        expressions = Expressions(code, outside, wider)
+        statements = Statements(code, expressions)
+        declared = parameters([argument.arg for argument in tree.args.args], values, expressions)
+        statements.write(tree.body)
+        kind = statements.finish(wanted)
+        head = f'{LLVM_TYPES[kind] if kind else "void"} @"{symbol}"({", ".join(declared)}) nounwind'
+        return "\n".join([f"{head} {{", *code.lines(), "}"]), kind
+
+
+def _kind(value: Operand) -> str:
+    if not isinstance(value, Value):
+        raise Untranslatable(f"found {value} as an argument, expected a value or a view")
+    return value.kind
+
+
+def _parts(value: Operand) -> Sequence[Value]:
+    if isinstance(value, Record):
+        return list(value.fields.values())
+    return [value] if isinstance(value, Value) else []
+
+
+def _tree(function: Callable[..., Any]) -> ast.FunctionDef:
+    return _functions(Path(function.__code__.co_filename).read_text(encoding="utf-8"))[function.__name__]
+
+
+@cache
+def _functions(text: str) -> dict[str, ast.FunctionDef]:
+    return {node.name: node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)}

@@ -1,0 +1,217 @@
+"""From an element's equations to every derivative that a solver needs (SymPy).
+
+For C(q, t): V = C', J = dV/du, gamma = -V' at constant u so that J u' = gamma, and d(J^T w)/dq for given
+multipliers w.  For efforts Q_k on rates v_k: f = sum (dv_k/du)^T Q_k, f_q and f_u.  For a body that turns in space:
+p' = Z w.
+The reaction is the generalised force on the first body, turned into force and torque about the element's point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import sympy as sp
+
+from ...describe.element import Force, Joint
+from ...describe.request import Request
+from ...errors import InputError
+from ..kind import Kind
+from .continuous_angle import counting_rate
+from .frames import SymbolicElement
+from .losses import power_of_force, power_of_joint
+from .symbols import Symbols, symbols_of
+from .variation import Summand, Variation
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One structurally non-zero entry of a term: its expression and its place in the element's own block.
+
+    `row` and `column` count the element's equations, or its velocities or coordinates, from zero.
+    """
+
+    expression: sp.Expr
+    row: int
+    column: int = 0
+
+
+@dataclass(frozen=True)
+class LateEntry:
+    """An entry whose expression is derived when it is first asked for, as is that of a term which hardly any run needs.
+
+    It may turn out to be zero.
+    """
+
+    derived: Callable[[], sp.Expr]
+    row: int
+    column: int
+
+    @property
+    def expression(self) -> sp.Expr:
+        """The entry's expression."""
+        return self.derived()
+
+
+@dataclass(frozen=True)
+class Derived:
+    """All terms of a kind, each a list of its non-zero entries in row order.
+
+    Attributes
+    ----------
+    n_equations, n_holonomic : int
+        Constraint equations of one element, and how many of them, the first, have a position form.
+    symbols : Symbols
+        What the expressions are written in.
+    terms : dict
+        By the names of `stiffmbs.compile.terms.TERM_AXES`.
+    losses : list of int or None
+        Numbers of an element that must be zero for it to keep energy (`stiffmbs.compile.symbolic.losses`); None where nothing
+        makes that certain.
+    variation : list of list of Summand
+        For each entry of C_q what it depends on.
+    removable : list of bool
+        For each equation with a position form whether it may be left out where these are constant.
+    timed : list of bool
+        For each equation whether time is in it.
+    """
+
+    n_equations: int
+    n_holonomic: int
+    symbols: Symbols
+    terms: dict[str, Sequence[Entry | LateEntry]]
+    losses: list[int] | None
+    variation: list[list[Summand]] = field(default_factory=list)
+    removable: list[bool] = field(default_factory=list)
+    timed: list[bool] = field(default_factory=list)
+
+
+def derive(kind: Kind) -> Derived:
+    """Derive all terms of a kind from its equations.
+
+    Raises
+    ------
+    InputError
+        When an equation does not depend on any coordinate.
+    """
+    symbols = symbols_of(kind)
+    if issubclass(kind.element, Joint):
+        derived = _derived_joint(kind, symbols)
+    elif issubclass(kind.element, Request):
+        value = sp.sympify(kind.element.value(symbols.element))
+        derived = Derived(0, 0, symbols, {"request": [Entry(value, 0)]}, [])
+    else:
+        assert issubclass(kind.element, Force)
+        derived = _derived_force(kind, symbols)
+    return replace(derived, terms=derived.terms | _counting(symbols.element)) if symbols.element.angles else derived
+
+
+def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
+    e = symbols.element
+    C = sp.Matrix([sp.sympify(equation) for equation in kind.element.position(e)])  # type: ignore[attr-defined]
+    rates = sp.Matrix([sp.sympify(equation) for equation in kind.element.velocity(e)])  # type: ignore[attr-defined]
+    C_q = e.by_coordinates(C)
+    V = sp.Matrix([*(e.rate(equation) for equation in C), *rates])
+    J = e.by_velocities(V)
+    for row in range(J.rows):
+        if J[row, :].is_zero_matrix:
+            raise InputError(f"found equation {row + 1} of {J.rows}, which depends on no coordinate of a body")
+        if any(e.depends(entry, e.velocities) for entry in J[row, :]):
+            raise InputError(
+                f"found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
+                "in velocities"
+            )
+    lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
+    force = e.work_by_velocities(zip(lam, V, strict=True))
+    turning = e.rate(V)
+    power = power_of_joint(e, V, lam)
+    terms = {
+        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
+        "gamma": -turning,
+        "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
+        "gamma_u": -e.by_velocities(turning),
+        "reaction": _reaction(kind, e, -force),
+        "switch": sp.Matrix(symbols.switches), "power": sp.Matrix([power]),
+        "argument": _arguments(symbols),
+    }  # fmt: skip
+    entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries["A_q"] = [
+        LateEntry(partial(e.by_coordinate, row, column), r, column)
+        for r, row in enumerate(J * e.a + turning)
+        for column in e.columns_of(row)
+    ]
+    for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row
+        entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
+    variation = Variation(symbols)
+    return Derived(
+        V.rows, C.rows, symbols, entries, [] if power == 0 else None,
+        [variation.summands(entry.expression) for entry in entries["C_q"]],
+        [variation.removable(C[r], [entry.column for entry in entries["C_q"] if entry.row == r]) for r in range(C.rows)],
+        [e.depends(equation, [e.t]) for equation in (*C, *rates)],
+    )  # fmt: skip
+
+
+def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
+    e = symbols.element
+    f = e.work_by_velocities(kind.element.powers(e))  # type: ignore[attr-defined]
+    joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
+    power, losses = power_of_force(kind, symbols)
+    terms = {
+        "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),
+        "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
+        "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
+        "switch": sp.Matrix([*symbols.switches, *kind.element.switches(e)]),  # type: ignore[attr-defined]
+        "limit": sp.Matrix(kind.element.limits(e)),  # type: ignore[attr-defined]
+        "argument": _arguments(symbols), "power": sp.Matrix([power]),
+    }  # fmt: skip
+    if kind.element.turns:  # type: ignore[attr-defined]
+        terms |= _turning(e)
+    return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()}, losses)
+
+
+def _arguments(symbols: Symbols) -> sp.Matrix:
+    """What laws are called with; each depends on the state, so that none is left out as zero."""
+    return sp.Matrix([law.argument for law in symbols.laws])
+
+
+def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
+    """Z of p' = Z w, in the rows and columns of a body's coordinates and velocities, and d(Z w)/dq."""
+    (body,) = e.frames
+    Z, rates = sp.zeros(len(body.q), len(body.u)), sp.zeros(len(body.q), 1)
+    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:]))
+    rates[3:, :] = Z[3:, 3:] * sp.Matrix(body.u[3:])
+    return {"Z": Z, "Z_q": e.by_coordinates(rates)}
+
+
+def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
+    """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
+    first = e.q.rows
+    angles, rates = sp.Matrix(e.angles), sp.Matrix([counting_rate(angle, e) for angle in e.angles])
+    terms = {"counted": angles, "counting": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
+    return {
+        name: [Entry(entry.expression, first + entry.row, entry.column) for entry in _entries(matrix)]
+        for name, matrix in terms.items()
+    }
+
+
+def multipliers(name: str, count: int) -> sp.Matrix:
+    """A column of symbols for the multipliers of one element's equations."""
+    return sp.Matrix([sp.Symbol(f"{name}{k}", real=True) for k in range(count)])
+
+
+def _reaction(kind: Kind, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
+    """Force and torque about the element's point, of the generalised force on its first body."""
+    first = e.frames[0]
+    return first.wrench(force[: len(first.u), :], sp.Matrix(kind.element.point(e)))  # type: ignore[attr-defined]
+
+
+def _symmetric(second: sp.Matrix) -> sp.Matrix:
+    """Second derivatives of one function: each off the diagonal written in one way, so that it is computed once."""
+    return sp.Matrix(*second.shape, lambda r, c: second[min(r, c), max(r, c)])
+
+
+def _entries(matrix: sp.Matrix) -> list[Entry]:
+    rows, columns = matrix.shape
+    every = (Entry(sp.sympify(matrix[r, c]), r, c) for r in range(rows) for c in range(columns))
+    return [entry for entry in every if entry.expression != 0]

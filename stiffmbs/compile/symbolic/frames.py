@@ -1,0 +1,216 @@
+"""The symbolic element: what the equations of joints and forces are written in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from .continuous_angle import CountedAngle, counter
+from .differentiate import Derivatives, Way
+from .relative_rotation import Tilt, Turn, product
+from .spline import integral
+
+COINCIDENT = sp.Float("1e-200")
+"""Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
+
+
+Work = tuple[sp.Expr, sp.Expr]
+"""An effort, and what it does work on: a function of the pose, or its rate."""
+
+
+class SymbolicElement:
+    """An element with frames for its markers and symbols for its numbers.
+
+    Attributes
+    ----------
+    t : sympy.Symbol
+        Time.
+    frames : list of BodyFrame or of SpatialBodyFrame
+        The bodies, in the order of `Element.bodies`.
+    angles : list of expressions
+        Those that count whole turns, in the order of their counters.
+    derivatives : Derivatives
+        Of expressions in its symbols.
+    """
+
+    t = sp.Symbol("t", real=True)
+
+    def __init__(self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives) -> None:
+        self.frames = frames
+        self.angles: list[sp.Expr] = []
+        self.derivatives = derivatives
+        self._turns: dict[tuple[Any, Any], Turn] = {}
+        self.__dict__.update(fields)
+
+    @property
+    def q(self) -> sp.Matrix:
+        return sp.Matrix([symbol for frame in self.frames for symbol in frame.q])
+
+    @property
+    def u(self) -> sp.Matrix:
+        return sp.Matrix([symbol for frame in self.frames for symbol in frame.u])
+
+    @property
+    def a(self) -> sp.Matrix:
+        return sp.Matrix([symbol for frame in self.frames for symbol in frame.a])
+
+    @property
+    def velocities(self) -> list[sp.Symbol]:
+        """By what functions of the velocities are differentiated."""
+        return [symbol for frame in self.frames for symbol in frame.velocities]
+
+    def rate(self, x: Any) -> Any:
+        """Total time derivative of an expression, or of each in a matrix, at constant velocities."""
+        if isinstance(x, sp.MatrixBase):
+            return x.applyfunc(self.rate)
+        x = sp.sympify(x)
+        partial = self.derivatives.partial
+        moving = (
+            rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
+            for frame in self.frames
+            for symbol, rate in frame.motion
+        )
+        return sp.Add(*moving) + partial(x, self.t)
+
+    def named(self, x: Any) -> Any:
+        """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
+        if isinstance(x, sp.MatrixBase):
+            return x.applyfunc(self.named)
+        return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(sp.sympify(x))
+
+    def turn(self, i: Any, j: Any) -> Turn:
+        """How a marker is turned against another one, of another body in space."""
+        if (i, j) not in self._turns:
+            self._turns[i, j] = self._new_turn(i, j)
+        return self._turns[i, j]
+
+    def _new_turn(self, i: Any, j: Any) -> Turn:
+        """Names for the parts of a turn, with the derivatives that `Turn` states instead of those of what they stand for."""
+        back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
+        inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
+        meaning = product(back, self.named(i.quaternion)) * self.named(inverse_length)
+        parts = [sp.Symbol(f"turn{len(self._turns)}_{k}", real=True) for k in range(4)]
+        turn = Turn(parts[0], sp.Matrix(parts[1:]))
+        halves = [turn.rates(self.named(sp.Matrix([axis[k] for axis in j.axes]) / 2)) for k in range(3)]
+        for part, stands_for, changes in zip(parts, meaning, zip(*halves, strict=True), strict=True):
+            by = dict(zip(i.body.phi, changes, strict=True))
+            against = dict(zip(j.body.phi, (-change for change in changes), strict=True))
+            self.derivatives.define(part, by | against, stands_for)
+        return turn
+
+    def tilt(self, i: Any, j: Any, axis: int) -> Tilt:
+        """How an axis (0, 1, 2 for x, y, z) of a marker is tilted against that of another one in space."""
+        own = self.named([i.x, i.y, i.z][axis])
+        return Tilt(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
+
+    @property
+    def meanings(self) -> dict[sp.Symbol, sp.Expr]:
+        """What the names stand for, those before others that use them."""
+        return self.derivatives.meanings
+
+    def by_coordinates(self, column: Iterable[sp.Expr]) -> sp.Matrix:
+        """The matrix d(column)/dq."""
+        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_coordinate)
+
+    def by_velocities(self, column: Iterable[sp.Expr]) -> sp.Matrix:
+        """The matrix d(column)/du."""
+        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_velocity)
+
+    def work_by_coordinates(self, pairs: Iterable[Work]) -> sp.Matrix:
+        """The column of the sums of efforts times derivatives by q of what they do work on."""
+        return self._matrix([list(pairs)], self._by_coordinate).T
+
+    def work_by_velocities(self, pairs: Iterable[Work]) -> sp.Matrix:
+        """The generalised force: the column of the sums of efforts times derivatives by u of the rates of their work."""
+        return self._matrix([list(pairs)], self._by_velocity).T
+
+    def by_coordinate(self, x: sp.Expr, column: int) -> sp.Expr:
+        """The derivative by one coordinate."""
+        return self._change([(sp.Integer(1), x)], self._by_coordinate[column])
+
+    def columns_of(self, x: sp.Expr) -> list[int]:
+        """The coordinates that an expression depends on."""
+        ways = enumerate(self._by_coordinate)
+        return [column for column, way in ways if self.depends(x, (symbol for symbol, _ in way))]
+
+    @cached_property
+    def _by_coordinate(self) -> list[list[Way]]:
+        return [way for frame in self.frames for way in frame.by_coordinate]
+
+    @cached_property
+    def _by_velocity(self) -> list[list[Way]]:
+        return [way for frame in self.frames for way in frame.by_velocity]
+
+    def _matrix(self, rows: Iterable[list[Work]], ways: list[list[Way]]) -> sp.Matrix:
+        entries = [[self._change(row, way) for way in ways] for row in rows]
+        return sp.Matrix(len(entries), len(ways), [entry for row in entries for entry in row])
+
+    def _change(self, row: list[Work], way: list[Way]) -> sp.Expr:
+        """The sum of efforts times derivatives in one way; what goes into several ways has a name."""
+        partial, changes = self.derivatives.partial, []
+        for symbol, much in way:
+            whole = sp.Add(*(effort * partial(x, symbol) for effort, x in row))
+            changes.append(whole if much == 1 else self.named(whole) * much)
+        return sp.Add(*changes)
+
+    def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
+        """The matrix of derivatives by any symbols."""
+        return self.derivatives.jacobian(column, symbols)
+
+    def is_constant(self, expression: sp.Expr) -> bool:
+        """Whether an expression depends on neither time nor the state."""
+        return not self.depends(expression, [self.t]) and not self.in_state(expression)
+
+    def angle(self, sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+        """The angle with a sine and a cosine, or multiples of both, counted over whole turns."""
+        for angle in self.angles:
+            if angle.args[:2] == (sine, cosine):
+                return angle
+        self.angles.append(CountedAngle(sine, cosine, counter(len(self.angles))))
+        return self.angles[-1]
+
+    def in_state(self, expression: sp.Expr) -> bool:
+        """Whether an expression depends on coordinates or velocities."""
+        return self.depends(expression, [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities])
+
+    def depends(self, expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
+        """Whether any of some symbols occurs in an expression, or in what its symbols stand for."""
+        return not self.derivatives.variables(sp.sympify(expression)).isdisjoint(symbols)
+
+    def distance(self, a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
+        """Distance of two points, with a derivative of zero where they coincide."""
+        d = self.named(a - b)
+        return self.named(sp.sqrt(d.dot(d) + COINCIDENT))
+
+    @staticmethod
+    def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
+        """The integral of a law from 0 to x, for a potential; None where there is no simple one."""
+        return integral(law, x)
+
+
+class ReferredJoint(SymbolicElement):
+    """A joint that an element refers to: its fields, its multipliers, and the coordinate that is meant.
+
+    Attributes
+    ----------
+    kind : str
+    lam : list of Symbol
+        Multipliers of its equations.
+    """
+
+    def __init__(
+        self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
+    ) -> None:
+        super().__init__(of.frames, fields, of.derivatives)
+        self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
+        count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
+        self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
+        self.angles = of.angles
+
+    @cached_property
+    def coordinate(self) -> Any:
+        """None where none is named and there is a choice; only one that is used is counted, if it is an angle."""
+        return None if self._coordinate is None else getattr(self._joint, self._coordinate)(self)

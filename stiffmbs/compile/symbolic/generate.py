@@ -1,0 +1,144 @@
+"""From a kind's derived terms to the source of its kernels: common subexpressions, then one loop over elements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import sympy as sp
+from sympy.printing.precedence import precedence
+from sympy.printing.pycode import PythonCodePrinter
+
+from ..terms import KERNEL_ARGUMENTS, TERM_SETS
+from .continuous_angle import CountedAngle, counter
+from .derive import Derived
+from .nonsmooth import CorneredBase, Step
+from .relative_rotation import Unwound
+from .spline import Spline
+
+HEADER = "from stiffmbs.compile.machine.native.nonsmooth import chosen, greater, inside, less, magnitude, sign, step, step5\nfrom stiffmbs.compile.machine.native.continuous_angle import counted_angle\nfrom stiffmbs.compile.machine.native.spline import spline\nfrom stiffmbs.compile.machine.native.rotation_vector import unwound\nfrom math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
+
+
+class _Printer(PythonCodePrinter):
+    """Plain function names; small and half powers as products and roots (a general power costs fifty products)."""
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        base, power = expr.as_base_exp()
+        twice = 2 * power
+        if not (twice.is_Integer and 1 <= abs(int(twice)) <= 12):
+            return super()._print_Pow(expr, rational=rational)
+        whole, half = divmod(abs(int(twice)), 2)
+        factor = self.parenthesize(base, precedence(expr))
+        product = "*".join([factor] * whole + [f"sqrt({self._print(base)})"] * half)
+        return f"({product})" if power > 0 else f"(1.0/({product}))"
+
+    def _print_CorneredBase(self, expr: CorneredBase) -> str:
+        arguments = [f"{argument}.0" if argument.is_Integer else self._print(argument) for argument in expr.args]
+        if isinstance(expr, Step):
+            arguments[-1] = str(expr.args[-1])
+        return f"{expr.native}({', '.join(arguments)})"
+
+    def _print_CountedAngle(self, expr: CountedAngle) -> str:
+        return f"counted_angle({', '.join(self._print(argument) for argument in expr.args)})"
+
+    def _print_Spline(self, expr: Spline) -> str:
+        x, table, order = expr.args
+        return f"spline(number, {self._print(table)}, {self._print(x)}, {int(order)})"
+
+    def _print_Unwound(self, expr: Unwound) -> str:
+        h, order = expr.args
+        return f"unwound({self._print(h)}, {int(order)})"
+
+
+def _shared(
+    outputs: list[sp.Expr], meanings: Mapping[sp.Symbol, sp.Expr], turned: Mapping[sp.Expr, sp.Symbol]
+) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
+    """What outputs have in common, each part after those that it uses, and the outputs in terms of these."""
+    names: dict[sp.Symbol, sp.Expr] = {}
+    following = [symbol for output in outputs for symbol in _by_name(output.free_symbols)]
+    while following:
+        symbol = following.pop()
+        if symbol in meanings and symbol not in names:
+            names[symbol] = meanings[symbol].xreplace(turned)
+            following += _by_name(names[symbol].free_symbols)
+    common, reduced = sp.cse([*outputs, *names.values()], symbols=sp.numbered_symbols("s_"), order="none")
+    parts = {**dict(common), **dict(zip(names, reduced[len(outputs) :], strict=True))}
+    ordered: dict[sp.Symbol, sp.Expr] = {}
+    for symbol in parts:
+        _append(symbol, parts, ordered)
+    return list(ordered.items()), reduced[: len(outputs)]
+
+
+def _by_name(symbols: set[sp.Symbol]) -> list[sp.Symbol]:
+    """Symbols in an order that does not change from run to run, so that neither do sums."""
+    return sorted(symbols, key=lambda symbol: symbol.name)
+
+
+def _append(symbol: sp.Symbol, parts: Mapping[sp.Symbol, sp.Expr], ordered: dict[sp.Symbol, sp.Expr]) -> None:
+    """Put a part behind all that it uses."""
+    pending = [symbol]
+    while pending:
+        last = pending[-1]
+        missing = [part for part in _by_name(parts[last].free_symbols) if part in parts and part not in ordered]
+        if last in ordered or not missing:
+            ordered.setdefault(last, parts[last])
+            pending.pop()
+        else:
+            pending += missing
+
+
+def kernel_source(term_set: str, derived: Derived, name: str) -> str:
+    """Source of one kernel, in the language of `stiffmbs.compile.machine.translate`.
+
+    What belongs to the bodies' orientations is not computed anew for each element but read.
+    Every entry of term k of element e goes to ``value[place[1 + k] + entries_k*e + entry]``.
+    """
+    e, terms, equations = derived.symbols.element, derived.terms, derived.n_equations
+    turned = {function: symbol for frame in e.frames for function, symbol in frame.turned.items()}
+    outputs = [
+        (k, len(terms.get(term, ())), n, sp.sympify(entry.expression).xreplace(turned))
+        for k, term in enumerate(TERM_SETS[term_set])
+        for n, entry in enumerate(terms.get(term, ()))
+    ]
+    shared, results = _shared([expression for *_, expression in outputs], e.meanings, turned)
+    needed = {symbol for expression in [*results, *(part for _, part in shared)] for symbol in expression.free_symbols}
+    printer = _Printer({"fully_qualified_modules": False, "precision": 17})
+    first_counter = 2 * len(e.frames) + 1 + len(derived.symbols.joint_lam)
+    width = first_counter + len(e.angles)
+
+    body = [f"own = index[{width}*e + {2 * len(e.frames)}]"]
+    for slot, frame in enumerate(e.frames):
+        for offset, state, symbols in (
+            (2 * slot, "q", frame.q),
+            (2 * slot, "turn", frame.turn),
+            (2 * slot + 1, "u", frame.u),
+            (2 * slot + 1, "a", frame.a),
+        ):
+            if needed & set(symbols):
+                stride = f"{frame.turn_stride}*" if state == "turn" and frame.turn_stride > 1 else ""
+                body.append(f"at = {stride}index[{width}*e + {offset}]")
+                body += [f"{s.name} = {state}[at + {k}]" for k, s in enumerate(symbols) if s in needed]
+    for k, symbol in enumerate(derived.symbols.numbers):
+        if symbol in needed:
+            value = f"own + int(number[own + {k}])" if symbol.is_integer else f"number[own + {k}]"
+            body.append(f"{symbol.name} = {value}")
+    for vector in ("lam", "mu"):
+        body += [
+            f"{vector}{k} = {vector}[place[0] + {equations}*e + {k}]"
+            for k in range(equations)
+            if sp.Symbol(f"{vector}{k}", real=True) in needed
+        ]
+    for joint, lam in enumerate(derived.symbols.joint_lam):
+        row = f"index[{width}*e + {2 * len(e.frames) + 1 + joint}]"
+        body += [f"{symbol.name} = lam[{row} + {k}]" for k, symbol in enumerate(lam) if symbol in needed]
+    body += [
+        f"{counter(k).name} = q[index[{width}*e + {first_counter + k}]]"
+        for k in range(len(e.angles))
+        if counter(k) in needed
+    ]
+    body += [f"{symbol.name} = {printer.doprint(part)}" for symbol, part in shared]
+    body += [
+        f"value[place[{1 + k}] + {entries}*e + {n}] = {printer.doprint(result)}"
+        for (k, entries, n, _), result in zip(outputs, results, strict=True)
+    ]
+    lines = [f"def {name}({KERNEL_ARGUMENTS}):", "    for e in range(count):", *(f"        {line}" for line in body)]
+    return HEADER + "\n".join(lines) + "\n"

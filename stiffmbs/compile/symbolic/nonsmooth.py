@@ -1,0 +1,189 @@
+"""Functions with corners in equations: their derivatives, and which native function each of them is in kernels.
+
+Each argument stands once in each of them.  As SymPy's Piecewise, which writes an argument once for each of its conditions
+and values, fourteen steps within each other were 5^14 expressions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import sympy as sp
+
+Partial = Callable[[sp.Expr], sp.Expr]
+"""The derivative of an expression by some symbol."""
+
+
+class CorneredBase(sp.Function):  # type: ignore[misc]
+    """Base of these functions; SymPy's printers look for a method of a base whose name ends so.
+
+    Attributes
+    ----------
+    native : str
+        Of `stiffmbs.compile.machine.native.nonsmooth`.
+    """
+
+    native: ClassVar[str] = ""
+    is_real = True
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        """The derivative of the function by those of its arguments, which only count where they are chosen."""
+        raise NotImplementedError
+
+    def _eval_derivative(self, symbol: sp.Symbol) -> sp.Expr:
+        return self.by_parts(lambda part: sp.diff(part, symbol))
+
+
+class Chosen(CorneredBase):
+    """One of three expressions by the sign of the first: Chosen(x, below, at, above)."""
+
+    native = "chosen"
+    nargs = 4
+
+    @classmethod
+    def eval(cls, x: sp.Expr, below: sp.Expr, at: sp.Expr, above: sp.Expr) -> sp.Expr | None:
+        if below == at == above:
+            return at
+        return (below if x < 0 else above if x > 0 else at) if x.is_Number else None
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        x, *values = self.args
+        return Chosen(x, *map(partial, values))
+
+
+class Sign(CorneredBase):
+    """-1 or 1, with derivative zero."""
+
+    native = "sign"
+    nargs = 1
+
+    @classmethod
+    def eval(cls, x: sp.Expr) -> sp.Expr | None:
+        return sp.Integer(1 if x >= 0 else -1) if x.is_Number else None
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        return sp.Integer(0)
+
+
+class Magnitude(CorneredBase):
+    """The absolute value."""
+
+    native = "magnitude"
+    nargs = 1
+
+    @classmethod
+    def eval(cls, x: sp.Expr) -> sp.Expr | None:
+        return abs(x) if x.is_Number else None
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        (x,) = self.args
+        return Sign(x) * partial(x)
+
+
+class Greater(CorneredBase):
+    """The greater of two, the first where they are equal, with the derivative of that one."""
+
+    native = "greater"
+    nargs = 2
+
+    @classmethod
+    def eval(cls, a: sp.Expr, b: sp.Expr) -> sp.Expr | None:
+        return a if a == b else sp.Max(a, b) if a.is_Number and b.is_Number else None
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        a, b = self.args
+        return Chosen(a - b, partial(b), partial(a), partial(a))
+
+
+class Less(CorneredBase):
+    """The less of two, the first where they are equal, with the derivative of that one."""
+
+    native = "less"
+    nargs = 2
+
+    @classmethod
+    def eval(cls, a: sp.Expr, b: sp.Expr) -> sp.Expr | None:
+        return a if a == b else sp.Min(a, b) if a.is_Number and b.is_Number else None
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        a, b = self.args
+        return Chosen(a - b, partial(a), partial(a), partial(b))
+
+
+class Inside(CorneredBase):
+    """A value between two bounds of x, zero at them and beyond: Inside(x, x0, x1, value)."""
+
+    native = "inside"
+    nargs = 4
+
+    @classmethod
+    def eval(cls, x: sp.Expr, x0: sp.Expr, x1: sp.Expr, value: sp.Expr) -> sp.Expr | None:
+        return value if value.is_zero else None
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        *bounds, value = self.args
+        return Inside(*bounds, partial(value))
+
+
+class Step(CorneredBase):
+    """Adams' STEP, or a derivative of it by x: Step(x, x0, h0, x1, h1, order), a cubic with flat ends."""
+
+    native = "step"
+    nargs = 6
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        """With z = (x - x0)/(x1 - x0) the k-th derivative is (h1 - h0) p^(k)(z)/(x1 - x0)^k, which is linear in h0 and h1."""
+        x, x0, h0, x1, h1, order = self.args
+        low, high, shift, shift0, shift1 = map(partial, (h0, h1, x, x0, x1))
+        width = x1 - x0
+        moved = shift + (shift0 * (x - x1) - shift1 * (x - x0)) / width
+        inner = self.func(x, x0, h0, x1, h1, order + 1) * moved - order * self * (shift1 - shift0) / width
+        levels = 0 if low == high == 0 else self.func(x, x0, low, x1, high, order)
+        return levels + Inside(x, x0, x1, inner)
+
+
+class Step5(Step):
+    """Adams' STEP5: the same by a quintic without curvature at its ends."""
+
+    native = "step5"
+
+
+def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> sp.Expr:
+    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic with flat ends."""
+    return Step(x, x0, h0, x1, h1, 0)
+
+
+def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> sp.Expr:
+    """Adams' STEP5: from h0 at x0 to h1 at x1 by a quintic without curvature at its ends."""
+    return Step5(x, x0, h0, x1, h1, 0)
+
+
+def greater(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
+    """The greatest of its arguments, with the derivative of that one."""
+    for other in others:
+        first = Greater(first, other)
+    return first
+
+
+def less(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
+    """The least of its arguments, with the derivative of that one."""
+    for other in others:
+        first = Less(first, other)
+    return first
+
+
+def _differences(first: sp.Expr, *others: sp.Expr) -> tuple[sp.Expr, ...]:
+    return tuple(first - other for other in others)
+
+
+CORNERED: dict[str, tuple[Callable[..., sp.Expr], Callable[..., tuple[sp.Expr, ...]]]] = {
+    "abs": (Magnitude, lambda x: (x,)),
+    "sign": (Sign, lambda x: (x,)),
+    "min": (less, _differences),
+    "max": (greater, _differences),
+    "step": (step, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
+    "step5": (step5, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
+    "branch": (Chosen, lambda x, below, at, above: (x,)),
+}
+"""Functions of formulas with corners, and what is zero there."""

@@ -1,0 +1,223 @@
+"""From a kind's shapes to the symbolic element that its equations are written in."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import sympy as sp
+
+from ...describe.formula.field import TIME
+from ...describe.formula.text import evaluate
+from ..kind import OWN, Kind, Shape
+from . import planar_frames, spatial_frames
+from .differentiate import Derivatives
+from .frames import ReferredJoint, SymbolicElement
+from .measures import measure, own_coordinate
+from .nonsmooth import CORNERED
+from .spline import Spline
+
+NARROW: dict[type[sp.Basic], str] = {
+    sp.exp: "exp", sp.cosh: "exp", sp.sinh: "exp", sp.tanh: "tanh", sp.atan: "atan",
+}  # fmt: skip
+"""Functions whose features are narrow where their argument is steep, and the zones that they have."""
+
+
+STEEP, LEAST_SQUARE = 10, 1e-200
+"""Whole powers from this one on, and those by a formula, are taken for exp(n log |x|): a high power of a sine is narrow.  The
+square of the least |x|."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A table or function with zones (`stiffmbs.compile.law_zones`) that a formula calls with something of the state.
+
+    Attributes
+    ----------
+    argument : expression
+    of : (str, int)
+        The zones' name; for ``table`` the place of its offset among the element's numbers, else 0.
+    """
+
+    argument: sp.Expr
+    of: tuple[str, int]
+
+
+@dataclass
+class Symbols:
+    """The symbols of one kind.
+
+    Attributes
+    ----------
+    element : SymbolicElement
+        For the equations.
+    numbers : list of Symbol
+        In the order of `ElementData.numbers`; integer ones are offsets of tables.
+    joint_lam : list of list of Symbol
+        Multipliers of each joint that is referred to.
+    switches : list of expressions
+        What changes its sign at the corners in the state of the formulas (``abs``, ``step``, ...).
+    laws : list of Law
+    """
+
+    element: SymbolicElement
+    numbers: list[sp.Symbol] = field(default_factory=list)
+    joint_lam: list[list[sp.Symbol]] = field(default_factory=list)
+    switches: list[sp.Expr] = field(default_factory=list)
+    laws: list[Law] = field(default_factory=list)
+
+    def note_switch(self, corner: sp.Expr) -> None:
+        """Note what changes its sign at a corner, if that is in the state."""
+        if self.element.in_state(corner) and corner not in self.switches:
+            self.switches.append(corner)
+
+    def note_law(self, argument: sp.Expr, name: str, table: sp.Symbol | None = None) -> None:
+        """Note the argument of a table or function with narrow features, if that is in the state."""
+        law = Law(argument, (name, 0 if table is None else self.numbers.index(table)))
+        if self.element.in_state(argument) and law not in self.laws:
+            self.laws.append(law)
+
+    def note_functions(self, expression: sp.Expr) -> None:
+        """Note the functions with narrow features that an expression holds."""
+        for part in sp.preorder_traversal(expression):
+            if type(part) in NARROW:
+                self.note_law(part.args[0], NARROW[type(part)])
+            elif isinstance(part, sp.tan):
+                self.note_law(sp.cos(part.args[0]), "reciprocal")
+            elif isinstance(part, sp.Pow) and part.exp.is_Number and part.exp < 0:
+                self.note_law(part.base, "reciprocal")
+            elif isinstance(part, sp.Pow) and not (part.exp.is_Number and part.exp < STEEP):
+                self.note_law(part.exp * sp.log(part.base**2 + sp.Float(LEAST_SQUARE)) / 2, "exp")
+
+
+def symbols_of(kind: Kind) -> Symbols:
+    """Make a kind's symbols and its element."""
+    derivatives, slots = Derivatives(), range(kind.n_bodies)
+    frames = (
+        [planar_frames.BodyFrame(slot) for slot in slots]
+        if kind.dimensions == 2
+        else [spatial_frames.SpatialBodyFrame(slot, derivatives) for slot in slots]
+    )
+    symbols = Symbols(SymbolicElement(frames, {}, derivatives))
+    builder = _Builder(kind.dimensions, symbols)
+    symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
+    return symbols
+
+
+class _Builder:
+    def __init__(self, dimensions: int, symbols: Symbols) -> None:
+        self.dimensions, self.frames, self.symbols = dimensions, symbols.element.frames, symbols
+
+    def fresh(self, name: str, **assumptions: bool) -> sp.Symbol:
+        """A new symbol for the next number."""
+        symbol = sp.Symbol(f"{name}_{len(self.symbols.numbers)}", **(assumptions or {"real": True}))
+        self.symbols.numbers.append(symbol)
+        return symbol
+
+    def made(self, name: str, shape: Shape) -> Any:
+        """What stands for a field in the equations."""
+        match shape:
+            case ("number",):
+                return self.fresh(name)
+            case ("choice", value):
+                return value
+            case ("marker", slot):
+                return self.marker(name, slot)
+            case ("several", shapes):
+                return tuple(self.made(f"{name}{k}", part) for k, part in enumerate(shapes))
+            case ("table",):
+                offset = self.fresh(name, integer=True)
+                return lambda x: self.spline(offset, x)
+            case ("formula", text, counts, measures):
+                return self.formula(name, text, counts, measures)
+            case ("joint", element, fields, slot, coordinate):
+                return self.joint(name, element, fields, slot, coordinate)
+        raise TypeError(f"no such shape: {shape}")
+
+    def marker(self, name: str, slot: int) -> Any:
+        """A frame with new symbols for its numbers."""
+        if self.dimensions == 2:
+            numbers = tuple(self.fresh(f"{name}_{part}") for part in planar_frames.MARKER_NUMBERS)
+            return planar_frames.Frame(self.frames[slot], numbers)
+        numbers = tuple(self.fresh(f"{name}_{part}") for part in spatial_frames.MARKER_NUMBERS)
+        return spatial_frames.SpatialFrame(self.frames[slot], numbers)
+
+    def joint(
+        self, name: str, element: Any, fields: tuple[tuple[str, Shape], ...], slot: int, coordinate: str | None
+    ) -> ReferredJoint:
+        """A joint that is referred to."""
+        own = {field_name: self.made(f"{name}_{field_name}", shape) for field_name, shape in fields}
+        joint = ReferredJoint(self.symbols.element, element, own, coordinate, slot)
+        self.symbols.joint_lam.append(joint.lam)
+        return joint
+
+    def formula(self, name: str, text: str, counts: tuple[int, int, int], measures: tuple[Any, ...]) -> Any:
+        """A formula's expression, or a function of its variables where it has such; of so many variables, numbers, tables."""
+        n_variables, n_numbers, n_tables = counts
+        numbers = [self.fresh(f"{name}_p") for _ in range(n_numbers)]
+        measured = [
+            self.measure(measure, [self.marker(f"{name}_{k}", slot) for k, (_, slot) in enumerate(shapes)])
+            for measure, shapes in measures
+        ]
+
+        tables = {f"table{k}": partial(self.spline, self.fresh(f"{name}_t", integer=True)) for k in range(n_tables)}
+
+        def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
+            def value(word: str) -> sp.Expr:
+                owner, _, coordinate = word.partition(".")
+                if coordinate:
+                    return self.frames[int(owner[1:])].coordinate(coordinate)
+                if word == TIME:
+                    return SymbolicElement.t
+                if word.startswith("measure"):
+                    return measured[int(word[7:])]
+                return (numbers if word[0] == "p" else variables)[int(word[1:])]
+
+            return value
+
+        tree = ast.parse(text, mode="eval").body
+
+        def function(*variables: sp.Expr) -> sp.Expr:
+            functions = self.functions() | tables
+            expression = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
+            if expression.has(sp.Abs):  # which SymPy makes of sqrt(x^2)
+                expression = expression.replace(sp.Abs, functions["abs"])
+            self.symbols.note_functions(expression)
+            return expression
+
+        return function if n_variables else function()
+
+    def functions(self) -> dict[str, Callable[..., sp.Expr]]:
+        """The functions of formulas; those with corners note where they are, if it is in the state."""
+
+        def noting(function: Callable[..., sp.Expr], corners: Callable[..., tuple[sp.Expr, ...]]) -> Any:
+            def called(*arguments: sp.Expr) -> sp.Expr:
+                for corner in corners(*arguments):
+                    self.symbols.note_switch(corner)
+                return function(*arguments)
+
+            return called
+
+        return SMOOTH | {name: noting(function, corners) for name, (function, corners) in CORNERED.items()}
+
+    def measure(self, name: str, markers: list[Any]) -> sp.Expr:
+        """A measure between markers, or a coordinate of a spatial body in its own axes."""
+        if name.startswith(OWN):
+            return own_coordinate(name.removeprefix(OWN), markers[0])
+        return measure(name, self.symbols.element, markers)
+
+    def spline(self, table: sp.Symbol, x: sp.Expr) -> sp.Expr:
+        """The value of the table at an offset."""
+        self.symbols.note_law(sp.sympify(x), "table", table)
+        return Spline(x, table, sp.Integer(0))
+
+
+SMOOTH: dict[str, Callable[..., sp.Expr]] = {
+    name: getattr(sp, name)
+    for name in (
+        "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
+    )
+}  # fmt: skip

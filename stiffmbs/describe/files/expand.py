@@ -1,0 +1,197 @@
+"""Scene text before validation: parameters, repeated entries and values set from outside.
+
+A repeated entry stands for many: ``link{k}: {for: k in 1..N, mass: 1, position: [(k - 0.5)*L, 0]}``.  For each k,
+``{...}`` in its name and its text is replaced by its value (``"link{k-1}"``), and so is k itself in its formulas.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError as PydanticError
+
+from ...errors import InputError
+from ..fields import NAME_PATTERN, sentence
+from ..formula.field import FUNCTIONS as FORMULA_FUNCTIONS
+from ..formula.field import TIME
+from ..formula.names import MEASURES
+from ..formula.text import UNIT, FormulaError
+from ..table import Table
+from ..units.quantity import FUNCTIONS, in_si, quantity
+from ..units.units import CONSTANTS, Quantity
+from .quoted import written
+
+MOST_REPEATS = 100_000
+_LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
+_BRACES = re.compile(r"\{([^{}]*)\}")
+
+
+def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
+    """Put a value at a path such as ``bodies.cart.mass``, ``run.rtol`` or a parameter's bare name.
+
+    Raises
+    ------
+    InputError
+        When the path leads through something that has no keys.
+    """
+    if path in (scene.get("parameters") or {}):
+        path = f"parameters.{path}"
+    *ways, last = path.split(".")
+    place: Any = scene
+    for k, way in enumerate(ways):
+        if isinstance(place, dict):
+            place = place.setdefault(way, {})
+        elif isinstance(place, list) and way.isdigit() and int(way) < len(place):
+            place = place[int(way)]
+        else:
+            raise InputError(f"--set {path}: found no '{'.'.join(ways[: k + 1])}' in the scene")
+    if isinstance(place, dict) and last:
+        place[last] = value
+    elif isinstance(place, list) and last.isdigit() and int(last) < len(place):
+        place[int(last)] = value
+    else:
+        raise InputError(f"--set {path}: found no such place in the scene")
+
+
+def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, str]]) -> None:
+    """Refuse to add a parameter that no other change uses: misspelt, it would change nothing and nobody would know.
+
+    Raises
+    ------
+    InputError
+        Names the parameter and those of the scene.
+    """
+    known = scene.get("parameters") or {}
+    for path, _ in changes:
+        section, _, name = path.partition(".")
+        alone = rf"(?<![\w.]){re.escape(name)}(?![\w.])"
+        used = any(re.search(alone, text) for other, text in changes if other != path)
+        if section == "parameters" and name and name not in known and not used:
+            raise InputError(
+                f"--set {path}: found no such parameter, expected one of {', '.join(map(str, known)) or 'none'}"
+            )
+
+
+def read_parameters(found: Any) -> dict[str, Quantity]:
+    """The scene's own names; one may use those above it.
+
+    Raises
+    ------
+    InputError
+        When a name is no identifier or is a unit's, or a value is no number.
+    """
+    parameters: dict[str, Quantity] = {}
+    if found is None:
+        return parameters
+    if not isinstance(found, dict):
+        raise InputError(f"parameters: found {written(found)}, expected a mapping of names to numbers")
+    for name, value in found.items():
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            raise InputError(f"parameters: found the name {written(name)}, expected letters, digits and _")
+        if name in CONSTANTS or name in FUNCTIONS or name in (TIME, UNIT):
+            raise InputError(f"parameters.{name}: found the name of a constant or function, expected another")
+        try:
+            parameters[name] = (
+                quantity(value, parameters) if isinstance(value, str) else Quantity(in_si(value, "number"))
+            )
+        except FormulaError as error:
+            raise InputError(f"parameters.{name}: {error}") from None
+    return parameters
+
+
+def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
+    """The scene's tables, which its formulas may call as functions.
+
+    Raises
+    ------
+    InputError
+        When a name is no identifier or has a meaning in formulas, or a table cannot be read.
+    """
+    if found is None:
+        return {}
+    if not isinstance(found, dict):
+        raise InputError(f"tables: found {written(found)}, expected a mapping of names to tables")
+    tables = {}
+    for name, table in found.items():
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            raise InputError(f"tables: found the name {written(name)}, expected letters, digits and _")
+        if name in (*FUNCTIONS, *FORMULA_FUNCTIONS, *MEASURES, *parameters):
+            raise InputError(f"tables.{name}: found the name of a function or parameter, expected another")
+        try:
+            tables[name] = Table.model_validate(table, context={"parameters": parameters})
+        except PydanticError as error:
+            raise InputError(f"tables.{name}: {sentence(error)}") from None
+    return tables
+
+
+def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity]) -> Any:
+    """Replace each entry that has a ``for`` by the entries that it stands for.
+
+    Raises
+    ------
+    InputError
+        When the loop cannot be read or two of its entries have the same name.
+    """
+    if not isinstance(entries, dict):
+        return entries
+    expanded: dict[Any, Any] = {}
+    for name, entry in entries.items():
+        where = f"{section}.{name}"
+        if not (isinstance(entry, dict) and "for" in entry):
+            if name in expanded:
+                raise InputError(f"{where}: found a name that a repeated entry makes too, expected another")
+            expanded[name] = _filled(where, entry, parameters)
+            continue
+        pattern = {key: value for key, value in entry.items() if key != "for"}
+        variable, first, last = _loop(where, entry["for"], parameters)
+        for k in range(first, last + 1):
+            names = {**parameters, variable: Quantity(float(k))}
+            repeated = _filled(where, name, names, variable)
+            if repeated in expanded:
+                raise InputError(f"{where}: found the name '{repeated}' twice, expected a name with {{{variable}}}")
+            expanded[repeated] = _filled(where, copy.deepcopy(pattern), names, variable)
+    return expanded
+
+
+def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[str, int, int]:
+    match = _LOOP.match(text) if isinstance(text, str) else None
+    if match is None:
+        raise InputError(f"{where}.for: found {written(text)}, expected a loop such as 'k in 1..N'")
+    variable = match[1]
+    if variable in parameters or variable in FUNCTIONS:
+        raise InputError(f"{where}.for: found the loop variable '{variable}', which has a meaning already")
+    try:
+        first, last = (quantity(bound, parameters).value for bound in (match[2], match[3]))
+    except FormulaError as error:
+        raise InputError(f"{where}.for: {error}") from None
+    if first != round(first) or last != round(last) or last - first > MOST_REPEATS:
+        raise InputError(
+            f"{where}.for: found {first:g}..{last:g}, expected whole numbers, at most {MOST_REPEATS} apart"
+        )
+    return variable, round(first), round(last)
+
+
+def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str = "") -> Any:
+    """A value with ``{...}``, and a loop's variable where it stands alone, replaced by numbers."""
+    if isinstance(value, dict):
+        return {key: _filled(where, item, names, variable) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_filled(where, item, names, variable) for item in value]
+    if not isinstance(value, str):
+        return value
+
+    def number(match: re.Match[str]) -> str:
+        try:
+            result = quantity(match[1], names).value
+        except FormulaError as error:
+            raise InputError(f"{where}: {error}") from None
+        return str(round(result)) if result == round(result) else repr(result)
+
+    filled = _BRACES.sub(number, value)
+    if not variable:
+        return filled
+    alone = rf"(?<![\w.]){variable}(?![\w.])"
+    return re.sub(alone, f"({round(names[variable].value)})", filled)

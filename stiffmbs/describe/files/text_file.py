@@ -1,0 +1,92 @@
+"""What stands in a text file: its encoding, and its lines."""
+
+from __future__ import annotations
+
+import codecs
+import re
+import sys
+from pathlib import Path
+
+from ...errors import InputError
+from .quoted import quoted
+
+STANDARD_INPUT = "-"
+"""What a file is called whose text is read from standard input."""
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+"""Byte order marks; that of UTF-32 begins as that of UTF-16."""
+_PADDING = "\0\x1a"
+"""What older systems fill the end of a file with."""
+
+
+def source_name(path: str | Path) -> str:
+    """What messages call a file."""
+    return "standard input" if str(path) == STANDARD_INPUT else str(path)
+
+
+def file_text(path: str | Path, otherwise: str = "") -> str:
+    """What stands in a file, or on standard input where its name is ``-``.
+
+    Parameters
+    ----------
+    path : str or Path
+    otherwise : str
+        The encoding of a file that is neither UTF-8 nor UTF-16; such a file is refused without it.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, or is no text.
+    """
+    source = source_name(path)
+    if str(path) == STANDARD_INPUT and sys.stdin is None:
+        raise InputError(f"{source}: found it closed, expected a scene")
+    try:
+        content = sys.stdin.buffer.read() if str(path) == STANDARD_INPUT else Path(path).read_bytes()
+    except FileNotFoundError:
+        raise InputError(f"{source}: found no such file, expected a scene") from None
+    except (OSError, ValueError) as error:  # a name may hold what no file system takes
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{quoted(source)}: the file cannot be read ({reason})") from None
+    return decoded(content, source, otherwise)
+
+
+def decoded(content: bytes, source: str, otherwise: str = "") -> str:
+    """The text of bytes: UTF-8, UTF-16 or UTF-32 by their mark, UTF-16 without one by its zero bytes; errors as `file_text`."""
+    encoding = next((name for mark, name in _MARKS if content.startswith(mark)), None) or _unmarked(content)
+    try:
+        text = content.decode(encoding)
+    except UnicodeDecodeError:
+        if not otherwise or encoding != "utf-8":
+            name = encoding.upper().removesuffix("-SIG")
+            raise InputError(f"{source}: the file cannot be read (it is not {name} text)") from None
+        text = content.decode(otherwise)
+    return checked(text, source)
+
+
+def checked(text: str, source: str) -> str:
+    """A text without a byte order mark and what pads its end; refused where zero bytes stand in it, which no text has."""
+    text = text.removeprefix("\ufeff").rstrip(_PADDING)
+    if "\0" in text:
+        line = len(lines(text[: text.index("\0")] + "x"))
+        raise InputError(f"{source}, line {line}: found a zero byte, expected text")
+    return text
+
+
+def _unmarked(content: bytes) -> str:
+    """UTF-16 where one of the first two signs, which are ASCII in what is read here, has its zero byte; else UTF-8."""
+    first = content[:4]
+    if first[1:2] == b"\0" and first[:1] != b"\0":
+        return "utf-16-le"
+    return "utf-16-be" if first[:1] == b"\0" and first[1:2] not in (b"\0", b"") else "utf-8"
+
+
+def lines(text: str) -> list[str]:
+    """The lines of a text, which CR and LF end alone (`str.splitlines` takes form feeds, U+0085 and U+2028 for ends too)."""
+    found = re.split(r"\r\n|\r|\n", text)
+    return found[:-1] if not found[-1] else found

@@ -1,0 +1,177 @@
+"""Arithmetic in scenes: text to a syntax tree with a closed list of nodes, and its evaluation.
+
+Nothing in a formula can run code: the tree is made by ``ast.parse``, every node is checked against a closed list,
+and names are looked up in the tables that the caller gives.  A number followed by a unit binds tightly
+(``10 N/5 mm`` is 2 N/mm), a power belongs to the unit (``2 mm^2``).  A name that follows a value without an
+operator is looked up as ``unit.name``, so that a parameter N and the newton can live in one scene.
+"""
+
+from __future__ import annotations
+
+import ast
+import io
+import operator
+import re
+import tokenize
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ..files.quoted import quoted
+
+UNIT = "unit"
+_NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
+"""A number that runs into a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
+LONGEST = 2000
+DEEPEST = 60
+LARGEST_LITERAL = 1e300
+
+BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {ast.UAdd: operator.pos, ast.USub: operator.neg}
+
+
+class FormulaError(ValueError):
+    """A formula that cannot be read or evaluated; the message is the rest of a sentence that starts with where."""
+
+
+def parse(text: str) -> ast.expr:
+    """Read a formula into a checked syntax tree.
+
+    Parameters
+    ----------
+    text : str
+        For example ``"0.6/2 m"``, ``"20 deg"``, ``"cart.y - 0.1*sin(cart.x)"``.
+
+    Raises
+    ------
+    FormulaError
+        When the text is no formula or holds anything but arithmetic, names, ``name.name`` and calls by name.
+    """
+    if len(text) > LONGEST:
+        raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST}")
+    try:
+        tree = ast.parse(_python_spelling(text), mode="eval").body
+    except (SyntaxError, tokenize.TokenError, ValueError, RecursionError, MemoryError):
+        raise FormulaError(
+            f"found '{quoted(text)}', expected a number or a formula such as '125 mm' or '0.6/2'"
+        ) from None
+    _check(tree, text, 0)
+    return tree
+
+
+def _python_spelling(text: str) -> str:
+    """Rewrite ``5 N m/rad`` as ``(5*unit.N*unit.m)/rad`` and ``^`` as ``**``."""
+    spaced = _NUMBER_AND_NAME.sub(r"\1 ", text.strip().replace("^", "**"))
+    tokens = [
+        t.string
+        for t in tokenize.generate_tokens(io.StringIO(spaced).readline)
+        if t.type not in (tokenize.NEWLINE, tokenize.NL, tokenize.ENDMARKER)
+    ]
+    words: list[str] = []
+    k = 0
+    while k < len(tokens):
+        if _is_number(tokens[k]) and k + 1 < len(tokens) and tokens[k + 1].isidentifier():
+            end = k + 1
+            while end < len(tokens) and tokens[end].isidentifier():
+                end += _factor_length(tokens, end)
+            words += ["(", tokens[k], *_joined(tokens[k + 1 : end]), ")"]
+            k = end
+            continue
+        if words and tokens[k].isidentifier() and (words[-1].isidentifier() or words[-1] == ")"):
+            words += ["*", UNIT, "."]
+        words.append(tokens[k])
+        k += 1
+    return " ".join(words)
+
+
+def _is_number(token: str) -> bool:
+    return token[0].isdigit() or (token[0] == "." and token[1:2].isdigit())
+
+
+def _factor_length(tokens: list[str], at: int) -> int:
+    """How many tokens the unit at `at` takes with its power: ``mm``, ``mm ** 2``, ``s ** - 1``."""
+    rest = tokens[at + 1 : at + 4]
+    if rest[:1] == ["**"]:
+        return 4 if rest[1:2] == ["-"] else 3
+    return 1
+
+
+def _joined(tokens: list[str]) -> list[str]:
+    words: list[str] = []
+    for token in tokens:
+        if token.isidentifier():
+            words += ["*", UNIT, "."]
+        words.append(token)
+    return words
+
+
+def _check(node: ast.AST, text: str, depth: int) -> None:
+    if depth > DEEPEST:
+        raise FormulaError(f"found a formula nested deeper than {DEEPEST}, expected a shorter one")
+    match node:
+        case ast.BinOp(left, op, right) if type(op) in BINARY:
+            children: list[ast.AST] = [left, right]
+        case ast.UnaryOp(op, operand) if type(op) in UNARY:
+            children = [operand]
+        case ast.Constant(bool()):
+            raise FormulaError(f"found '{quoted(text)}', expected a number or a formula, not a truth value")
+        case ast.Constant(int() | float() as value):
+            if not abs(value) < LARGEST_LITERAL:
+                raise FormulaError(f"found a number that is too large in '{quoted(text)}'")
+            return
+        case ast.Name() | ast.Attribute(ast.Name()):
+            return
+        case ast.Call(ast.Name(), list() as arguments, []) if not any(isinstance(a, ast.Starred) for a in arguments):
+            children = list(arguments)
+        case _:
+            raise FormulaError(f"found '{quoted(text)}', expected only arithmetic, names and functions")
+    for child in children:
+        _check(child, text, depth + 1)
+
+
+def evaluate(
+    tree: ast.expr,
+    names: Callable[[str], Any],
+    functions: Mapping[str, Callable[..., Any]],
+    number: Callable[[int | float], Any] = float,
+) -> Any:
+    """Evaluate a checked tree in any algebra (plain numbers with dimensions, SymPy expressions).
+
+    Parameters
+    ----------
+    tree : ast.expr
+        From `parse`.
+    names : callable
+        Gives the value of a name such as ``L`` or ``cart.x``; raises `FormulaError` for an unknown one.
+    functions : mapping
+        The functions that may be called, by name.
+    number : callable
+        Turns a literal into a value of the algebra.
+    """
+    match tree:
+        case ast.BinOp(left, op, right):
+            return BINARY[type(op)](evaluate(left, names, functions, number), evaluate(right, names, functions, number))
+        case ast.UnaryOp(op, operand):
+            return UNARY[type(op)](evaluate(operand, names, functions, number))
+        case ast.Constant(int() | float() as value):
+            return number(value)
+        case ast.Name(name):
+            return names(name)
+        case ast.Attribute(ast.Name(owner), name):
+            return names(f"{owner}.{name}")
+        case ast.Call(ast.Name(name), arguments):
+            if name not in functions:
+                raise FormulaError(f"found the function '{name}', expected one of {', '.join(sorted(functions))}")
+            try:
+                return functions[name](*(evaluate(a, names, functions, number) for a in arguments))
+            except TypeError:
+                raise FormulaError(
+                    f"found {len(arguments)} arguments of '{name}', expected more or fewer of them"
+                ) from None
+        case _:
+            raise FormulaError("found something that is no arithmetic")

@@ -1,0 +1,61 @@
+"""Elements with the numbers of the bodies' described poses in place of symbols: mechanisms as they are drawn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .element import Element, Joint, JointName
+from .marker import MarkerReference
+
+if TYPE_CHECKING:
+    from .model_data import ModelData
+
+
+@dataclass(frozen=True)
+class DrawnMarker:
+    """A marker with numbers, in ground axes: what `stiffmbs.compile.symbolic.planar_frames.Frame` is with symbols.
+
+    Attributes
+    ----------
+    point : ndarray, shape (2,)
+        m.
+    angle : float
+        rad.
+    """
+
+    point: np.ndarray
+    angle: float
+
+    @property
+    def axis(self) -> np.ndarray:
+        """Unit vector along the marker's axis."""
+        return np.array([math.cos(self.angle), math.sin(self.angle)])
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit vector across the marker's axis, a quarter turn ahead of it."""
+        return np.array([-math.sin(self.angle), math.cos(self.angle)])
+
+
+def drawn(element: Element, model: ModelData) -> Any:
+    """The element as its equations see it, for markers, numbers and joints that it refers to."""
+    fields = {name: _drawn(getattr(element, name), model) for name in type(element).model_fields}
+    return SimpleNamespace(**fields, angle=math.atan2)
+
+
+def _drawn(value: Any, model: ModelData) -> Any:
+    match value:
+        case MarkerReference():
+            return model.drawn_marker(value)
+        case JointName():
+            joint: Joint = model.joints[value.joint]
+            e, name = drawn(joint, model), value.coordinate_of(joint)
+            e.coordinate = None if name is None else getattr(joint, name)(e)
+            return e
+        case _:
+            return value

@@ -1,0 +1,46 @@
+"""What constraints that a user writes as formulas share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field, WithJsonSchema, field_validator
+
+from ..element import Joint, Symbolic
+from ..formula.field import Formula
+from ..marker import MarkerReference
+
+_FORMULA = {"type": "string", "description": "a formula of coordinates and t"}
+ONE_OR_MORE = WithJsonSchema({"anyOf": [_FORMULA, {"type": "array", "items": _FORMULA, "minItems": 1}]})
+
+
+class KeptAtZero(Joint):
+    """Base of the constraints whose field `zero` holds formulas (it has no kind: scenes name its subclasses).
+
+    The equations are named ``zero[0] zero[1] ...`` in reports.  The reaction is reported on the body of marker `i`, about
+    its point; without one on the first body that the formulas name, about its centre of mass.
+    """
+
+    i: MarkerReference | None = Field(None, description="marker of the body on which the reaction is reported")
+    j: MarkerReference | None = Field(None, description="marker on which requests may ask for the reaction")
+    zero: tuple[Formula, ...]
+
+    @field_validator("zero", mode="before")
+    @classmethod
+    def _one_or_more(cls, found: Any) -> Any:
+        return tuple(found) if isinstance(found, list | tuple) else (found,)
+
+    @field_validator("zero")
+    @classmethod
+    def _names_a_body(cls, zero: tuple[Formula, ...]) -> tuple[Formula, ...]:
+        for formula in zero:
+            if not any(True for _ in formula.bodies()):
+                raise ValueError(f"found '{formula.text}', expected a formula with a body's coordinate such as cart.x")
+        return zero
+
+    @staticmethod
+    def point(e: Symbolic) -> Any:
+        return e.frames[0].origin if e.i is None else e.i.point
+
+    def equation_names(self) -> tuple[str, ...]:
+        return tuple(f"zero[{k}]" for k in range(len(self.zero)))

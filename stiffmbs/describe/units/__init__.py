@@ -1,0 +1,1 @@
+"""Dimensions, units, and numbers that carry them."""

@@ -1,0 +1,126 @@
+"""Results that make no sense, whatever the solver says of its steps: growth without bound, open joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..compile.reactions import reactions
+from ..compile.system import System
+from ..describe.settings import RunSettings
+from ..solve.events.divergence import BEYOND, LIGHT, exponential, reaches
+from ..solve.mechanics import Mechanics, OutputRows
+from ..solve.settings import near_constraints
+from ..solve.storage import blocks, release
+
+RESOLVED = 1e-6
+"""Part of the mechanism's size that rounding of coordinates may take."""
+OPEN, DRIFTED = 1e-6, 1e-2
+"""Parts of the mechanism's size by which a joint may be open: on the constraints, and where drift is shown as it is."""
+
+
+def senseless(mechanics: Mechanics, rows: OutputRows, settings: RunSettings) -> Iterator[str]:
+    """What no motion of the scene can be, a sentence each.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+        Of the whole; its state is changed.
+    rows : OutputRows
+        Of the run.
+    settings : RunSettings
+    """
+    with np.errstate(all="ignore"):
+        grown = _grown(mechanics.system, rows)
+        if grown:
+            yield grown
+        open_joint = _open_joint(mechanics, rows, settings)
+        if open_joint:
+            yield open_joint
+
+
+def _grown(system: System, rows: OutputRows) -> str:
+    """A sentence on growth beyond sense; empty where there is none."""
+    if not system.bodies:
+        return ""
+    of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
+    far, speed = np.empty(len(rows.t)), np.empty(len(rows.t))
+    for block in blocks(len(rows.t)):
+        far[block] = np.max(np.abs(rows.q[block] - rows.q[0]) * of_places, axis=1)
+        speed[block] = np.max(np.abs(rows.u[block]) * of_rates, axis=1)
+        release(rows.q, rows.u)
+    limit = BEYOND * system.size
+    if np.nanmax(far) > limit and exponential(rows.t, np.fmax.accumulate(far)):
+        return _growth_sentence(
+            system, rows, far, limit, f"{BEYOND:.0e} times the mechanism's size of {system.size:.3g} m"
+        )
+    if np.nanmax(speed) > LIGHT:
+        return _growth_sentence(system, rows, speed, LIGHT, "the speed of light")
+    resolved = RESOLVED * system.size / np.finfo(float).eps
+    if np.nanmax(far) > resolved and _connected(system):
+        what = f"where rounding takes more than {RESOLVED:.0e} of the mechanism's size of {system.size:.3g} m"
+        return _growth_sentence(system, rows, far, resolved, what)
+    return ""
+
+
+def _connected(system: System) -> bool:
+    """Whether anything holds bodies together: its deformation is a difference of coordinates."""
+    ground = len(system.bodies)
+    return any(
+        group.kind.element.kind
+        and bool(np.any(np.sum(group.bodies < ground, axis=1) >= 1 + (not group.record.n_equations)))
+        for group in system.groups
+    )
+
+
+def _growth_sentence(system: System, rows: OutputRows, values: np.ndarray, limit: float, what: str) -> str:
+    first = int(np.argmax(values > limit))
+    unit = "m/s" if limit == LIGHT else "m"
+    return (
+        f"the motion grows beyond sense: at t = {rows.t[first]:.6g} s {_body(system, rows, first)} is past {what}, and comes to "
+        f"{np.nanmax(values):.2g} {unit}{_strongest(system, rows, first)}; look for a wrong sign of a stiffness, damping or force"
+    )
+
+
+def _body(system: System, rows: OutputRows, row: int) -> str:
+    """The body that is furthest at an instant."""
+    way = np.abs(rows.u[row]) * system.per_velocity(1.0, system.size)
+    return f"'{system.bodies[int(np.nanargmax(way)) // system.of_body.n_u]}'"
+
+
+def _strongest(system: System, rows: OutputRows, row: int) -> str:
+    """The force element, or else the joint, that acts hardest at an instant."""
+    joints = {joint for joint, _ in system.equations}
+    acting = {
+        name: abs(float(values[0]))
+        for name, values in reactions(system, rows.values[row : row + 1]).items()
+        if np.isfinite(values[0])
+    }
+    forces = {name: value for name, value in acting.items() if name.rpartition(".")[0] not in joints and value > 0}
+    name = max(forces or acting, key=lambda each: acting[each], default="")
+    if not name:
+        return ""
+    unit = "N" if ".f" in name else "N m"
+    return f" ('{name.rpartition('.')[0]}' acts with {acting[name]:.3g} {unit} there)"
+
+
+def _open_joint(mechanics: Mechanics, rows: OutputRows, settings: RunSettings) -> str:
+    """A sentence on a joint that is open; empty where none is."""
+    system, violation = mechanics.system, rows.position_violation
+    if not system.n_c or np.isnan(violation).all():
+        return ""
+    allowed = (OPEN if near_constraints(settings) else DRIFTED) * max(system.size, 1e-3)
+    worst = int(np.nanargmax(violation))
+    if violation[worst] <= allowed:
+        return ""
+    state = mechanics.state
+    state.q[:], state.u[:] = rows.q[worst], rows.u[worst]
+    state.evaluate("motion", rows.t[worst])
+    gaps = np.abs(state.vector("motion", "C"))
+    joint, equation = system.equations[int(np.argmax(gaps))]
+    first = int(np.argmax(violation > allowed))
+    return (
+        f"constraints are violated: joint '{joint}' (equation {equation}) is open by {violation[worst]:.3g} at "
+        f"t = {rows.t[worst]:.6g} s, first by more than {allowed:.1g} at t = {rows.t[first]:.6g} s; expected at most {allowed:.1g}"
+    )

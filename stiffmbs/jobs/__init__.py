@@ -1,0 +1,1 @@
+"""What is done with a model: prepared, checked, run, compiled ahead."""

@@ -1,0 +1,188 @@
+"""Checking a model without running it: degrees of freedom, redundant equations, reactions without a unique value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..compile.system import System
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.scene import notes_of
+from ..describe.settings import RunSettings
+from ..errors import AssemblyError, SolverError
+from ..solve.initial import InitialValues, initial_values
+from ..solve.moves import Move
+from ..solve.subsystems import Piece
+from ..structure.idle_freedoms import OwnFreedom, own_freedoms
+from ..structure.overconstraint import Overconstraint, listed, overconstraints
+from ..structure.told.redundancy import (
+    contradiction_sentences,
+    known_near_start,
+    overconstraint_sentences,
+    pose_sentences,
+    singular_sentence,
+)
+from ..structure.told.unconnected import unconnected_sentence
+from .presolve_report import presolve_sentences, unknowns
+from .run import Examined, examined, presolved
+
+MOST_MOVES = 50
+"""Bodies that are named of those which assembly moves; `Report.moved` has all."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """What `check` found.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    degrees_of_freedom : int
+        n_u - rank.
+    equations, rank : int
+        Constraint equations, and how many of them are independent in general.
+    redundant : tuple of (str, str)
+        Joint and name of the equations that a run leaves out.
+    not_unique : tuple of str
+        Channels of reactions that have no unique value.
+    overconstraints : tuple of Overconstraint
+        What is held more than once, with reasons and remedies.
+    contradictions : tuple of str
+        Sentences on equations that no motion satisfies.
+    extra_freedoms : int
+        Degrees of freedom at the start beyond those in general: more than 0 at a singular pose.
+    unknowns : tuple of (int, int)
+        Of the formulation SI2: of all bodies and equations, and of what is solved for.
+    presolve : tuple of str
+        What is left out of the solution because it follows from the rest, a sentence each.
+    moved : tuple of Move
+        What assembly changes of the bodies as described.
+    messages : tuple of str
+        All else that there is to say, a sentence each.
+    sound : bool
+        Whether nothing stands in the way of a run with unique reactions.
+    """
+
+    name: str
+    degrees_of_freedom: int
+    equations: int
+    rank: int
+    redundant: tuple[tuple[str, str], ...]
+    not_unique: tuple[str, ...]
+    overconstraints: tuple[Overconstraint, ...]
+    contradictions: tuple[str, ...]
+    extra_freedoms: int
+    unknowns: tuple[int, int]
+    presolve: tuple[str, ...]
+    moved: tuple[Move, ...]
+    messages: tuple[str, ...]
+    sound: bool
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs check --json``.
+
+        Parameters
+        ----------
+        scene : str
+            The file, or what else the scene is called.
+        """
+        return {
+            "scene": scene,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "equations": self.equations,
+            "rank": self.rank,
+            "redundant": [{"joint": joint, "equation": equation} for joint, equation in self.redundant],
+            "not_unique": list(self.not_unique),
+            "unknowns": {"before": self.unknowns[0], "after": self.unknowns[1]},
+            "messages": [*self.messages, *(f"presolve: {sentence}" for sentence in self.presolve)],
+        }
+
+    def __str__(self) -> str:
+        count = self.degrees_of_freedom
+        freedoms = f"{count} degree{'s' if count != 1 else ''} of freedom"
+        head = (
+            f"{self.name or 'model'}: {freedoms}, {self.equations} equations of rank "
+            f"{self.rank}, {self.unknowns[0]} unknowns"
+        )
+        presolve = [f"presolve: {sentence}" for sentence in self.presolve]
+        return "\n".join([head, *presolve, *(f"- {message}" for message in self.messages or ("nothing to object to",))])
+
+
+def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Report:
+    """Examine a model: degrees of freedom, redundancy, uniqueness of reactions, singular poses, contradictions.
+
+    Parameters
+    ----------
+    model : Model or Scene
+    settings : RunSettings, optional
+        Whose ``give_way``, ``start`` and ``duration`` are used; the scene's own by default.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    InputError
+        When the model or a setting is wrong.
+    """
+    found = examined(model, settings, **changes)
+    redundancy, system = found.redundancy, found.redundancy.system
+    cases = tuple(overconstraints(redundancy))
+    against = tuple(contradiction_sentences(redundancy))
+    held_twice = (
+        []
+        if against
+        else [
+            sentence
+            for case in cases
+            for sentence in overconstraint_sentences(case, known_near_start(case, redundancy))
+        ]
+    )
+    problems = [*against, *held_twice]
+    problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
+    mechanics, pieces, free = found.mechanics(), tuple[Piece, ...](), list[OwnFreedom]()
+    start: InitialValues | None = None
+    if not against:
+        try:
+            start = initial_values(mechanics, found.grid.start)
+            free = own_freedoms(mechanics, found.grid.start)
+            pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+            problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
+        except (AssemblyError, SolverError) as error:
+            problems += [] if redundancy.extra_freedoms else [str(error)]
+    return Report(
+        name=found.data.name, degrees_of_freedom=redundancy.degrees_of_freedom, equations=system.n_c,
+        rank=redundancy.rank, redundant=redundancy.redundant, not_unique=redundancy.not_unique, overconstraints=cases,
+        contradictions=against, extra_freedoms=redundancy.extra_freedoms,
+        unknowns=unknowns(system, pieces, mechanics), presolve=tuple(presolve_sentences(system, pieces, mechanics)),
+        moved=start.moved if start else (),
+        messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
+    )  # fmt: skip
+
+
+def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
+    """What assembly changes, where it is no problem."""
+    if start and not start.moved_far and (sentence := start.position_sentence(MOST_MOVES)):
+        yield sentence
+
+
+def _freedom_sentences(found: Examined, system: System, free: Sequence[OwnFreedom]) -> Iterator[str]:
+    if found.redundancy.degrees_of_freedom == 0:
+        yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
+    for freedom in free:
+        yield _own_freedom_sentence(freedom)
+    yield from unconnected_sentence(system)
+
+
+def _own_freedom_sentence(freedom: OwnFreedom) -> str:
+    body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
+    if not freedom.held_by:
+        return f"{body} can {motion} by itself between {between}, which moves no other body"
+    hold = "holds" if len(freedom.held_by) == 1 else "hold"
+    return f"joints alone would let {body} {motion} by itself between {between}: {listed(freedom.held_by)} {hold} it"

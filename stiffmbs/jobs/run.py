@@ -1,0 +1,239 @@
+"""The main job: a model is compiled, assembled, solved and turned into channels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..compile.compile_model import compile_model
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.scene import Scene, notes_of
+from ..describe.settings import RunSettings
+from ..diagnostics.far_away import refuse_far_away
+from ..diagnostics.growth import senseless
+from ..errors import AssemblyError, InputError
+from ..presolve.presolve import parts_of
+from ..results.channels import channels_of
+from ..results.energy_balance import energy_balance
+from ..results.energy_balance_notes import balance_notes
+from ..results.missing_rows import reported
+from ..results.solution import Solution
+from ..results.undefined_values import no_number_sentences
+from ..solve import SOLVERS
+from ..solve.events.input_ends import solve_up_to_the_inputs_end
+from ..solve.explicit import ADAPTIVE
+from ..solve.failures import FAILURES
+from ..solve.initial import InitialValues, initial_values
+from ..solve.mechanics import Mechanics, OutputRows
+from ..solve.settings import changed, may_presolve, near_constraints, output_grid
+from ..solve.subsystems import Piece, leave_out_coordinates, piece_of, solve_pieces
+from ..solve.suspect import suspect
+from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
+from ..structure.redundancy import Redundancy, examine
+from ..structure.told.unconnected import unconnected_sentence
+from .presolve_report import presolve_sentences
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A model compiled and examined for redundant equations."""
+
+    data: ModelData
+    settings: RunSettings
+    grid: Grid
+    redundancy: Redundancy
+
+    def mechanics(self) -> Mechanics:
+        """Of the system without its redundant equations."""
+        system = self.redundancy.system
+        return Mechanics(replace(system, active=self.redundancy.active) if self.redundancy.redundant else system)
+
+
+@dataclass(frozen=True)
+class Job:
+    """A model compiled and assembled, ready to be integrated any number of times."""
+
+    data: ModelData
+    settings: RunSettings
+    grid: Grid
+    redundancy: Redundancy
+    mechanics: Mechanics
+    start: InitialValues
+    pieces: tuple[Piece, ...] = ()
+
+    def integrate(self, watch: Watch | None = None) -> Trajectory:
+        """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
+        solve, watch = SOLVERS[self.settings.solver], watch or (lambda t: None)
+
+        def over(grid: Grid) -> Trajectory:
+            if self.pieces:
+                return solve_pieces(solve, self.pieces, self.start, grid, self.settings, watch)
+            return solve(self.mechanics, self.start, grid, self.settings, watch)
+
+        return solve_up_to_the_inputs_end(self.mechanics, self.grid, over)
+
+
+def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
+    """Compile and assemble a model; parameters and errors as for `run`."""
+    found = examined(model, settings, **changes)
+    if found.redundancy.findings:
+        from ..structure.told.redundancy import refuse_contradictions
+
+        refuse_contradictions(found.redundancy)
+    mechanics = found.mechanics()
+    start = initial_values(mechanics, found.grid.start)
+    pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+    return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
+
+
+def presolved(
+    model: ModelData, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
+) -> tuple[Piece, ...]:
+    """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
+
+    For implicit steps their mechanics, or those of the whole, then leave out coordinates that others determine.
+
+    Parameters
+    ----------
+    model : ModelData
+    mechanics : Mechanics
+        Of the whole, at its start.
+    start : InitialValues
+    grid : Grid
+    settings : RunSettings
+    """
+    if not may_presolve(settings):
+        return ()
+    parts = parts_of(model, mechanics.system, apart=grid.times is not None)
+    pieces = tuple(piece_of(part, start, grid.start) for part in parts)
+    if settings.solver != "projected":
+        for solved in [piece.mechanics for piece in pieces] or [mechanics]:
+            leave_out_coordinates(solved, grid.start)
+    return pieces
+
+
+def examined(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Examined:
+    """Compile a model and look for redundant equations; parameters and errors as for `run`."""
+    data = model.data() if isinstance(model, ModelBuilder) else model
+    if not isinstance(data, ModelData):
+        raise InputError(f"found {model!r}, expected a Model, or a Scene as stiffmbs.load_scene reads it from a file")
+    chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
+    for name in chosen.give_way:
+        if name not in data.joints:
+            raise InputError(f"give_way: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
+    order = [*(name for name in data.joints if name not in chosen.give_way), *chosen.give_way]
+    grid = output_grid(chosen)
+    refuse_far_away(data)
+    system = compile_model(data)
+    return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
+
+
+def run(
+    model: ModelBuilder | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any
+) -> Solution:
+    """Solve a model.
+
+    Parameters
+    ----------
+    model : Model or Scene
+        What to solve.
+    settings : RunSettings, optional
+        How; the scene's own by default.
+    watch : callable, optional
+        Called with the time reached, s.
+    **changes
+        Fields of the settings to change: ``duration=2.0, rtol=1e-8``.
+
+    Returns
+    -------
+    Solution
+        Also for a run that stopped early: it then holds what was computed, and `message` says why it ended.
+
+    Raises
+    ------
+    InputError
+        When the model or a setting is wrong.
+    AssemblyError
+        When no consistent start is found.
+    """
+    return solved(prepare(model, settings, **changes), watch)
+
+
+@np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
+def solved(job: Job, watch: Watch | None = None) -> Solution:
+    """Integrate what was prepared, and turn it into channels; errors as for `run`."""
+    trajectory = _sound_part(job, job.integrate(watch))
+    project = near_constraints(job.settings)
+    rows, left_out = reported(job.mechanics, trajectory, project)
+    if not len(rows.t):
+        raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
+    statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
+    if project:
+        statistics["drift"] = float(np.nanmax(rows.drift))
+    outcome, message = _ending(job, rows, trajectory)
+    system, channels = job.mechanics.system, channels_of(job.data, job.mechanics.system, rows)
+    energies = channels["energy.kinetic"], channels["energy.potential"]
+    balance = energy_balance(system, rows.t, *energies, rows.values, trajectory.step_times)
+    wrong = tuple(senseless(job.mechanics, rows, job.settings))
+    wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
+    solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
+    known = {name: values[solved_there] for name, values in channels.items() if not np.isfinite(values).all()}
+    wrong = (*wrong, *no_number_sentences(rows.t[solved_there], known))
+    return Solution(
+        name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
+        message=message, notes=(*_notes(job, trajectory), *left_out, *wrong), solver=statistics,
+        history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
+        requested=frozenset(job.data.requested_channels()),
+        presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
+    )  # fmt: skip
+
+
+def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
+    """A trajectory up to where a mechanism locks, for equations that were left out, or for prescribed velocities."""
+    system = job.mechanics.system
+    if not job.redundancy.redundant and system.holonomic.all():
+        return trajectory
+    from ..diagnostics.locked import locked
+
+    found = locked(job.mechanics, job.redundancy, trajectory)
+    if found is None:
+        return trajectory
+    outputs, sentence = found
+    return replace(
+        trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
+        message=sentence,
+    )  # fmt: skip
+
+
+def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
+    """How the run ended, and the sentence for it: also stopped where states have no accelerations and reactions."""
+    if len(rows.t) == len(trajectory.t):
+        return trajectory.outcome, trajectory.message
+    t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
+    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    return Outcome.STOPPED, sentence + suspect(job.mechanics, t, q, u)
+
+
+def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
+    yield from notes_of(job.data)
+    if job.redundancy.findings:
+        from ..structure.told.redundancy import note_sentences
+
+        yield from note_sentences(job.redundancy)
+    yield from unconnected_sentence(job.mechanics.system)
+    if job.start.moved:
+        yield job.start.sentence()
+    if trajectory.note:
+        yield trajectory.note
+    if job.settings.max_order is not None and job.settings.solver in ("projected", "kinematic"):
+        yield f"max_order = {job.settings.max_order} has no effect: it is the highest order of bdf's formulas, found solver '{job.settings.solver}'"
+    fixed = job.settings.solver == "projected" and job.settings.scheme not in ADAPTIVE
+    if fixed and job.mechanics.system.n_values("switch"):
+        yield (
+            f"{job.settings.scheme} does not locate the corners that forces have in the state (contacts, step, abs, tables), and a step of "
+            f"{job.settings.step:g} s may pass over them; dopri5, dop853 and bdf see them"
+        )

@@ -1,0 +1,133 @@
+"""Where bodies sit on others that carry them, and how their states follow from those of their carriers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..compile.quaternions import CONJUGATE, rotated, times
+
+IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+class Seats(Protocol):
+    """The places of k bodies, each on its carrier."""
+
+    @property
+    def moved(self) -> bool:
+        """Whether any body is elsewhere than its carrier."""
+
+    def inverse(self) -> Seats:
+        """The carriers' places on the bodies."""
+
+    def like(self, q: np.ndarray, carrier: np.ndarray) -> Seats:
+        """The same places, in numbers that give the bodies the coordinates q, shape (k, n_q), where these can be chosen.
+
+        Parameters
+        ----------
+        carrier : ndarray of int, shape (k,)
+            The number of each body's carrier.
+        """
+
+    def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The states of the bodies from those of their carriers; shapes (..., k, n_q) and (..., k, n_u)."""
+
+
+@dataclass(frozen=True)
+class PlanarSeats:
+    """In the plane.
+
+    Attributes
+    ----------
+    point, angle : ndarrays, shapes (k, 2), (k,)
+        Where the centres of mass and axes are in those of the carriers, m, rad.
+    """
+
+    point: np.ndarray
+    angle: np.ndarray
+
+    @classmethod
+    def none(cls, count: int) -> PlanarSeats:
+        """Of bodies that are where their carriers are."""
+        return cls(np.zeros((count, 2)), np.zeros(count))
+
+    @classmethod
+    def of(cls, placements: Sequence[Any]) -> PlanarSeats:
+        """Those of planar placements."""
+        return cls(np.array([place.point for place in placements]), np.array([place.angle for place in placements]))
+
+    @property
+    def moved(self) -> bool:
+        return bool(self.point.any() or self.angle.any())
+
+    def inverse(self) -> PlanarSeats:
+        return PlanarSeats(-_turned(-self.angle, self.point), -self.angle)
+
+    def like(self, q: np.ndarray, carrier: np.ndarray) -> PlanarSeats:
+        return self
+
+    def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        arm = _turned(q[..., 2], self.point)
+        across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
+        place = np.concatenate([q[..., :2] + arm, (q[..., 2] + self.angle)[..., None]], axis=-1)
+        return place, np.concatenate([u[..., :2] + u[..., 2:] * across, u[..., 2:]], axis=-1)
+
+
+@dataclass(frozen=True)
+class SpatialSeats:
+    """In space.
+
+    Attributes
+    ----------
+    point, turn : ndarrays, shapes (k, 3), (k, 4)
+        Where the centres of mass and principal axes are in those of the carriers, m, quaternions.
+    """
+
+    point: np.ndarray
+    turn: np.ndarray
+
+    @classmethod
+    def none(cls, count: int) -> SpatialSeats:
+        """Of bodies that are where their carriers are."""
+        return cls(np.zeros((count, 3)), np.tile(IDENTITY, (count, 1)))
+
+    @classmethod
+    def of(cls, placements: Sequence[Any]) -> SpatialSeats:
+        """Those of placements in space."""
+        return cls(
+            np.array([place.point for place in placements]), np.array([place.orientation for place in placements])
+        )
+
+    @property
+    def moved(self) -> bool:
+        return bool(self.point.any() or np.any(self.turn != IDENTITY))
+
+    def inverse(self) -> SpatialSeats:
+        back = CONJUGATE * self.turn
+        return SpatialSeats(-rotated(back, self.point), back)
+
+    def like(self, q: np.ndarray, carrier: np.ndarray) -> SpatialSeats:
+        """Of both quaternions of a turn the one that goes on from that of the carrier's first body."""
+        _, first, number = np.unique(carrier, return_index=True, return_inverse=True)
+        of_carrier = times(q[first, 3:], CONJUGATE * self.turn[first])[number]
+        against = np.sum(times(of_carrier, self.turn) * q[:, 3:], axis=1) < 0
+        return SpatialSeats(self.point, np.where(against[:, None], -self.turn, self.turn))
+
+    def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        p, w = q[..., 3:], u[..., 3:]
+        arm = rotated(p, self.point)
+        velocity = u[..., :3] + np.cross(rotated(p, w), arm)
+        place = np.concatenate([q[..., :3] + arm, times(p, self.turn)], axis=-1)
+        return place, np.concatenate([velocity, rotated(CONJUGATE * self.turn, w)], axis=-1)
+
+
+def _turned(phi: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Points in the axes of bodies, in ground axes."""
+    c, s, (xi, eta) = np.cos(phi), np.sin(phi), np.moveaxis(points, -1, 0)
+    return np.stack([c * xi - s * eta, s * xi + c * eta], axis=-1)
+
+
+SEATS: dict[int, type[PlanarSeats] | type[SpatialSeats]] = {2: PlanarSeats, 3: SpatialSeats}

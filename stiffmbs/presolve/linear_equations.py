@@ -1,0 +1,111 @@
+"""Constraint equations that are linear with constant coefficients, and the coordinates that they save.
+
+An equation in one coordinate holds it still; one in two ties them in a constant ratio, and so do two in three.  Such
+equations need no multiplier while the motion is solved for: a cart on a rail keeps one coordinate.  As in the presolve of
+linear programs (Andersen, Andersen, Presolving in linear programming, Math. Program. 71 (1995) 221-245: singleton rows
+and doubleton equations), each one found may turn others into one.  In space three equations in one orientation hold it
+still.
+
+A coefficient is constant where its expression holds no coordinate that moves.  Values at other poses are not asked: the
+derivative of tanh or of exp is exactly zero in floating point over wide ranges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..compile.coordinates import STILL, Coordinates
+from ..compile.state import State
+from ..compile.system import System
+from .dependence import Dependence, dependence
+from .relations import INDEPENDENT, SAME, Relations
+
+
+def independent_coordinates(system: System, state: State, t: float) -> Coordinates:
+    """The coordinates that remain when equations with constant coefficients are used to leave out others.
+
+    Parameters
+    ----------
+    system : System
+    state : State
+        At a pose that satisfies the constraints; left as it is.
+    t : float
+        s.
+    """
+    found = Relations.none(system)
+    candidates = _candidates(system)
+    if not candidates.any():
+        return found.coordinates(system)
+    state.evaluate("position", t)
+    C_q = dependence(system, state.values["position"])
+    while True:
+        moves = found.leader != STILL
+        open_rows = candidates & ~found.fulfilled
+        straight = found.extended(_constant_rows(C_q, moves, open_rows, system))
+        if not (found.turned(_held_orientations(C_q, moves, open_rows, system), system) or straight):
+            return found.coordinates(system)
+
+
+def _candidates(system: System) -> np.ndarray:
+    """Rows that may be left out: solved for, with a position form, without time or corners, in no force of friction.
+
+    Multipliers that forces depend on are needed.
+    """
+    rows = system.active & system.holonomic
+    for group in system.groups:
+        of_group = np.zeros(group.record.n_equations, dtype=bool)
+        of_group[: group.record.n_holonomic] = group.record.removable
+        last = group.first_row + group.count * len(of_group)
+        rows[group.first_row : last] &= np.tile(of_group, group.count)
+    if any(group.record.patterns.get("f_lam") for group in system.groups):
+        rows[system.term("tangent", "f_lam").column] = False
+    return rows
+
+
+def _constant_rows(
+    C_q: Dependence, moves: np.ndarray, open_rows: np.ndarray, system: System
+) -> dict[int, list[tuple[int, float]]]:
+    """The rows whose derivatives by all coordinates that move are constants: by row the columns and these constants.
+
+    They hold no quaternions.
+    """
+    straight, _ = system.of_body.straight(len(system.bodies))
+    counts = moves[C_q.column]
+    included = open_rows.copy()
+    included[C_q.row[counts & (C_q.varies(moves) | ~np.isin(C_q.column, straight))]] = False
+    largest = np.zeros(system.n_c)
+    np.fmax.at(largest, C_q.row, np.abs(C_q.value))
+    kept = counts & included[C_q.row] & (np.abs(C_q.value) > SAME * largest[C_q.row])
+    rows: dict[int, list[tuple[int, float]]] = {}
+    for row, column, value in zip(
+        C_q.row[kept].tolist(), C_q.column[kept].tolist(), C_q.value[kept].tolist(), strict=True
+    ):
+        rows.setdefault(row, []).append((column, value))
+    return rows
+
+
+def _held_orientations(
+    C_q: Dependence, moves: np.ndarray, open_rows: np.ndarray, system: System
+) -> Iterator[tuple[int, list[int]]]:
+    """Bodies that three rows hold, which depend on nothing that moves but the body's orientation, and these rows.
+
+    Where such rows are independent, the orientation that fulfils them is isolated.
+    """
+    of_body = system.of_body
+    if of_body.n_q == of_body.n_u:
+        return
+    counts = moves[C_q.column] & open_rows[C_q.row]
+    row, column, derivative = C_q.row[counts], C_q.column[counts], C_q.value[counts]
+    body, place = column // of_body.n_q, column % of_body.n_q
+    least, most = np.full(system.n_c, len(system.bodies)), np.full(system.n_c, -1)
+    np.minimum.at(least, row, np.where(place < of_body.linear, -1, body))
+    np.maximum.at(most, row, body)
+    for held in np.unique(most[least == most]).tolist():
+        rows = np.flatnonzero((most == held) & (least == held))
+        inside = np.isin(row, rows)
+        C_q_held = np.zeros((len(rows), of_body.n_q))
+        np.add.at(C_q_held, (np.searchsorted(rows, row[inside]), place[inside]), derivative[inside])
+        if len(rows) == 3 and np.linalg.svd(C_q_held, compute_uv=False)[-1] > INDEPENDENT * np.abs(C_q_held).max():
+            yield held, rows.tolist()

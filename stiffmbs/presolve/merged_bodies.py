@@ -1,0 +1,146 @@
+"""Bodies that fixed joints make one: merged before the equations are compiled, and found again afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from ..describe.element import Element, JointName
+from ..describe.formula.field import Formula
+from ..describe.joints.fixed import Fixed
+from ..describe.marker import GROUND, MarkerReference
+from ..describe.model_data import ModelData
+from . import planar_composite, spatial_composite
+
+GEOMETRY = {2: planar_composite, 3: spatial_composite}
+
+
+@dataclass(frozen=True)
+class Welded:
+    """A model whose bodies between fixed joints are merged.
+
+    Attributes
+    ----------
+    model : ModelData
+        As described.
+    bodies : dict of str to Body
+        Those left, each with the mass, centre of mass and inertia of all its members, and the name of the first.
+    members : dict of str to (str, Placement)
+        For every body of the model the one that carries it, and where its own centre of mass and axes are on that.
+    joints_left_out : tuple of str
+        The fixed joints.
+    """
+
+    model: ModelData
+    bodies: dict[str, Any]
+    members: dict[str, tuple[str, Any]]
+    joints_left_out: tuple[str, ...]
+
+    @property
+    def dimensions(self) -> int:
+        """Of the model."""
+        return self.model.dimensions
+
+    @property
+    def joints(self) -> dict[str, Element]:
+        """All joints by name."""
+        return self.model.joints
+
+    def size(self) -> float:
+        """That of the model as described."""
+        return self.model.size()
+
+    def elements(self) -> Iterator[tuple[str, Element]]:
+        """What acts on the bodies that are left, what they have of themselves (weights) too, and angles that count turns.
+
+        Other requests have no part in it.
+        """
+        for name, element in self.model.drawn_elements():
+            if name not in self.joints_left_out:
+                yield name, element
+        yield from self.model.counted_angles()
+        yield from self.model.inertial(self.bodies)
+
+    def carried(self, marker: MarkerReference) -> tuple[str, Any]:
+        """The body that carries a marker, and where on it."""
+        body, placed = self.model.carried(marker)
+        if body == GROUND:
+            return body, placed
+        carrier, member = self.members[body]
+        return carrier, GEOMETRY[self.dimensions].on(member, placed)
+
+
+def weld(model: ModelData, held: Container[str]) -> Welded | None:
+    """Merge the bodies between fixed joints.
+
+    Apart stay bodies whose coordinates a formula uses by name, bodies that a force or another joint acts between, and
+    those at a joint that another element refers to.
+
+    Parameters
+    ----------
+    model : ModelData
+    held : container of str
+        Joints all of whose equations are solved for: redundant ones must not be made stronger than they are.
+
+    Returns
+    -------
+    Welded or None
+        None where there is nothing to merge.
+    """
+    if not any(joint.kind == Fixed.kind for joint in model.joints.values()):
+        return None
+    joints = [name for name in _candidates(model) if name in held]
+    groups = _Groups(model)
+    used = [name for name in joints if groups.join(name)]
+    if not used:
+        return None
+    bodies: dict[str, Any] = {}
+    members: dict[str, tuple[str, Any]] = {}
+    for first, placements in groups.placements.items():
+        if len(placements) == 1:
+            bodies[first], members[first] = model.bodies[first], (first, *placements.values())
+            continue
+        parts = [(model.bodies[name], placed) for name, placed in placements.items()]
+        bodies[first], places = GEOMETRY[model.dimensions].composite(parts)
+        members |= {name: (first, placed) for name, placed in zip(placements, places, strict=True)}
+    return Welded(model, bodies, members, tuple(used))
+
+
+def _candidates(model: ModelData) -> Iterator[str]:
+    elements = [*model.joints.values(), *model.forces.values()]
+    referred = {name.joint for element in elements for _, name in element.parts(JointName)}
+    named = {body for e in elements for _, formula in e.parts(Formula) for body, _ in formula.coordinates()}
+    for name, joint in model.joints.items():
+        bodies = {marker.body for _, marker in joint.markers()}
+        if joint.kind == Fixed.kind and name not in referred and not bodies & {GROUND, *named}:
+            yield name
+
+
+class _Groups:
+    """Bodies that are one, each group with the places of its members on the first."""
+
+    def __init__(self, model: ModelData) -> None:
+        self._model = model
+        self._geometry = GEOMETRY[model.dimensions]
+        self.placements: dict[str, dict[str, Any]] = {body: {body: self._geometry.Placement()} for body in model.bodies}
+        self._first = {body: body for body in model.bodies}
+        acting = [*model.joints.items(), *model.forces.items()]
+        self._acts_between = [(name, {marker.body for _, marker in element.markers()}) for name, element in acting]
+
+    def join(self, name: str) -> bool:
+        """Merge the groups at both sides of a fixed joint; whether nothing else acts between them."""
+        joint = self._model.joints[name]
+        (body_i, on_i), (body_j, on_j) = (self._model.carried(marker) for _, marker in joint.parts(MarkerReference))
+        first, second = self._first[body_i], self._first[body_j]
+        mine, other = self.placements[first], self.placements[second]
+        if first == second or any(
+            between & mine.keys() and between & other.keys() for n, between in self._acts_between if n != name
+        ):
+            return False
+        on, inverse = self._geometry.on, self._geometry.inverse
+        at = on(on(mine[body_i], on_i), inverse(on(other[body_j], on_j)))
+        for member, placed in other.items():
+            mine[member], self._first[member] = on(at, placed), first
+        del self.placements[second]
+        return True

@@ -1,0 +1,35 @@
+"""The channels of a solution: every time history by name."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.reactions import reactions
+from ..compile.system import System
+from ..describe.model_data import ModelData
+from ..solve.mechanics import OutputRows
+from .body_axes import in_own_axes
+from .energy import kinetic_energy, potential_energy
+from .requests import requests
+from .spatial_requests import outputs
+
+
+def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
+    """All channels by name: bodies, joints and forces, energies, constraint violations."""
+    channels: dict[str, np.ndarray] = {}
+    of_body = system.of_body
+    states = in_own_axes(system, rows.q, rows.u, rows.acceleration)
+    labels = (of_body.positions, of_body.velocities, of_body.accelerations)
+    for k, body in enumerate(system.bodies):
+        for state, names in zip(states, labels, strict=True):
+            for offset, name in enumerate(names):
+                channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
+    requested = requests(system, rows.values)
+    counted = {name: requested.pop(name) for name, _ in model.counted_angles()}
+    channels |= requested
+    channels |= reactions(system, rows.values)
+    kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
+    channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
+    channels["energy.total"] = kinetic + potential
+    channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
+    return channels | outputs(model, rows.t, channels, counted)

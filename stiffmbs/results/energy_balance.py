@@ -1,0 +1,150 @@
+"""The energy balance of a run: kinetic + potential energy against the work of everything that has no potential.
+
+Along a motion T + V changes by the work of dampers, drives, friction, applied forces and laws without a potential
+(`stiffmbs.compile.symbolic.losses` has their power).  Both are computed from the states that a run reports, so their difference
+tells how well these satisfy the equations of motion, whatever the integrator believes of its own error.
+
+The work is integrated by the trapezoidal rule with end corrections (Davis and Rabinowitz, Methods of Numerical
+Integration, 1984, sec. 2.9), of order 4; the same rule on every other instant tells how well these resolve the power.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.system import System
+from ..compile.terms import TERM_SETS
+
+MOST_INSTANTS = 1_000_000
+"""Instants that a balance is made of at the most; of more every other one counts, or fewer."""
+SEEN = 1
+"""Steps of the solver that may end inside an interval whose work the values at its ends tell."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Energies and work over a run, J.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        Instants at which all is known, s.
+    change : ndarray, shape (n,)
+        Of kinetic + potential energy since the start.
+    work : ndarray, shape (n,)
+        Of everything without a potential since the start.
+    within : ndarray, shape (n - 1,)
+        What the end corrections of the quadrature add in each interval.
+    steps : ndarray of int, shape (n - 1,)
+        How many of the solver's own steps end inside each interval.
+    resolved : float
+        How far the work is from that of every other instant: what the quadrature resolves.
+    scale : float
+        The energy that is exchanged: the largest kinetic energy, change of the potential energy, or work.
+    keeps_energy : bool
+        Whether nothing does such work for certain: the work is then zero, not computed.
+    """
+
+    t: np.ndarray
+    change: np.ndarray
+    work: np.ndarray
+    within: np.ndarray
+    steps: np.ndarray
+    resolved: float
+    scale: float
+    keeps_energy: bool
+
+    @property
+    def open(self) -> np.ndarray:
+        """What is missing in the balance since the start, shape (n,)."""
+        return self.change - self.work
+
+    @property
+    def furthest(self) -> float:
+        """The largest magnitude of that, or of what is missing in one interval."""
+        open_ = self.open
+        return float(max(np.max(np.abs(open_), initial=0.0), np.max(np.abs(np.diff(open_)), initial=0.0)))
+
+    @property
+    def _seen(self) -> np.ndarray:
+        """The intervals whose work the instants may resolve: those of hardly more than one step of the solver."""
+        return (self.steps <= SEEN) | self.keeps_energy
+
+    @property
+    def imbalance(self) -> float:
+        """The largest magnitude of what is missing, summed over the intervals that the instants resolve."""
+        missing = np.cumsum(np.where(self._seen, np.diff(self.open), 0.0))
+        return float(np.max(np.abs(missing), initial=0.0))
+
+    @property
+    def between(self) -> float:
+        """The sum of what is missing in the other intervals: work between instants, or an error."""
+        return float(np.sum(np.abs(np.diff(self.open)), where=~self._seen))
+
+    def as_dict(self) -> dict[str, float | bool]:
+        """The object ``balance`` of ``stiffmbs run --json``, J."""
+        return {
+            "change": float(self.change[-1]), "work": float(self.work[-1]), "imbalance": self.imbalance,
+            "between": self.between, "resolved": self.resolved, "conservative": self.keeps_energy,
+        }  # fmt: skip
+
+
+def energy_balance(
+    system: System, t: np.ndarray, kinetic: np.ndarray, potential: np.ndarray, values: np.ndarray, steps: np.ndarray
+) -> Balance:
+    """The balance at the instants of a run; those without values are passed over.
+
+    Parameters
+    ----------
+    t, kinetic, potential : ndarrays, shape (n,)
+        s, J.
+    values : ndarray, shape (n, values)
+        Values of the output terms, one row per instant.
+    steps : ndarray
+        Ends of the solver's own steps, s; empty where it does not tell them.
+    """
+    thinned = slice(None, None, 1 + len(t) // MOST_INSTANTS)
+    with np.errstate(all="ignore"):  # a diverged run has no balance
+        power = values[thinned, system.term("output", "power").source].sum(axis=1)
+        t, kinetic, potential = t[thinned], kinetic[thinned], potential[thinned]
+        known = np.isfinite(kinetic + potential + power) & (np.diff(t, prepend=-np.inf) > 0)
+        t, kinetic, potential, power = t[known], kinetic[known], potential[known], power[known]
+        if not len(t):
+            nothing = np.empty(0)
+            return Balance(t, np.zeros(1), np.zeros(1), nothing, nothing, 0.0, 0.0, system.keeps_energy)
+        total = kinetic + potential
+        gained, within = _gained(t, power) if not system.keeps_energy else np.zeros((2, len(t) - 1))
+        work = np.concatenate([[0.0], np.cumsum(gained)])
+        resolved = 0.0 if system.keeps_energy else _difference(work[::2], t[::2], power[::2])
+        scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
+    inside = np.searchsorted(steps, t[1:], side="left") - np.searchsorted(steps, t[:-1], side="right")
+    return Balance(t, total - total[0], work, within, inside, resolved, scale, system.keeps_energy)
+
+
+def _difference(work: np.ndarray, t: np.ndarray, power: np.ndarray) -> float:
+    """How far the work is from what the power gives at fewer instants."""
+    coarse = np.concatenate([[0.0], np.cumsum(_gained(t, power)[0])])
+    return float(np.max(np.abs(work - coarse), initial=0.0))
+
+
+def _gained(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The work in each interval, and the part of it that the end corrections make."""
+    h = np.diff(t)
+    if len(t) < 3:
+        return h * (power[1:] + power[:-1]) / 2, np.zeros_like(h)
+    slope = np.gradient(power, t)
+    corrections = h**2 * (slope[:-1] - slope[1:]) / 12
+    return h * (power[1:] + power[:-1]) / 2 + corrections, corrections
+
+
+def potentials(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
+    """The potential energy of each element that has one, J, shape (n,)."""
+    at = 1 + TERM_SETS["output"].index("potential")
+    return {
+        name: values[:, system.places["output"][g, at] + e]
+        for g, group in enumerate(system.groups)
+        if group.record.patterns.get("potential")
+        for e, name in enumerate(group.names)
+    }

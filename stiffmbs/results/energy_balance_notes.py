@@ -1,0 +1,135 @@
+"""What the energy balance of a run says of it, in sentences: only what is certain from the instants that are reported.
+
+Where nothing but potentials acts, kinetic + potential energy is constant at whatever instants it is looked at.  Work of
+dampers, drives and friction is integrated from values at the output instants, which may miss a contact between two of
+them.  So it is judged only where several of them lie within one step of the solver: there the motion is one smooth
+polynomial, and so is the power unless the step went over something that it has not seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..compile.system import System
+from ..describe.settings import RunSettings
+from ..solve.explicit import ADAPTIVE
+from ..solve.mechanics import OutputRows
+from .energy_balance import Balance, potentials
+
+BROKEN, PER_TOLERANCE = 1e-2, 100.0
+"""Part of the exchanged energy that may be missing before it is told; so many times the relative tolerance where that is more."""
+TOLD = 1e-6
+"""Part of the exchanged energy above which what lies between output instants is told."""
+CERTAIN = 3.0
+"""Times the end corrections of the quadrature by which the balance of an interval must be open."""
+OF_TOLERANCE = 10.0
+"""Energies below so many times the work of the largest force along an error of the tolerance are not looked at."""
+ROUNDING = 1e-10
+"""The same for parts of the largest potential energy."""
+
+
+def balance_words(balance: Balance) -> str:
+    """The balance as the summary says it."""
+    change, work = float(balance.change[-1]), float(balance.work[-1])
+    if balance.keeps_energy:
+        return f"changes by at most {balance.imbalance:.3g} J"
+    words = (
+        f"{change:+.6g} J by the end, of which {work:+.6g} J is work of what has no potential; the balance is kept to "
+    )
+    kept = f"{balance.imbalance:.2g} J"
+    if balance.resolved > balance.imbalance:
+        kept += ", as far as the output instants resolve that work"
+    if balance.between > max(TOLD * balance.scale, balance.imbalance):
+        kept += (
+            f", but for {balance.between:.2g} J between output instants that the solver took several steps for "
+            "(points: steps or --verify resolve these)"
+        )
+    return words + kept
+
+
+def balance_notes(
+    system: System, balance: Balance, rows: OutputRows, settings: RunSettings, steps: np.ndarray
+) -> Iterator[str]:
+    """A sentence where the balance is broken for certain.
+
+    Parameters
+    ----------
+    steps : ndarray
+        Ends of the solver's own steps, s; empty where it does not tell them.
+    """
+    if not balance.furthest > BROKEN * balance.scale:
+        return
+    allowed = may_be_missing(system, balance, rows, settings)
+    if balance.keeps_energy:
+        yield from _changed(system, balance, rows, allowed)
+    else:
+        yield from _left(system, balance, rows, steps, allowed)
+
+
+def may_be_missing(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> float:
+    """An energy that may be missing in a balance before it is told, J."""
+    fixed = settings.solver == "projected" and settings.scheme not in ADAPTIVE
+    part = BROKEN if fixed else max(BROKEN, PER_TOLERANCE * settings.rtol)
+    return part * balance.scale + _negligible(system, rows, settings)
+
+
+def _negligible(system: System, rows: OutputRows, settings: RunSettings) -> float:
+    """An energy that tolerance and rounding do not resolve, J."""
+    with np.errstate(all="ignore"):
+        force = np.nanmax(np.abs(rows.values[:, system.term("output", "reaction").source]), initial=0.0)
+        weight = np.nanmax(np.abs(system.mass[None, :] * rows.acceleration[:1]), initial=0.0)
+        stored = np.nanmax(np.abs(rows.values[:, system.term("output", "potential").source]), initial=0.0)
+    return float(OF_TOLERANCE * settings.rtol * system.size * max(force, weight) + ROUNDING * stored)
+
+
+def _changed(system: System, balance: Balance, rows: OutputRows, allowed: float) -> Iterator[str]:
+    """Of a scene that keeps its energy: where that first changed too much."""
+    beyond = np.flatnonzero(np.abs(balance.open) > allowed)
+    if not len(beyond):
+        return
+    steepest = int(np.argmax(np.abs(np.diff(balance.open))))
+    yield (
+        f"the energy balance is broken: nothing in the scene takes or gives energy, but kinetic + potential energy changes by "
+        f"{balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged (first by more than {allowed:.2g} J at "
+        f"t = {balance.t[beyond[0]]:.6g} s{_where(system, balance, rows, steepest)}); take a smaller rtol, max_step or "
+        "step until it is kept"
+    )
+
+
+def _left(system: System, balance: Balance, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[str]:
+    """Of any other scene: the interval within one step of the solver whose balance is open the furthest."""
+    inside = within_steps(balance.t, steps)
+    missing = np.abs(np.diff(balance.open))
+    missing = np.where(inside & (missing > CERTAIN * np.abs(balance.within)), missing, 0.0)
+    if not len(missing) or missing.max() <= allowed:
+        return
+    k = int(np.argmax(missing))
+    yield (
+        f"the energy balance is broken: {missing[k]:.3g} J of the {balance.scale:.3g} J exchanged are missing between "
+        f"t = {balance.t[k]:.6g} s and {balance.t[k + 1]:.6g} s, within one step of the solver"
+        f"{_where(system, balance, rows, k)}; set max_step to less than {balance.t[k + 1] - balance.t[k]:.2g} s"
+    )
+
+
+def within_steps(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Whether each interval between instants lies inside one step of the solver, its ends strictly, shape (n - 1,)."""
+    if not len(steps):
+        return np.zeros(max(len(t) - 1, 0), dtype=bool)
+    after, before = np.searchsorted(steps, t[:-1], side="right"), np.searchsorted(steps, t[1:], side="left")
+    last = len(steps) - 1
+    begun, ended = steps[np.maximum(after - 1, 0)] < t[:-1], steps[np.minimum(before, last)] > t[1:]
+    return (after == before) & (after > 0) & (before <= last) & begun & ended
+
+
+def _where(system: System, balance: Balance, rows: OutputRows, k: int) -> str:
+    """The element whose potential energy changes most in an interval, as a clause."""
+    at = np.searchsorted(rows.t, balance.t[k : k + 2])
+    changes = {
+        name: float(abs(np.diff(values[at])[0]))
+        for name, values in potentials(system, rows.values).items()
+        if name not in system.bodies
+    }
+    name = max(changes, key=lambda each: changes[each], default="")
+    return f", at '{name}'" if name and changes[name] > 0.1 * abs(float(np.diff(balance.open)[k])) else ""

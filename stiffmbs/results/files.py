@@ -1,0 +1,128 @@
+"""Writing every channel over time to a file: .csv, .npz, .nc."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Collection
+from importlib.util import find_spec
+from pathlib import Path
+from zipfile import ZipFile
+
+import numpy as np
+
+from ..describe.files.quoted import quoted
+from ..errors import InputError
+from ..solve.storage import blocks, release
+from .solution import Solution
+
+
+def _write_csv(path: Path, solution: Solution) -> None:
+    # Columns of ones tell what is not unique, so that the names of channels stay as they are.
+    marks = [f"{name}.not_unique" for name in solution.not_unique]
+    columns = (solution.time, *solution.channels.values())
+    with path.open("w", encoding="utf-8") as file:
+        print(",".join(["time", *solution.channels, *marks]), file=file)
+        for block in blocks(len(solution.time)):
+            ones = np.ones((block.stop - block.start, len(marks)))
+            np.savetxt(
+                file, np.column_stack([*(column[block] for column in columns), ones]), delimiter=",", fmt="%.17g"
+            )
+            release(*columns)
+
+
+def _write_npz(path: Path, solution: Solution) -> None:
+    """As `numpy.savez` does, but for memory: one array after the other."""
+    marked = {"not_unique": np.array(solution.not_unique)} if solution.not_unique else {}
+    with ZipFile(path, "w") as archive:
+        for name, values in {"time": solution.time, **solution.channels, **marked}.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                np.lib.format.write_array(file, values, allow_pickle=False)
+            release(values)
+
+
+def _write_netcdf(path: Path, solution: Solution) -> None:
+    import xarray
+
+    variables = {
+        name.replace(".", "_"): ("time", values, {"channel": name, "unique": int(name not in solution.not_unique)})
+        for name, values in solution.channels.items()
+    }
+    xarray.Dataset(variables, coords={"time": solution.time}).to_netcdf(path, engine="scipy")
+
+
+WRITERS: dict[str, Callable[[Path, Solution], None]] = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_netcdf}
+
+
+def check_output(path: Path) -> None:
+    """Refuse, before anything is solved, a file that could not be written.
+
+    Raises
+    ------
+    InputError
+        For an unknown ending, a missing folder, or a missing package.
+    """
+    refuse_path("-o", path, WRITERS)
+    if path.suffix == ".nc" and find_spec("xarray") is None:
+        raise InputError(f"-o {path}: found no xarray, expected it installed: pip install 'stiffmbs[netcdf]'")
+
+
+def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
+    """Refuse a file of an unknown ending, or in a folder that is not there or cannot be written to.
+
+    Raises
+    ------
+    InputError
+        Names the option.
+    """
+    if path.suffix not in endings:
+        raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
+    try:
+        path.exists()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{option} {quoted(str(path))}: found a name that no file has ({reason})") from None
+    if not path.parent.is_dir():
+        raise InputError(f"{option} {path}: found no folder '{path.parent}', expected one that exists")
+    if path.is_dir() or not os.access(path.parent, os.W_OK):
+        raise InputError(
+            f"{option} {path}: found a place that cannot be written to, expected a file in a writable folder"
+        )
+
+
+def write(path: Path, solution: Solution) -> None:
+    """Write all channels; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in .csv (a header line, time first), .npz (arrays by channel name, and ``time``) or .nc.  Channels without
+        a unique value are marked: by a column ``rail.fy.not_unique`` of ones, by an array ``not_unique`` of names, or
+        by the attribute ``unique`` of each variable.
+    """
+    written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
+
+
+def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
+    """Let a file be written beside its place and put there when it is whole.
+
+    Parameters
+    ----------
+    path : Path
+    write_to : callable
+        Writes to the path it is given.
+    """
+    if path.exists() and not path.is_file():  # a pipe or device
+        write_to(path)
+        return
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".part-", suffix=path.suffix)
+    os.close(handle)
+    try:
+        write_to(Path(name))
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(name, 0o666 & ~umask)  # as an ordinary new file; mkstemp's are private
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise

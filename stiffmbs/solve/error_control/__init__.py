@@ -1,0 +1,1 @@
+"""Tolerances, error tests, and Newton's test of convergence."""

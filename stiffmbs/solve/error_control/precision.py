@@ -1,0 +1,57 @@
+"""Tolerances that ask for more digits than a coordinate's own rounding leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ...compile.system import System
+from ...describe.settings import RunSettings
+
+NOISE = 1e-3, 0.05
+"""Rounding of a coordinate, in parts of the absolute tolerance, from which on differences of the order 5 hold nothing but
+rounding: of an angle, and of a position, whose own tolerance grows with it."""
+SLOW, FAILED = 20_000, 0.2
+"""Steps after which a run is looked at, and the part of them that fails the error test where rounding governs it."""
+
+
+def too_fine(system: System, settings: RunSettings, q: np.ndarray) -> str:
+    """Why the tolerance cannot be met at a state, as a sentence; empty where it can.
+
+    Joints carry the rounding of an angle, times an arm, and of a position to all coordinates they hold, so that it is
+    compared with the tolerance of a coordinate near zero.  BDF estimates its errors by differences of order k + 1, which
+    multiply rounding by up to 2^(k+1).
+
+    Parameters
+    ----------
+    system : System
+    settings : RunSettings
+    q : ndarray, shape (n_q,)
+        Coordinates, m and rad.
+    """
+    of_body = system.of_body
+    own = q[: of_body.n_q * len(system.bodies)].reshape(-1, of_body.n_q)
+    straight, turning = own[:, : of_body.linear], own[:, of_body.linear : of_body.n_u]
+    if of_body.dimensions == 3:
+        turning = turning[:, :0]  # quaternions stay of length 1
+    name, tolerance = ("rtol", settings.rtol) if settings.atol is None else ("atol", settings.atol)
+    of_positions = np.spacing(np.abs(straight)) / 2 / (NOISE[1] * tolerance * min(1.0, system.size))
+    of_angles = np.spacing(np.abs(turning)) / 2 / (NOISE[0] * tolerance)
+    excess = np.hstack([of_positions, of_angles])
+    body, k = np.unravel_index(int(np.argmax(excess)), excess.shape)
+    if not system.n_c or not excess[body, k] > 1.0:
+        return ""
+    value, unit = float(own[body, k]), "m" if k < of_body.linear else "rad"
+    return (
+        f"{name} = {tolerance:g} asks for more digits than rounding leaves: {system.bodies[body]}.{of_body.positions[k]} = "
+        f"{value:.4g} {unit} is known to {np.spacing(abs(value)) / 2:.1g} {unit} only, expected "
+        f"{name} = {tolerance * max(10.0, excess[body, k]):.1g} or more, or solver projected with scheme dop853"
+    )
+
+
+def governed_by_rounding(statistics: Mapping[str, Any]) -> bool:
+    """Whether so many of so many steps fail the error test as where rounding is taken for an error."""
+    steps, rejected = int(statistics["steps"]), int(statistics.get("rejected", 0))
+    return steps > SLOW and rejected > FAILED * steps

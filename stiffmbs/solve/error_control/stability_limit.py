@@ -1,0 +1,168 @@
+"""Whether BDF of order 3 to 5 creeps along a vibration too small to matter.
+
+These formulas are not stable near the imaginary axis (Hairer, Wanner, Solving Ordinary Differential Equations II, ch.
+V.1): longer steps let a stiff, little damped vibration grow to the tolerance, the error test shortens them again, and so
+they never come out of its periods.  Order 2 damps it.  CVODE looks for such growth at constant steps (STALD); IDA has
+nothing of the kind, and what shows here is simpler: many steps in a row follow a cubic but for some tolerances.
+
+Order 2 has larger errors in the slow motion.  So the order is held only where its steps become much longer: the third derivative of
+that cubic tells how long a step of order 2 may be.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...describe.settings import RunSettings
+from .tolerances import independent_tolerances
+
+ENOUGH, STEPS_APART, DEGREE = 16, 4, 3
+"""States that are looked at, steps from one to the next, and the polynomial that they are compared with: motion that steps of
+order 3 to 5 do resolve is some thousands of tolerances away from it."""
+NEGLIGIBLE = 150.0
+"""Distance from it, in units of the tolerance, up to which a vibration is not worth following: the orders that follow it
+damp it too (from 64 to 44 in 1000 steps of order 5).  A smaller tolerance keeps it."""
+STUCK, STEADY = 4.0, 3.0
+"""Steps whose states are nearer to it are short for another reason, and so are those much shorter than since the last look."""
+WITHIN_PERIODS = 30.0
+"""Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
+start with longer ones would stir up vibrations that have long been damped."""
+FIRST_LOOK, RELAPSE, STRETCH, LONGER = 2000, 2000, 2000, 4
+"""Steps before the first look, each later one after twice as many; steps between looks at a held order, in
+which the vibration dies away (250 are too few to see what is gained); steps with the order held at first, and how many times as many
+after each relapse."""
+GAIN = 3.0
+"""How much longer steps must become with the order held: foreseen from the slow motion before it is, and seen after that.  The errors of order 2
+are larger at the same tolerance.  On a car on bushings of 1e7 N/m 1.4 to 1.9 is foreseen; steps were then as long as before, and errors ten
+times as large.  On a bar on one bushing, where the order is held, steps become 3 to 40 times as long."""
+MARGIN, ERROR_CONSTANT = 0.1, 2 / 9
+"""Error of a step that an integrator aims at, in parts of the tolerance; that of order 2, over the third derivative times the cube of the step."""
+TIGHTEST = 1e-7
+"""Relative tolerance below which the order is left alone: who asks for less wants to see the vibration, and order 2 would
+cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
+HELD, HIGHEST = 2, 5
+"""Orders: the highest that is stable for every vibration, and the highest of all."""
+
+
+class OrderWatch:
+    """When to hold the order down, and when to leave it free again.
+
+    Parameters
+    ----------
+    equations : Equations
+    settings : RunSettings
+
+    Attributes
+    ----------
+    order : int
+        The highest order to be used.
+    """
+
+    def __init__(self, equations: Equations, settings: RunSettings) -> None:
+        self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
+        self._watches = settings.rtol >= TIGHTEST and settings.max_order is None
+        self._atol = independent_tolerances(equations, settings)
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin a new run."""
+        self.order, self._next, self._stretch = self._highest, FIRST_LOOK, STRETCH
+        self._held: list[tuple[float, int]] = []
+        self._held_steps = 0
+        self._mark, self._pace, self._fastest = (0.0, 0), 0.0, 0.0
+
+    @property
+    def held(self) -> bool:
+        """Whether the order is held down."""
+        return self.order < self._highest
+
+    def begin(self, t: float, steps: int, fastest: float) -> None:
+        """The integrator starts, or starts anew, where vibrations have rates up to `fastest`, 1/s."""
+        self._mark, self._fastest = (t, steps), fastest
+
+    def due(self, steps: int) -> bool:
+        """Whether it is time for a look, after so many steps of the run."""
+        return steps >= self._next and self._watches
+
+    def wait(self, steps: int) -> int:
+        """How many steps from now on the next look is due."""
+        return self._next - steps if self._watches and self._next > steps else FIRST_LOOK
+
+    def changed(self, samples: np.ndarray, steps: int) -> bool:
+        """Look at the last steps; whether the highest order is to change.
+
+        Parameters
+        ----------
+        samples : ndarray, shape (n, 1 + 2 * independent)
+            Time, independent coordinates and velocities after some of the last steps.
+        steps : int
+            Of the whole run.
+        """
+        if len(samples) < ENOUGH:
+            return False
+        t, (since, before) = float(samples[-1, 0]), self._mark
+        pace, self._mark = (t - since) / (steps - before), (t, steps)
+        if self.held:
+            return self._frees(pace, t, steps)
+        local = float(samples[-1, 0] - samples[0, 0]) / (STEPS_APART * (len(samples) - 1))
+        steady = pace < STEADY * local and local * self._fastest < WITHIN_PERIODS
+        distance, longer = self._fit(samples) if steady else (0.0, 0.0)
+        creeping = STUCK < distance < NEGLIGIBLE and longer > GAIN
+        self._next = steps + RELAPSE if creeping else 2 * steps
+        if creeping:
+            self.order, self._pace = HELD, pace
+            self._held.append((t, steps))
+        return creeping
+
+    def _frees(self, pace: float, t: float, steps: int) -> bool:
+        """Whether the order held has not paid, or has been held for long enough."""
+        self._next = steps + RELAPSE
+        pays = pace > GAIN * self._pace
+        if pays and steps < self._held[-1][1] + self._stretch:
+            return False
+        self._stretch *= LONGER
+        self._held_steps += steps - self._held[-1][1]
+        self.order, self._next = self._highest, steps + (RELAPSE if pays else steps)
+        return True
+
+    def _fit(self, samples: np.ndarray) -> tuple[float, float]:
+        """Distance from the polynomial that fits best, in units of the tolerance, and how much longer a step of the held order may be.
+
+        Five samples mostly show that they are far from it: then the second figure is 0.
+        """
+        times, rows = samples[:, 0], samples[:, 1:]
+        x = (2 * times - times[0] - times[-1]) / (times[-1] - times[0])
+        scale = self._rtol * np.abs(rows[-1]) + self._atol
+        few = [0, 4, 8, 12, 15]
+        points = x[few].tolist()
+        weights = np.array([1 / math.prod(a - b for b in points if b != a) for a in points])
+        least = self._size((weights @ rows[few]) / np.abs(weights).sum() / scale)
+        if least > NEGLIGIBLE:
+            return least, 0.0
+        powers = np.power.outer(x, np.arange(DEGREE + 1))
+        coefficients = np.linalg.lstsq(powers, rows, rcond=None)[0]
+        errors = (rows - powers @ coefficients) / scale
+        half = STEPS_APART * (len(samples) - 1) / 2  # steps in a unit of x
+        third = 6 * self._size(coefficients[DEGREE] / scale) / half**3
+        longer = (MARGIN / (ERROR_CONSTANT * third)) ** (1 / 3) if third > 0 else math.inf
+        return float(np.sqrt((errors**2).mean(axis=1).max())), longer
+
+    @staticmethod
+    def _size(errors: np.ndarray) -> float:
+        """Root mean square."""
+        return float(np.sqrt(errors @ errors / len(errors)))
+
+    def note(self, steps: int) -> str:
+        """What was done, for the user, after so many steps of the run; empty for nothing."""
+        if not self._held:
+            return ""
+        held = self._held_steps + (steps - self._held[-1][1] if self.held else 0)
+        first, before = self._held[0]
+        return (
+            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: with orders 3 to 5, "
+            f"{before} steps up to there, it crept along a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, "
+            "which is now damped away, also in forces; a smaller rtol, or max_order: 5, keeps it"
+        )

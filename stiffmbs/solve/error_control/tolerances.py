@@ -1,0 +1,37 @@
+"""The absolute tolerances of all error-controlled integrators."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...compile.system import System
+from ...describe.settings import RunSettings
+
+WHICH_TURN = 1e-3
+"""Absolute tolerance of the counters of turns, rad: far below the half turn that they must tell apart."""
+
+
+def absolute_tolerances(system: System, settings: RunSettings) -> np.ndarray:
+    """The absolute tolerance of each coordinate, then of each velocity.
+
+    As given, or rtol for angles and for mechanisms of 1 m and more, and shrinking with smaller ones.
+
+    Returns
+    -------
+    ndarray, shape (n_q + n_u,)
+        m and rad (parts of a quaternion), m/s and rad/s.
+    """
+    sizes = min(1.0, system.size), 1.0
+    tolerances = settings.rtol * np.concatenate([system.per_coordinate(*sizes), system.per_velocity(*sizes)])
+    if settings.atol is not None:
+        tolerances[:] = settings.atol
+    tolerances[system.n_q - system.n_counters : system.n_q] = WHICH_TURN
+    return tolerances
+
+
+def independent_tolerances(equations: Equations, settings: RunSettings) -> np.ndarray:
+    """The absolute tolerances of the independent coordinates, then of the independent velocities."""
+    n_q = equations.system.n_q
+    tolerances = absolute_tolerances(equations.system, settings)
+    return equations.coordinates.state(tolerances[:n_q], tolerances[n_q:])

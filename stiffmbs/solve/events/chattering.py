@@ -1,0 +1,129 @@
+"""Motions that come to no end: forces that jump back and forth where the motion stays, laws that change ever faster, and steps
+too short to arrive; told in the same words by every solver."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+import numpy as np
+
+from ...errors import SolverError
+from ..mechanics import Mechanics
+from .discontinuity import FAR, jumping, sliding
+
+WINDOW, MANY = 250, 1000
+"""Events over which their rate is measured, and events from which on its growth is trusted."""
+TOO_MANY, AT_LEAST = 1e6, 1e4
+"""Events still to come at which a run is given up: ten minutes or more, and events without growth at which growth is reckoned with."""
+LEAST_POWER, LARGEST_POWER = 0.8, 2.0
+"""Powers of the number of events with which their rate grows in a motion that is driven exponentially; the bounces of a ball that
+comes to rest have larger ones, and end by themselves."""
+STEPS_SEEN, STEPS_AHEAD = 500_000, 2e8
+"""Steps over which a run's pace is measured, and steps still to come at which it is given up."""
+TOLERANCES, FARTHEST = 1e3, 1e-2
+"""Distance from a jump, in parts of the relative tolerance and at the most, at which a state is taken to stay there: steps that
+have seen both of its sides hover about it."""
+
+
+class Chattering:
+    """Watches one run of an integrator.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+    end : float
+        Of the run, s.
+    rtol : float
+        Relative tolerance of the integrator.
+    """
+
+    def __init__(self, mechanics: Mechanics, end: float, rtol: float) -> None:
+        self._mechanics, self._end = mechanics, end
+        self._reach = min(max(FAR, TOLERANCES * rtol), FARTHEST)
+        self._any = mechanics.system.n_switches > 0
+        self._events: deque[float] = deque(maxlen=2 * WINDOW + 1)
+        self._count = 0
+        self._mark: tuple[float, int] | None = None
+
+    def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Look at the state from which the integrator is to start.
+
+        Raises
+        ------
+        SolverError
+            Where a force drives the motion back from both sides of its jump; names the element.
+        """
+        if self._any:
+            self.refuse(t, sliding(self._mechanics, t, q, u))
+
+    def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
+        """Look at a state on the way, after so many steps of the run.
+
+        Raises
+        ------
+        SolverError
+            Where a force drives the motion back from both sides of its jump, or the steps are too short to arrive.
+        """
+        if self._any:
+            self.refuse(t, sliding(self._mechanics, t, q, u, self._reach))
+        since, before = self._mark or (t, steps)
+        if steps - before < STEPS_SEEN:
+            self._mark = since, before
+            return
+        self._mark = t, steps
+        pace = (t - since) / (steps - before)
+        if self._end - t > STEPS_AHEAD * pace:
+            raise SolverError(
+                f"stopped at t = {t:.9g} s: the last {steps - before} steps have covered {t - since:.3g} s, and at least "
+                f"{STEPS_AHEAD:.0e} more would follow to the end: expected a motion without singularities (a force that divides by "
+                "a velocity at rest, a jump without a corner, a mechanism that jams)"
+            )
+
+    def note_event(self, t: float, q: np.ndarray, u: np.ndarray, switch: int) -> None:
+        """Take note of an event at a state: a switch, below zero where it is not known, has changed its sign.
+
+        Raises
+        ------
+        SolverError
+            When events follow each other so fast that the run would come to no end; names the element.
+        """
+        self._count += 1
+        self._events.append(t)
+        if self._count % WINDOW or len(self._events) <= 2 * WINDOW:
+            return
+        first, middle, last = (self._events[k] for k in (0, WINDOW, 2 * WINDOW))
+        if self._to_come(middle - first, last - middle) > TOO_MANY:
+            self.refuse(t, jumping(self._mechanics, t, q, u))
+            name = f"'{self._mechanics.system.writer('switch', switch)}'" if switch >= 0 else "a force"
+            raise SolverError(
+                f"stopped at t = {t:.9g} s: {name} changes its law back and forth ever faster, {self._count} times so far and once in "
+                f"{(last - middle) / WINDOW:.3g} s: the run would come to no end; expected a force without a jump where the motion comes "
+                "to rest, a switch with hysteresis, or a force that does not drive the motion beyond all bounds"
+            )
+
+    def _to_come(self, before: float, last: float) -> float:
+        """Events up to the end, by the times that the last two windows took.
+
+        With a rate f ~ N of events N their number grows as exp(f t/N).
+        """
+        steady = (self._end - self._events[-1]) / max(last, 1e-300) * WINDOW
+        if steady < AT_LEAST or self._count < MANY or last <= 0.0:
+            return steady
+        power = math.log(before / last) / math.log((self._count - 0.5 * WINDOW) / (self._count - 1.5 * WINDOW))
+        growing = LEAST_POWER < power < LARGEST_POWER
+        return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
+
+    def refuse(self, t: float, switches: np.ndarray) -> None:
+        """Stop the run at the first of some switches."""
+        if len(switches):
+            raise SolverError(f"stopped at t = {t:.9g} s: {jump_sentence(self._mechanics, int(switches[0]))}")
+
+
+def jump_sentence(mechanics: Mechanics, switch: int) -> str:
+    """That a force jumps back and forth."""
+    return (
+        f"'{mechanics.system.writer('switch', switch)}' jumps back and forth, as a force does that changes its "
+        "sign where the motion comes to rest: no motion follows it from there on; expected a force that is steep "
+        "there, without a jump: joint_friction with its smooth_velocity, or tanh(v/0.001) in place of sign(v)"
+    )

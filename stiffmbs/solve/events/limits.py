@@ -1,0 +1,27 @@
+"""Where the law of a force ends to hold, as beyond the turns that a spring can tell: the run stops there, and says so."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...errors import SolverError
+from ..mechanics import Mechanics
+
+
+def refuse_beyond_limits(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> None:
+    """Stop a run whose state has passed the limits of a force.
+
+    Raises
+    ------
+    SolverError
+        Names the element.
+    """
+    system, state = mechanics.system, mechanics.state
+    first, end = system.first_limit, system.n_switches
+    if first == end:
+        return
+    state.q[:], state.u[:] = q, u
+    state.evaluate("switch", t)
+    passed = np.flatnonzero(state.values["switch"][first:end] <= 0)
+    if len(passed):
+        raise SolverError(f"stopped at t = {t:.9g} s: {system.beyond(first + int(passed[0]))}")

@@ -1,0 +1,57 @@
+"""Starting anew in the middle of a run, at a corner or an event."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.state import LEFT_OPEN
+from ...errors import SolverError
+from ..failures import FAILURES
+from ..initial import InitialValues
+from ..mechanics import Mechanics
+
+
+def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
+    """Consistent values near given ones: projected onto the constraints, with new accelerations and multipliers.
+
+    Parameters
+    ----------
+    t : float
+        s.
+    q, u : ndarrays, shapes (n_q,), (n_u,)
+    project : bool
+        Whether q and u are first brought back to the constraints.
+
+    Raises
+    ------
+    SolverError
+        When the constraints cannot be satisfied or are dependent there, or accelerations are not determined.
+    """
+    state = mechanics.state
+    state.q[:], state.u[:] = q, u
+    if project and mechanics.system.n_c:
+        status = mechanics.assemble(t)
+        _go_on(status, t, "" if status >= 0 else _no_longer_redundant(mechanics, t, q))
+        _go_on(mechanics.correct_velocities(t), t)
+    state.count_anew(t)
+    status, acceleration = mechanics.accelerate(t)
+    _go_on(status, t)
+    return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), ())
+
+
+def _go_on(status: int, t: float, clause: str = "") -> None:
+    if status < 0:
+        raise SolverError(f"no consistent values were found to start anew at t = {t:.9g} s: {FAILURES[status]}{clause}")
+
+
+def _no_longer_redundant(mechanics: Mechanics, t: float, q: np.ndarray) -> str:
+    """A clause on the equation left out as redundant that is furthest from holding; empty where all hold."""
+    system, state = mechanics.system, mechanics.state
+    state.q[:] = q
+    state.evaluate("position", t)
+    gaps = np.abs(state.vector("position", "C")) * (~system.active & system.holonomic)
+    row = int(np.argmax(gaps))
+    if not gaps[row] > LEFT_OPEN * min(1.0, system.size):
+        return ""
+    joint, equation = system.equations[row]
+    return f"; joint '{joint}' (equation {equation}) was left out, as near the start it holds the same as others; it does not hold there"

@@ -1,0 +1,30 @@
+"""The longest steps that see what the inputs do, for compiled code."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.inputs.features import InputFeatures
+from ...compile.machine.layout import STEP_BOUND, packed
+
+
+class StepBound:
+    """A table for compiled code (`stiffmbs.solve.native.step_bound`) whose content may change.
+
+    Attributes
+    ----------
+    table : ndarray of int
+        It stays where it is.
+    """
+
+    def __init__(self) -> None:
+        self.table = np.zeros(len(STEP_BOUND), dtype=np.int64)
+        self.follow(InputFeatures())
+
+    def follow(self, features: InputFeatures) -> None:
+        """Bound steps by these features from now on."""
+        self._kept = {
+            "n": len(features.starts), "place": np.zeros(1, dtype=np.int64),
+            "starts": np.ascontiguousarray(features.starts), "longest": np.ascontiguousarray(features.longest),
+        }  # fmt: skip
+        self.table[:] = packed(STEP_BOUND, self._kept)

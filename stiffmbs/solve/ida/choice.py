@@ -1,0 +1,97 @@
+"""Which linear solver a pattern gets: the one with the least estimated cost."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ..linear.elimination_order import EliminationOrder, elimination_order
+from .fixed_order import FixedOrder
+from .libraries import Unavailable, ida_libraries
+from .matrices import Banded, Dense, Matrix, Sparse
+from .operations import replaceable
+from .ordering import narrowed
+from .paired_columns import PairedColumns
+
+SOLUTIONS = 8
+"""Solutions with one factorisation (measured: 7 to 20)."""
+DENSE = (0.045, 1.0, 0.24, 10.0)
+"""ns for a multiplication of the dense LU, for an entry that is cleared and filled, for an entry and an unknown in a solution."""
+BANDED = (0.15, 0.5, 0.45)
+"""The same of the banded LU, within the band; unknowns cost little beside it."""
+FIXED = (1.2, 1.5, 0.5, 1.0)
+"""ns for an update along a fixed order, for an entry of the factors that is cleared and scaled, for one in a solution, and for
+an unknown in a solution.  All figures are measured on the examples, 10 to 1000 unknowns."""
+PAIRED = (0.25, 3.0, 0.75, 1.0)
+"""The same where columns are taken in pairs: their loops cost as much as some ten updates."""
+SUPERLU = (0.5, 0.75, 600.0, 8.0)
+"""The same of SuperLU_MT, which works in dense blocks where there are any, and starts anew with every factorisation."""
+WORTH_A_BAND = 50
+"""Unknowns below which finding a band costs more than it can save."""
+FILLED, UPDATED = 1.1, 0.3
+"""Parts of the entries and updates of full blocks that are there in fact: J leaves much of them empty."""
+
+
+def dense_cost(n: int) -> float:
+    """Estimated ns for one factorisation of a dense matrix and the solutions with it."""
+    update, entry, solution, unknown = DENSE
+    return update * n**3 / 3 + (entry + SOLUTIONS * solution) * n**2 + SOLUTIONS * unknown * n
+
+
+def banded_cost(n: int, lower: int, upper: int) -> float:
+    """The same for a banded matrix."""
+    update, entry, solution = BANDED
+    height = 2 * lower + upper + 1
+    return n * (update * lower * (lower + upper) + (entry + SOLUTIONS * solution) * height)
+
+
+def fixed_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float, float]) -> float:
+    """The same for elimination along a fixed order, entry by entry or by pairs of columns."""
+    update, entry, solution, unknown = costs
+    entries, updates = FILLED * order.fill, UPDATED * order.updates
+    return update * updates + (entry + SOLUTIONS * solution) * entries + SOLUTIONS * unknown * n
+
+
+def superlu_cost(n: int, order: EliminationOrder) -> float:
+    """The same for SuperLU_MT."""
+    update, solution, start, unknown = SUPERLU
+    return (
+        update * UPDATED * order.updates
+        + SOLUTIONS * solution * FILLED * order.fill
+        + (start + SOLUTIONS * unknown) * n
+    )
+
+
+def chosen(equations: Equations) -> tuple[Equations, Matrix]:
+    """The linear solver of the least estimated cost, and the equations with their unknowns in its order.
+
+    The band is looked for where the dense and the fixed order cost more than one that is as narrow as a row is long.
+
+    Parameters
+    ----------
+    equations : Equations
+        In the natural order.
+    """
+    n, pattern = equations.n, equations.pattern
+    order = elimination_order(equations)
+    offers: list[tuple[float, Equations, Matrix]] = [(dense_cost(n), equations, Dense(n, *pattern))]
+    if replaceable(ida_libraries()):
+        offers.append((fixed_cost(n, order, FIXED), equations, FixedOrder(n, *pattern, order)))
+        offers.append((fixed_cost(n, order, PAIRED), equations, PairedColumns(n, *pattern, order)))
+    offers.append((superlu_cost(n, order), equations, Sparse(n, *pattern)))
+    half = int(np.bincount(pattern[0]).max()) // 2
+    if n >= WORTH_A_BAND and banded_cost(n, half, half) < min(cost for cost, *_ in offers):
+        ordered = narrowed(equations)
+        band = Banded(n, *ordered.pattern)
+        offers.append((banded_cost(n, band.lower, band.upper), ordered, band))
+    cheapest_first = sorted(offers, key=lambda offer: offer[0])
+    return next((ordered, matrix) for _, ordered, matrix in cheapest_first if _served(matrix))
+
+
+def _served(matrix: Matrix) -> bool:
+    """Whether the libraries have the linear solver: scikit-sundae may be built without SuperLU_MT."""
+    try:
+        matrix.libraries()
+    except Unavailable:
+        return False
+    return True

@@ -1,0 +1,186 @@
+"""IDA with everything that it is given once: vectors, matrix, callbacks, and the table that these work on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...compile.machine.layout import NATIVE_IDA, packed
+from ...compile.machine.routines import Routine
+from ...compile.state import State
+from ..events.event_functions import EventWatch
+from ..events.step_bound import StepBound
+from .error_norm import ErrorNorm
+from .iteration import Iteration
+from .matrices import Matrix
+from .output_correction import ENOUGH, LONG, Balance
+from .session import Session
+from .status import failure_sentence
+from .step_log import StepLog
+
+MODULE = "stiffmbs.solve.native.ida_loop"
+RESIDUAL = Routine(MODULE, "residual", "int32(float64, int64, int64, int64, int64*)")
+JACOBIAN = Routine(
+    MODULE, "jacobian", "int32(float64, float64, int64, int64, int64, int64, int64*, int64, int64, int64)"
+)
+SWITCHES = Routine(MODULE, "switches", "int32(float64, int64, int64, float64*, int64*)")
+
+RETURNED, INTERNAL, SIZE, NEXT_SIZE = range(4)
+SERVED, RECORDED, ORDER, TINY, SINCE, NEXT, WITHIN = range(7)
+SAMPLES = 16
+"""Marks and counts, as in `stiffmbs.solve.native.ida_loop`."""
+MOST_STEPS = 2048
+"""Steps of any one call of the loop."""
+
+
+class Connection:
+    """An integrator in SUNDIALS and its memory here, connected.
+
+    Parameters
+    ----------
+    equations : Equations
+    state : State
+    matrix : Matrix
+    reported : ndarray of int
+    session : Session
+        Owns what is made in SUNDIALS.
+
+    Attributes
+    ----------
+    y, yp, output : ndarrays, shape (n,)
+        Memory of the vectors of the solution, its derivative, and of what is interpolated or asked for.
+    mark, count : ndarrays
+        What the loop leaves behind.
+    balance : Balance
+    iteration : Iteration
+    error_norm : ErrorNorm
+    step_bound : StepBound
+    n_switches : int
+    sides, waits : ndarrays, shape (n_switches,)
+        As in `stiffmbs.solve.native.event_signs`.
+    watch : EventWatch
+    history : StepLog
+    samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
+        Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
+    table : int
+        Address of the table for compiled code.
+    """
+
+    def __init__(
+        self, equations: Equations, state: State, matrix: Matrix, reported: np.ndarray, session: Session
+    ) -> None:
+        n = equations.n
+        self._session, self._state, self._equations = session, state, equations
+        self.reported = np.ascontiguousarray(reported, dtype=np.int64)
+        self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
+        self.mark, self.count = np.zeros(4), np.zeros(7, dtype=np.int64)
+        self.history = StepLog()
+        self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
+        self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
+        self.balance, self.iteration, self.step_bound = Balance(n), Iteration(n), StepBound()
+        self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
+        self.memory = session.ida()
+        self.n_switches = equations.system.n_switches
+        self.sides, self.waits = np.zeros(self.n_switches), np.zeros(self.n_switches, dtype=np.int64)
+        self.watch = EventWatch(state, self.waits)
+        for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "switch"):
+            state.load(term_set)
+        self._table = self._packed()
+        self.table = self._table.ctypes.data
+        self.error_norm = ErrorNorm(n)
+        tables = self._state_table, self._equations_table
+        self.error_norm.take_place(session, self.memory, self.y_vector, tables, self._assembled, self.iteration.mark)
+        self._initialise()
+
+    def _packed(self) -> np.ndarray:
+        address = self._session.libraries.address
+        self._equations_table, self._slots = self._equations.table(self._assembled.slots)
+        self._state_table, self._calls = self._state.restricted(self._equations.used())
+        return packed(
+            NATIVE_IDA,
+            {
+                "state": self._state_table, "equations": self._equations_table,
+                "array_of": address("N_VGetArrayPointer"),
+                "matrix": self._assembled.values, "pattern": self._assembled.pattern,
+                "n_switches": self.n_switches, "sides": self.sides, "waits": self.waits,
+                "memory": self.memory, "y": self.y_vector, "yp": self.yp_vector,
+                "at_output": self.output_vector, "output": self.output,
+                "n_reported": len(self.reported), "reported": self.reported,
+                "solve": address("IDASolve"), "interpolate": address("IDAGetDky"),
+                "time_of": address("IDAGetCurrentTime"), "order_of": address("IDAGetLastOrder"),
+                "step_of": address("IDAGetLastStep"), "stop_at": address("IDASetStopTime"),
+                "next_step_of": address("IDAGetCurrentStep"), "step_bound": self.step_bound.table,
+                "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS), "samples": self.samples,
+                "balance_mark": self.balance.mark, "balance": self.balance.table,
+                "iteration": self.iteration.count, "watch": self.watch.table, "probe": self._probe,
+            },
+        )  # fmt: skip
+
+    def _initialise(self) -> None:
+        self.ask("IDAInit", RESIDUAL.address(), 0.0, self.y_vector, self.yp_vector)
+        self.ask("IDASetUserData", self.table)
+        self.ask("IDASetLinearSolver", self._assembled.solver, self._assembled.matrix)
+        self.ask("IDASetJacFn", JACOBIAN.address())
+        self.ask("IDASetMaxNumSteps", -1)  # a call of IDASolve is of one step
+        if self.n_switches:
+            self.ask("IDARootInit", self.n_switches, SWITCHES.address())
+            self.ask("IDASetNoInactiveRootWarn")
+
+    def ask(self, function: str, *arguments: Any) -> None:
+        """Call one of IDA's functions.
+
+        Raises
+        ------
+        ValueError
+            When it refuses.
+        """
+        flag = getattr(self._session.libraries, function)(self.memory, *arguments)
+        if flag < 0:
+            raise ValueError(failure_sentence(flag))
+
+    def answer(self, function: str, *arguments: Any) -> np.ndarray:
+        """Call a function of IDA's that fills a vector."""
+        self.ask(function, *arguments, self.output_vector)
+        return self.output.copy()
+
+    def forget(self) -> None:
+        """Drop the history, and the pivots that the linear solver has found."""
+        self.history.forget()
+        self.balance.forget()
+        self.error_norm.forget()
+        if self._assembled.found is not None:
+            self._assembled.found[:] = 0
+
+    def set_tolerances(self, rtol: float, atol: np.ndarray) -> None:
+        """Tolerances, one absolute one for each unknown."""
+        if np.shape(atol) != self.y.shape:
+            raise ValueError(f"atol: found shape {np.shape(atol)}, expected {self.y.shape}")
+        self._atol = np.array(atol, dtype=float)
+        self.ask("IDASVtolerances", rtol, self._session.vector(self._atol))
+
+    def balance_within(self, long_step: float, part: float) -> None:
+        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
+        if long_step < np.inf and not self.balance.ready:
+            self.balance.make_ready(self._session, self._matrix, self.memory, self.y_vector)
+        self.balance.mark[[LONG, ENOUGH]] = long_step, part
+
+    def suppress(self, suppressed: np.ndarray) -> None:
+        """Leave unknowns out of the error test."""
+        self._id = np.where(suppressed, 0.0, 1.0)
+        self.ask("IDASetId", self._session.vector(self._id))
+        self.ask("IDASetSuppressAlg", 1)
+
+    def doubt_rates(self) -> None:
+        """Have Newton's iteration judged by a convergence rate that worsens with the age of the iteration matrix."""
+        solver = self.iteration.solver(self._session, self.memory, self.y_vector)
+        self.ask("IDASetNonlinearSolver", solver)
+        self.iteration.take_over(self._session, solver)
+
+    def run(self, loop: Routine, *arguments: Any) -> int:
+        """Call a compiled loop and keep the history of the call; returns IDA's last flag."""
+        with self._session.libraries.on_one_thread():
+            flag = loop.load()(*arguments, self.table)
+        self.history.add(int(self.count[RECORDED]))
+        return flag

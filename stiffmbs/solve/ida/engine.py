@@ -1,0 +1,77 @@
+"""What `bdf` asks of a driver of IDA, be it native or through scikit-sundae's callbacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ...compile.inputs.features import InputFeatures
+from ..error_control.newton import Stiffness
+from ..trajectory import History
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Where an integrator has come since it was last heard of.
+
+    Attributes
+    ----------
+    times, rows : ndarrays, shapes (k,), (k, 2 * independent)
+        Instants asked for on the way (or ends of steps), and the independent coordinates and velocities there
+        (`stiffmbs.compile.equations.Equations.states` makes all of them).
+    t : float
+    y : ndarray, shape (n,)
+        Where it is now, with all unknowns.
+    fired : tuple of int
+        The switches that stopped it by changing their sign; empty where none did.
+    failure : str
+        Why it cannot go on; empty where it can.
+    """
+
+    times: np.ndarray
+    rows: np.ndarray
+    t: float
+    y: np.ndarray
+    fired: tuple[int, ...] = ()
+    failure: str = ""
+
+
+class Engine(Protocol):
+    """A driver of IDA."""
+
+    def forget(self) -> None:
+        """Forget counters, history and pivots of an earlier run."""
+
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Take no step that might miss what the inputs do, from the next start on."""
+
+    def leave_out(self, waits: np.ndarray) -> None:
+        """Do not look at each switch for so many steps from the next start on."""
+
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
+        """Start, or start anew, at consistent values.
+
+        Newton's iteration may leave a part of the tolerance; states within its long steps are
+        brought back to the equations.
+        """
+
+    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+
+    def by_steps(self, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report each step; ends early at an event or a failure."""
+
+    def pause_after(self, steps: int) -> None:
+        """Report at the latest after about so many steps."""
+
+    def note(self) -> str:
+        """What the user should know of the way it went; empty for nothing."""
+
+    def statistics(self) -> dict[str, int | float | str]:
+        """The linear solver, and counters since the first start."""
+
+    def history(self) -> History:
+        """Ends of the steps, and their orders where they are known."""

@@ -1,0 +1,78 @@
+"""Memory of the norm of error estimates (`stiffmbs.solve.native.error_norm`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.machine.layout import ERROR_NORM, packed
+from ...compile.machine.routines import Routine
+from .libraries import Unavailable
+from .matrices import Assembled
+from .operations import take_norm
+from .session import Session
+
+NORM = Routine("stiffmbs.solve.native.error_norm", "error_norm", "float64(int64*, int64)")
+TROUBLE, ALWAYS = range(2)
+"""Marks, as in `stiffmbs.solve.native.error_norm`."""
+
+
+class ErrorNorm:
+    """A norm of error estimates that leaves out what strong damping takes away within the step.
+
+    Parameters
+    ----------
+    n : int
+        Number of unknowns.
+    """
+
+    def __init__(self, n: int) -> None:
+        self._mark, self._count = np.zeros(3), np.zeros(6, dtype=np.int64)
+        self._change, self._filtered = np.zeros(n), np.zeros(n)
+
+    def take_place(
+        self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray
+    ) -> None:  # fmt: skip
+        """Have IDA, which copies its vectors from this one, measure its error estimates by this norm.
+
+        Nothing is changed where the SUNDIALS libraries lay out vectors in another way: then steps are only more.
+
+        Parameters
+        ----------
+        session : Session
+        memory : int
+            IDA's.
+        y_vector : int
+        tables : tuple of ndarray
+            Those of the state and of the equations, for compiled code.
+        assembled : Assembled
+            IDA's iteration matrix and its solver.
+        iteration : ndarray
+            Marks of Newton's iteration (`stiffmbs.solve.native.iteration`).
+        """
+        libraries, (state, equations) = session.libraries, tables
+        functions = {
+            "norm": "N_VWrmsNorm_Serial", "array_of": "N_VGetArrayPointer", "solve": "SUNLinSolSolve",
+            "steps_of": "IDAGetNumSteps", "failures_of": "IDAGetNumErrTestFails", "order_of": "IDAGetLastOrder",
+        }  # fmt: skip
+        self._table = packed(
+            ERROR_NORM,
+            {
+                "memory": memory, **{name: libraries.address(function) for name, function in functions.items()},
+                "mark": self._mark, "count": self._count, "iteration": iteration, "state": state, "equations": equations,
+                "solver": assembled.solver, "matrix": assembled.matrix,
+                "at_change": session.vector(self._change), "change": self._change,
+                "at_filtered": session.vector(self._filtered), "filtered": self._filtered,
+            },
+        )  # fmt: skip
+        try:
+            take_norm(session, y_vector, NORM.address(), self._table)
+        except Unavailable:
+            return
+
+    def filter_always(self, asked: bool) -> None:
+        """Have all estimates filtered, or those alone that follow many failures."""
+        self._mark[ALWAYS] = float(asked)
+
+    def forget(self) -> None:
+        """Forget failures of an earlier run."""
+        self._mark[:], self._count[:] = 0.0, 0

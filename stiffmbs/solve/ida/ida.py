@@ -1,0 +1,309 @@
+"""IDA driven through its C interface: compiled residual and Jacobian, compiled loop over the steps."""
+
+from __future__ import annotations
+
+import weakref
+from typing import Any
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...compile.inputs.features import InputFeatures
+from ...compile.machine.routines import Routine
+from ...compile.state import State
+from .connection import INTERNAL, MODULE, MOST_STEPS, NEXT, RETURNED, SERVED, SINCE, SIZE, TINY, WITHIN, Connection
+from .matrices import Matrix
+from .session import Session
+from .statistics import Statistics
+from .status import Status, failure_sentence
+from .step_log import StepLog
+
+ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
+STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
+
+STOP_RETURN, ROOT_RETURN = 1, 2
+"""IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
+LONGEST_CALL, STEP = 0.1, 1e-7
+"""Time, s, after which a call returns, for progress and interruption; of a step for each unknown, by a rough measure (a clock
+would make results hang on the machine's mood, as Newton's iteration is eased between calls)."""
+
+
+class NativeIda:
+    """IDA set up for one formulation of one system; begun as often as wanted.
+
+    One thread at a time may use an instance; several threads may each use their own, with its own state: the
+    interpreter's lock is released while IDA works.
+
+    Parameters
+    ----------
+    equations : Equations
+    state : State
+        The working memory of residual and Jacobian.
+    matrix : Matrix
+        How the iteration matrix is stored and factored (`stiffmbs.solve.ida.choice`).
+    rtol : float
+        Relative tolerance.
+    atol : ndarray, shape (n,)
+        Absolute tolerance of each unknown, greater than zero; a huge one takes it out of the error test and of
+        Newton's convergence test.
+    max_step : float
+        Largest step, s; 0 for none.
+    max_order : int
+        Of the BDF formula, 1 to 5.
+    suppressed : ndarray of bool, shape (n,), optional
+        Unknowns that are left out of the error test but not of Newton's convergence test (IDASetSuppressAlg).
+    newton : float, optional
+        Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
+    renewal : float, optional
+        Relative change of cj from which the iteration matrix is made anew (IDASetDeltaCjLSetup); 0.25 by default.
+    growth : float, optional
+        Factor by which a step must be allowed to grow before it is changed (IDASetEtaFixedStepBounds); 2 by default.
+    doubtful : bool
+        Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix
+        (`stiffmbs.solve.native.iteration`); IDA's own test trusts it until cj changes.
+    reported : ndarray of int, optional
+        The unknowns that are given at output times; all by default.
+
+    Attributes
+    ----------
+    y, yp : ndarrays, shape (n,)
+        The solution at `t`, overwritten by every call.
+    n_switches : int
+        Switches of the system; `advance` returns where one of them changes its sign.
+    matrix : Matrix
+
+    Raises
+    ------
+    Unavailable
+        When SUNDIALS' libraries cannot be used (`stiffmbs.solve.ida.libraries`).
+    ValueError
+        When IDA refuses a setting.
+
+    References
+    ----------
+    Hindmarsh et al., SUNDIALS, ACM Trans. Math. Softw. 31 (2005) 363-396; user documentation of IDA 7.
+    """
+
+    def __init__(
+        self,
+        equations: Equations,
+        state: State,
+        matrix: Matrix,
+        rtol: float,
+        atol: np.ndarray,
+        *,
+        max_step: float = 0.0,
+        max_order: int = 5,
+        suppressed: np.ndarray | None = None,
+        newton: float | None = None,
+        renewal: float | None = None,
+        growth: float | None = None,
+        doubtful: bool = False,
+        reported: np.ndarray | None = None,
+    ) -> None:
+        n = equations.n
+        self.matrix = matrix
+        session = Session(self.matrix.libraries())
+        self._finalizer = weakref.finalize(self, session.close)
+        self._ida = ida = Connection(
+            equations, state, self.matrix, np.arange(n) if reported is None else reported, session
+        )
+        self.y, self.yp, self.n_switches = ida.y, ida.yp, ida.n_switches
+        self._statistics = Statistics(session.libraries, ida.memory)
+        self._flag, self._begun = 0, False
+        self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
+        self._look = self._pace
+        ida.set_tolerances(rtol, atol)
+        self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
+        if suppressed is not None:
+            ida.suppress(~self._tested)
+        ida.ask("IDASetMaxStep", max_step)
+        ida.ask("IDASetMaxOrd", max_order)
+        if newton is not None:
+            ida.ask("IDASetNonlinConvCoef", newton)
+        if renewal is not None:
+            ida.ask("IDASetDeltaCjLSetup", renewal)
+        if growth is not None:
+            ida.ask("IDASetEtaFixedStepBounds", 1.0, growth)
+        if doubtful:
+            ida.doubt_rates()
+
+    @property
+    def t(self) -> float:
+        """Time of the solution in `y`, s."""
+        return float(self._ida.mark[RETURNED])
+
+    @property
+    def history(self) -> StepLog:
+        """Time, order and size of each step."""
+        return self._ida.history
+
+    @property
+    def samples(self) -> np.ndarray:
+        """Every fourth of the last 64 steps since the beginning: time and reported unknowns, the earliest first."""
+        newest = int(self._ida.count[NEXT])
+        rows: np.ndarray = np.roll(self._ida.samples, -newest, axis=0)
+        return rows[~np.isnan(rows[:, 0])]
+
+    def pause_after(self, steps: int) -> None:
+        """Have `advance` and `steps` return after so many steps at the latest."""
+        self._pace = min(self._pace, steps)
+
+    def look_after(self, steps: int) -> None:
+        """Have the next call of `advance` or `steps` return after so many steps at the latest."""
+        self._look = max(steps, 1)
+
+    def leave_out(self, waits: np.ndarray) -> None:
+        """Do not look at each switch for so many steps from the next beginning on."""
+        self._ida.waits[:] = waits
+
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Take no step that might miss what the inputs do."""
+        self._ida.step_bound.follow(features)
+
+    def leave_to_newton(self, part: float) -> None:
+        """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
+        self._ida.ask("IDASetNonlinConvCoef", part)
+
+    def balance_within(self, long_step: float, part: float) -> None:
+        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
+        self._ida.balance_within(long_step, part)
+
+    def filter_always(self, asked: bool) -> None:
+        """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""
+        self._ida.error_norm.filter_always(asked)
+
+    def forget(self) -> None:
+        """Forget counters, history and pivots, as if it had never begun."""
+        self._begun = False
+        self._statistics.forget()
+        self._ida.forget()
+
+    def begin(
+        self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0, highest_order: int | None = None
+    ) -> None:
+        """Start, or start again, from consistent values.
+
+        Parameters
+        ----------
+        t : float
+        y, yp : ndarrays, shape (n,)
+        first_step : float
+            Size of the first step, s; 0 lets IDA choose it.
+        highest_order : int, optional
+            Of the formulas from here on; IDA cannot lower it on its way.
+        """
+        if self._begun:
+            self._statistics.keep()
+        self.y[:], self.yp[:] = y, yp
+        self._ida.ask("IDAReInit", t, self._ida.y_vector, self._ida.yp_vector)
+        self._ida.ask("IDASetInitStep", first_step)
+        if highest_order is not None:
+            self._ida.ask("IDASetMaxOrd", highest_order)
+        self._ida.mark[[RETURNED, INTERNAL, SIZE]] = t, t, 0.0
+        self._ida.count[[TINY, SINCE]] = 0
+        self._ida.samples[:] = np.nan
+        self._ida.sides[:] = 0.0
+        self._ida.watch.begin()
+        self._ida.iteration.begin()
+        self.history.begin(t)
+        self._begun, self._flag = True, 0
+
+    def advance(
+        self, times: np.ndarray, stop: float, y_out: np.ndarray, yp_out: np.ndarray | None = None
+    ) -> tuple[int, Status]:
+        """Go on towards `stop`, and report at the output times on the way.
+
+        Returns early, with `Status.GOING`, after some 0.1 s of work: call again with the times that are left.
+
+        Parameters
+        ----------
+        times : ndarray
+            Increasing, none behind `t` nor beyond `stop`.
+        stop : float
+            Time beyond which no residual is evaluated, s.
+        y_out, yp_out : ndarrays, shape (len(times), number of reported unknowns)
+            Receive the solution, and its derivative.
+
+        Returns
+        -------
+        served : int
+            Number of output times reported.
+        status : Status
+        """
+        times = np.ascontiguousarray(times, dtype=float)
+        for rows in (y_out,) if yp_out is None else (y_out, yp_out):
+            self._check_rows(rows, len(times))
+        self._ida.ask("IDASetStopTime", stop)
+        derivatives = 0 if yp_out is None else yp_out.ctypes.data
+        self._run(
+            ADVANCE, len(times), times.ctypes.data, stop, min(self._pace, self._look), y_out.ctypes.data, derivatives
+        )
+        return int(self._ida.count[SERVED]), self._status()
+
+    def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
+        """Go on towards `stop` and report each of IDA's own steps; returns as `advance` does, or when `t_out` is full.
+
+        Parameters
+        ----------
+        stop : float
+        t_out : ndarray, shape (rows,)
+        y_out : ndarray, shape (rows, number of reported unknowns)
+        """
+        self._check_rows(y_out, len(t_out))
+        self._ida.ask("IDASetStopTime", stop)
+        self._run(STEPS, min(self._pace, self._look, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data)
+        return int(self._ida.count[SERVED]), self._status()
+
+    def _check_rows(self, rows: np.ndarray, count: int) -> None:
+        expected = (count, len(self._ida.reported))
+        if rows.shape != expected or rows.dtype != np.float64 or not rows.flags.c_contiguous:
+            raise ValueError(f"output rows: found {rows.dtype} of shape {rows.shape}, expected float64 of {expected}")
+
+    def _run(self, loop: Routine, *arguments: Any) -> None:
+        self._flag = self._ida.run(loop, *arguments)
+
+    def _status(self) -> Status:
+        if self._flag < 0:
+            return Status.FAILED
+        return {STOP_RETURN: Status.STOP, ROOT_RETURN: Status.ROOT}.get(self._flag, Status.GOING)
+
+    def failure(self) -> str:
+        """Why the last call failed: one sentence."""
+        return failure_sentence(self._flag)
+
+    def roots(self) -> np.ndarray:
+        """After `Status.ROOT`: for each switch other than 0 where it went through zero.
+
+        None is where the step has passed a zone of a law (`stiffmbs.solve.native.within_step`).
+        """
+        if self._ida.count[WITHIN]:
+            return self._ida.watch.found[: self.n_switches].astype(np.intc)
+        found = np.zeros(self.n_switches, dtype=np.intc)
+        self._ida.ask("IDAGetRootInfo", found.ctypes.data)
+        return found * self._ida.sides.astype(np.intc)
+
+    def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
+        """The solution, or one of its derivatives up to the last order, at a time within the last step.
+
+        Raises
+        ------
+        ValueError
+            When the time or the order of the derivative is beyond the last step's.
+        """
+        return self._ida.answer("IDAGetDky", t, derivative)
+
+    def statistics(self) -> dict[str, int]:
+        """Counters since the first beginning, and the order of the last step."""
+        return self._statistics.counted()
+
+    def worst(self) -> tuple[int, float]:
+        """The unknown with the largest estimated error in the last step, and that error in units of its tolerance."""
+        errors, weights = (self._ida.answer(name) for name in ("IDAGetEstLocalErrors", "IDAGetErrWeights"))
+        weighted = np.abs(errors) * weights * self._tested
+        k = int(np.argmax(weighted))
+        return k, float(weighted[k])
+
+    def close(self) -> None:
+        """Free what SUNDIALS holds; the instance cannot be used afterwards. Done by itself with the last reference."""
+        self._finalizer()

@@ -1,0 +1,160 @@
+"""The engine of `bdf` that drives IDA natively: no Python inside the step loop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...compile.inputs.features import InputFeatures
+from ...compile.state import State
+from ...describe.settings import RunSettings
+from ..error_control.error_test import ErrorControl
+from ..error_control.newton import NUMBERS_END, Stiffness
+from ..error_control.stability_limit import OrderWatch
+from ..storage import blocks, release, room
+from ..trajectory import History
+from .engine import Reached
+from .ida import NativeIda
+from .matrices import Matrix, Sparse
+from .status import Status
+
+ROWS_OF_STEPS = 1000
+"""Room for rows in one call that reports every step."""
+MANY_FAILURES, EASED, EASIEST = 0.2, 100.0, 0.33
+"""Part of the steps in which Newton's iteration may fail before less is asked of it, by that factor, up to that part."""
+RENEWED_UP_TO = 2000
+"""Unknowns up to which SuperLU_MT makes the iteration matrix anew as often as the error control asks (a third fewer residuals
+than with IDA's own 0.25).  Bands and fixed orders, which chains and trees have, do at any size: there it costs a few residuals."""
+
+
+class NativeEngine:
+    """IDA through its C interface (`NativeIda`); the contract is in `stiffmbs.solve.ida.engine.Engine`.
+
+    Parameters
+    ----------
+    equations : Equations
+        In the order of the matrix.
+    state : State
+        The working memory of residual and Jacobian.
+    matrix : Matrix
+    settings : RunSettings
+    control : ErrorControl
+    """
+
+    def __init__(
+        self, equations: Equations, state: State, matrix: Matrix, settings: RunSettings, control: ErrorControl
+    ) -> None:
+        reported = equations.independent
+        self._ida = NativeIda(
+            equations, state, matrix, *control.tolerances(equations, settings), max_step=settings.max_step,
+            suppressed=control.untested(equations), reported=reported, growth=control.growth,
+            doubtful=control.doubtful,
+            renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,
+        )  # fmt: skip
+        self._width, self._equations, self._matrix = len(reported), equations, matrix
+        self._rtol = settings.rtol
+        self._order = OrderWatch(equations, settings)
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget counters, history and pivots of an earlier run."""
+        self._ida.forget()
+        self._order.forget()
+        self._newton = 0.0
+        self._counted = {"steps": 0, "convergence_failures": 0}
+
+    def see_inputs(self, features: InputFeatures) -> None:
+        """Take no step that might miss what the inputs do."""
+        self._ida.see_inputs(features)
+
+    def leave_out(self, waits: np.ndarray) -> None:
+        """Do not look at each switch for so many steps."""
+        self._ida.leave_out(waits)
+
+    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
+        """Start, or start anew, at consistent values."""
+        self._newton, self._stiffness = newton, stiffness
+        self._ida.leave_to_newton(newton)
+        self._ida.balance_within(stiffness.long_step, max(stiffness.bearable, NUMBERS_END / self._rtol))
+        self._ida.filter_always(self._order.held)
+        self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
+        self._ida.begin(t, y, yp, highest_order=self._order.order)
+
+    def _adapt(self) -> None:
+        """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
+        self._ease_newton()
+        ida = self._ida
+        if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
+            self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
+        ida.look_after(self._order.wait(ida.history.count))
+
+    def _ease_newton(self) -> None:
+        """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""
+        counted = self._ida.statistics()
+        steps = counted["steps"] - self._counted["steps"]
+        failures = counted["convergence_failures"] - self._counted["convergence_failures"]
+        self._counted = counted
+        if failures > MANY_FAILURES * steps and self._newton < EASIEST:
+            eased = min(EASIEST, EASED * self._newton)
+            self.begin(
+                self._ida.t, self._ida.y.copy(), self._ida.yp.copy(), eased, self._stiffness
+            )  # IDA reads it at a start alone
+
+    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+        status, served = Status.GOING, 0
+        while status is Status.GOING:
+            times = times[served:]
+            rows = room(len(times), self._width)
+            served, status = self._ida.advance(times, stop, rows)
+            *earlier, last = list(blocks(served)) or [slice(0, 0)]
+            for block in earlier:
+                yield self._reached(times[block], rows[block], Status.GOING)
+                release(rows)
+            yield self._reached(times[last], rows[last], status)
+            if status is Status.GOING:
+                self._adapt()
+
+    def by_steps(self, stop: float) -> Iterator[Reached]:
+        """Integrate to `stop` and report each step; ends early at an event or a failure."""
+        status = Status.GOING
+        while status is Status.GOING:
+            times, rows = np.empty(ROWS_OF_STEPS), np.empty((ROWS_OF_STEPS, self._width))
+            served, status = self._ida.steps(stop, times, rows)
+            yield self._reached(times[:served], rows[:served], status)
+            if status is Status.GOING:
+                self._adapt()
+
+    def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
+        failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
+        fired = tuple(map(int, np.flatnonzero(self._ida.roots()))) if status is Status.ROOT else ()
+        return Reached(times, rows, self._ida.t, self._ida.y, fired, failure)
+
+    def _worst(self) -> str:
+        """Where the last step's error, or the last correction of Newton's iteration, was largest; nothing where that is not known."""
+        unknown, size = self._ida.worst()
+        if not 0.0 < size < np.inf:
+            return ""
+        at, system = self._equations.at, self._equations.system
+        for name, labels in (("q", system.of_body.positions), ("u", system.of_body.velocities)):
+            for k in np.flatnonzero(at[name] == unknown).tolist():
+                return f"; the largest error was in {system.name_of(k, labels)}"
+        return ""
+
+    def pause_after(self, steps: int) -> None:
+        """Report at the latest after so many steps."""
+        self._ida.pause_after(steps)
+
+    def note(self) -> str:
+        """What the user should know of the way it went."""
+        return self._order.note(self._ida.history.count)
+
+    def statistics(self) -> dict[str, int | float | str]:
+        """The linear solver, and counters since the first start."""
+        return {"linear_solver": self._matrix.sentence(), **self._ida.statistics()}
+
+    def history(self) -> History:
+        """Ends of the steps and their orders."""
+        return History(self._ida.history.t, self._ida.history.order)

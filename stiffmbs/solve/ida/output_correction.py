@@ -1,0 +1,77 @@
+"""Memory of Newton's iteration on interpolated states (`stiffmbs.solve.native.output_correction`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.machine.layout import BALANCE, packed
+from .matrices import Matrix
+from .session import Session
+
+FACTORED, CURRENT, ENOUGH, LONG = range(4)
+"""Marks, as in `stiffmbs.solve.native.output_correction`."""
+VECTORS = "y", "yp", "defect", "correction", "weight"
+
+
+class Balance:
+    """A matrix with its factors, and vectors, beside IDA's own; made when a scene is first found to be stiff.
+
+    Parameters
+    ----------
+    n : int
+        Number of unknowns.
+
+    Attributes
+    ----------
+    mark : ndarray
+    table : ndarray of int
+        For compiled code; empty until `make_ready`.
+    """
+
+    def __init__(self, n: int) -> None:
+        self._n = n
+        self.mark = np.zeros(7)
+        self.mark[LONG] = np.inf
+        self.table = np.zeros(len(BALANCE), dtype=np.int64)
+        self._kept: tuple[object, ...] = ()
+
+    @property
+    def ready(self) -> bool:
+        """Whether the memory is there."""
+        return bool(self._kept)
+
+    def make_ready(self, session: Session, matrix: Matrix, memory: int, y_vector: int) -> None:
+        """Make the matrix, its solver and the vectors.
+
+        Parameters
+        ----------
+        session : Session
+            Owns them.
+        matrix : Matrix
+        memory : int
+            IDA's.
+        y_vector : int
+            A vector like those of the iteration.
+        """
+        libraries, assembled = session.libraries, matrix.assembled(session, y_vector)
+        libraries.SUNLinSolInitialize(assembled.solver)
+        vectors = {name: np.zeros(self._n) for name in VECTORS}
+        functions = {
+            "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights",
+            "clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
+        }  # fmt: skip
+        self.table[:] = packed(
+            BALANCE,
+            {
+                "mark": self.mark, "memory": memory,
+                **{name: libraries.address(function) for name, function in functions.items()},
+                "solver": assembled.solver, "matrix": assembled.matrix,
+                "entries": assembled.values, "pattern": assembled.pattern,
+                **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
+            },
+        )  # fmt: skip
+        self._kept = (assembled, vectors)
+
+    def forget(self) -> None:
+        """Have the matrix factored anew."""
+        self.mark[FACTORED] = 0.0

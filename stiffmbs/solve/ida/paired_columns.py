@@ -1,0 +1,31 @@
+"""The iteration matrix factored along a fixed order of pivots, its columns taken in pairs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ...compile.machine.layout import PAIRED_COLUMNS, Layout
+from ...compile.machine.routines import Routine
+from .fixed_order import FixedOrder
+
+_MODULE = "stiffmbs.solve.native.paired_columns"
+SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
+SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
+
+
+@dataclass(frozen=True)
+class PairedColumns(FixedOrder):
+    """Sparse LU whose pivots are sought once, for long columns (`stiffmbs.solve.native.paired_columns`)."""
+
+    setup: ClassVar[Routine] = SETUP
+    solve: ClassVar[Routine] = SOLVE
+    layout: ClassVar[Layout] = PAIRED_COLUMNS
+
+    def sentence(self) -> str:
+        return f"fixed order, columns in pairs, {self.n} unknowns, {len(self.rows)} entries"
+
+    def _lists(self) -> dict[str, np.ndarray]:
+        return {name: np.zeros(self.n, dtype=np.int64) for name in ("item_start", "item_end", "side")}

@@ -1,0 +1,1 @@
+"""Linear systems of mechanics: block systems, orders of elimination, factors."""

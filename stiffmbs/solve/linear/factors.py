@@ -1,0 +1,37 @@
+"""Memory of the sparse LU of one pattern (`stiffmbs.compile.machine.native.factors`)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .elimination_order import EliminationOrder
+
+ROOM = 2
+"""Times the fill without pivoting that the factors are given at first, for pivots that leave the diagonal."""
+
+
+def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:
+    """What the layout `stiffmbs.compile.machine.layout.FACTORS` asks for.
+
+    Parameters
+    ----------
+    n : int
+        Number of unknowns.
+    rows, columns : ndarrays of int
+        The entries, by columns.
+    order : EliminationOrder
+        Of the columns, and how much is filled.
+    """
+    return {
+        "n": n, "room": ROOM * order.fill + n, "capacity": 0, "ready": _ints(1),
+        "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64),
+        "a_row": rows.astype(np.int64), "a": np.zeros(len(rows)), "scale": np.ones(n), "order": order.unknowns,
+        "l_start": _ints(n + 1), "u_start": _ints(n + 1), "pivot": _ints(n), "stack": _ints(4 * n),
+        **{name: np.zeros(n) for name in ("work", "b", "previous", "x")},
+    }  # fmt: skip
+
+
+def _ints(count: int) -> np.ndarray:
+    return np.zeros(count, dtype=np.int64)

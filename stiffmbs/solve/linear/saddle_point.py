@@ -1,0 +1,76 @@
+"""The block systems of rigid body mechanics: accelerations and multipliers, and both projections.
+
+All three are [D J^T; J 0] [x; w] = [a; b], solved by one sparse LU whose pattern and pivots are found once.
+"""
+
+from __future__ import annotations
+
+from ...compile.equations import Equations
+from ...compile.formulation import Block, Formulation, Product
+from ...compile.machine.layout import FACTORS
+from ...compile.machine.own_memory import packed_with_memory
+from ...compile.state import State
+from .elimination_order import elimination_order
+from .factors import factors_of
+
+_SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
+
+ACCELERATIONS = Formulation(
+    name="accelerations",
+    unknowns=("u", "lam"),
+    residual_set="acceleration",
+    matrix_set="acceleration",
+    residual=(Product("u", +1, "f"), Product("u", -1, "f_lam", "lam"), Product("lam", +1, "gamma")),
+    matrix=(Block("u", "u", "M"), Block("u", "lam", "f_lam", -1), *_SADDLE),
+)
+"""[M J^T; J 0] [u'; lam] = [f; gamma]; one Newton step of it where friction makes f depend on lam."""
+
+POSITION_STEP = Formulation(
+    name="position step",
+    unknowns=("q", "mu"),
+    residual_set="position",
+    matrix_set="position",
+    residual=(Product("mu", -1, "C"),),
+    matrix=(
+        Block("q", "q", "I"),
+        Block("q", "q", "I:turning", constant=3),
+        Block("q", "mu", "C_q.T"),
+        Block("mu", "q", "C_q"),
+    ),
+)
+"""[W C_q^T; C_q 0] [dq; w] = [0; -C]: Newton's smallest move towards the constraints, in m and rad.
+
+A turn by a small angle moves a quaternion by half of it, so that W is 4 there: a model has the same smallest move in the
+plane and in space.
+"""
+
+VELOCITY_STEP = Formulation(
+    name="velocity step",
+    unknowns=("u", "lam"),
+    residual_set="motion",
+    matrix_set="motion",
+    residual=(Product("lam", -1, "V"),),
+    matrix=(Block("u", "u", "M"), *_SADDLE),
+)
+"""[M J^T; J 0] [du; w] = [0; -V]: the smallest correction in the mass matrix."""
+
+
+class SaddlePoint:
+    """One block system with its factors, ready for compiled code.
+
+    Attributes
+    ----------
+    equations_table, factors_table : ndarrays of int
+        Addresses (`stiffmbs.compile.machine.layout`).
+    """
+
+    def __init__(self, formulation: Formulation, state: State) -> None:
+        self.equations = Equations(formulation, state.system)
+        state.load(formulation.residual_set)
+        self.equations_table, self._slots = self.equations.table()
+        self._arrays = factors_of(self.equations.n, *self.equations.pattern, elimination_order(self.equations))
+        self.factors_table = packed_with_memory(FACTORS, self._arrays)
+
+    def forget_pivots(self) -> None:
+        """Have the pivots sought anew with the next factorisation."""
+        self._arrays["ready"][0] = 0

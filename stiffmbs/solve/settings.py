@@ -1,0 +1,53 @@
+"""What the settings of a run mean for it: the instants to report, and what its states are good for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..describe.settings import RunSettings
+from .explicit import ADAPTIVE
+from .trajectory import Grid
+
+DEFAULT_POINTS = 1001
+
+
+def may_presolve(settings: RunSettings) -> bool:
+    """Whether a smaller problem has the same results: explicit steps of fixed length and drifts are shown as they are."""
+    shown_as_it_is = settings.solver == "projected" and not near_constraints(settings)
+    return settings.presolve and settings.solver != "kinematic" and not shown_as_it_is
+
+
+def near_constraints(settings: RunSettings) -> bool:
+    """Whether states are on the constraints but for the tolerance; those of explicit fixed steps are shown as they are."""
+    return settings.solver != "projected" or (settings.projection and settings.scheme in ADAPTIVE)
+
+
+def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:
+    """The settings with some fields changed, checked as a whole.
+
+    Raises
+    ------
+    InputError
+        When a field is unknown or its value out of bounds.
+    """
+    kept = {name: getattr(settings, name) for name in settings.model_fields_set}
+    if {"output", "points"} & changes.keys():
+        kept = {name: value for name, value in kept.items() if name not in ("output", "points")}
+    return RunSettings(**{**kept, **changes})
+
+
+def output_grid(settings: RunSettings) -> Grid:
+    """The instants to report, from the settings: ends included."""
+    start, end = settings.start, settings.start + settings.duration
+    if settings.points == "steps":
+        return Grid(start, end, None)
+    if settings.output is not None:
+        count = int(np.floor(settings.duration / settings.output * (1 + 1e-12))) + 1
+        times = start + settings.output * np.arange(count)
+        whole = count > 1 and end - times[-1] <= 1e-9 * settings.output
+        times = np.append(times[:-1] if whole else times, end)
+        return Grid(start, end, times)
+    points = settings.points if isinstance(settings.points, int) else DEFAULT_POINTS
+    return Grid(start, end, np.linspace(start, end, points))

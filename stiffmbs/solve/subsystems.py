@@ -1,0 +1,114 @@
+"""Solving the mechanisms that the presolve found, each by itself, and putting their motions together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..describe.settings import RunSettings
+from ..presolve.linear_equations import independent_coordinates
+from ..presolve.presolve import Part
+from .events.restart import restarted
+from .initial import InitialValues
+from .mechanics import Mechanics
+from .storage import room
+from .trajectory import Grid, History, Outcome, Solver, Trajectory, Watch, summed
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A mechanism ready to be solved.
+
+    Attributes
+    ----------
+    part : Part
+        Which bodies of the whole it moves.
+    mechanics : Mechanics
+    start : InitialValues
+    """
+
+    part: Part
+    mechanics: Mechanics
+    start: InitialValues
+
+
+def piece_of(part: Part, start: InitialValues, t: float) -> Piece:
+    """A part's mechanics and start, from the start of the whole.
+
+    Raises
+    ------
+    SolverError
+        When its accelerations are not determined.
+    """
+    mechanics = Mechanics(part.system)
+    return Piece(part, mechanics, restarted(mechanics, t, *part.reduced(start.q, start.u), project=False))
+
+
+def leave_out_coordinates(mechanics: Mechanics, t: float) -> None:
+    """Let integrators take the independent coordinates alone for unknowns; the state must satisfy the constraints.
+
+    Where nothing moves all stay, as an integrator needs an unknown.
+    """
+    found = independent_coordinates(mechanics.system, mechanics.state, t)
+    if found.independent.any():
+        mechanics.coordinates = found
+
+
+def solve_pieces(
+    solve: Solver, pieces: Sequence[Piece], start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch
+) -> Trajectory:
+    """Solve one mechanism after the other; the contract is in `stiffmbs.solve.trajectory`.
+
+    Where one cannot go on or is interrupted, the whole ends there, as its forces and those of the others belong to one
+    instant; the others are still solved up to there.
+
+    Parameters
+    ----------
+    solve : Solver
+        For each of them.
+    start : InitialValues
+        Of the whole.
+    """
+    found: list[Trajectory] = []
+    rows = None if grid.times is None else len(grid.times)
+    for k, piece in enumerate(pieces):
+        within = grid if rows is None else _up_to(grid, rows)
+        found.append(solve(piece.mechanics, piece.start, within, settings, _share(watch, grid, k, len(pieces))))
+        rows = len(found[-1].t)
+        if rows < 2:
+            break
+    return _together(pieces, found, start)
+
+
+def _up_to(grid: Grid, rows: int) -> Grid:
+    assert grid.times is not None
+    return grid if rows == len(grid.times) else Grid(grid.start, float(grid.times[rows - 1]), grid.times[:rows])
+
+
+def _share(watch: Watch, grid: Grid, k: int, count: int) -> Watch:
+    """Progress of one of several runs over the same time, as progress of all."""
+    return lambda t: watch(grid.start + (k * (grid.end - grid.start) + t - grid.start) / count)
+
+
+def _together(pieces: Sequence[Piece], found: Sequence[Trajectory], start: InitialValues) -> Trajectory:
+    """The motion of the whole, up to the last instant that all have reached; what was not solved stays at the start."""
+    rows = min(len(trajectory.t) for trajectory in found) if len(found) == len(pieces) else 1
+    q, u = room(rows, len(start.q)), room(rows, len(start.u))
+    q[:], u[:] = start.q, start.u
+    for piece, trajectory in zip(pieces, found, strict=False):
+        piece.part.put(trajectory.q[:rows], trajectory.u[:rows], q, u)
+    ending = next((each for each in found if each.outcome is not Outcome.DONE), found[-1])
+    return replace(
+        ending, t=found[0].t[:rows], q=q, u=u, statistics=summed([each.statistics for each in found]), history=_merged([each.history for each in found]),
+        note="; ".join(each.note for each in found if each.note),
+        solver=", ".join(dict.fromkeys(each.solver for each in found if each.solver)),
+    )  # fmt: skip
+
+
+def _merged(histories: Sequence[History]) -> History:
+    """The steps of all, in the order of time."""
+    t, order = (np.concatenate(parts) for parts in zip(*((h.t, h.order) for h in histories), strict=True))
+    sequence = np.argsort(t, kind="stable")
+    return History(t[sequence], order[sequence] if len(order) == len(t) else order)

@@ -1,0 +1,1 @@
+"""Files: hostile and broken ones."""

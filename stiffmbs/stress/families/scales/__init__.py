@@ -1,0 +1,1 @@
+"""Scales: lengths, masses, durations, tolerances, sizes."""

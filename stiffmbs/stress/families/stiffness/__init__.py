@@ -1,0 +1,1 @@
+"""Stiffness and damping, and what IDA makes of them."""

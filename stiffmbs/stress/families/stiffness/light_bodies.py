@@ -1,0 +1,92 @@
+"""Bodies that hardly resist, on hinges: angles against the equation of motion, with steps for the motion alone."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ....describe.body import Body
+from ....describe.model import FORCES, JOINTS, Model
+from ....results.solution import Solution
+from ...pendulum import GRAVITY
+from ...simulation import simulation
+
+MOST_STEPS = 1000
+"""Explicit steps that no tolerance asked for here needs; more are those of rounding noise."""
+
+
+def sprung(inertia: float) -> Model:
+    """2 kg without size on a hinge, 0.5 m from it, with a torsion spring of 100 N m/rad, at 1 rad."""
+    model = Model("Sprung mass", gravity=(0, -GRAVITY))
+    mass = model.add("mass", Body(mass=2, inertia=inertia, position=(0.5 * np.sin(1), -0.5 * np.cos(1)), angle=1.0))
+    model.add("hinge", JOINTS["revolute"](i=mass.at(0, 0.5), j="ground"))
+    model.add("spring", FORCES["torsion_spring"](i="mass", j="ground", stiffness=100))
+    return model
+
+
+def _sprung(t: np.ndarray, inertia: float) -> np.ndarray:
+    """(2*0.25 + I) phi'' = -100 phi - 2 g 0.5 sin(phi)."""
+    return solve_ivp(
+        lambda t, y: (y[1], -(100 * y[0] + GRAVITY * np.sin(y[0])) / (0.5 + inertia)), (0, t[-1]), (1.0, 0.0), "DOP853", t,
+        rtol=1e-12, atol=1e-12,
+    ).y[0]  # fmt: skip
+
+
+def links(mass: float, count: int) -> Model:
+    """Masses of 1 kg without size, one hanging from the other by links of 0.5 m that have next to no mass."""
+    model = Model("Massless links", gravity=(0, -GRAVITY))
+    before: Any = "ground"
+    for k in range(count):
+        link = model.add(f"link{k}", Body(mass=mass, inertia=mass, position=(0.5 * k + 0.25, 0)))
+        body = model.add(f"mass{k}", Body(mass=1, inertia=mass, position=(0.5 * k + 0.5, 0)))
+        model.add(f"upper{k}", JOINTS["revolute"](i=link.at(-0.25, 0), j=before))
+        model.add(f"lower{k}", JOINTS["fixed"](i=body.at(0, 0), j=link.at(0.25, 0)))
+        before = body.at(0, 0)
+    return model
+
+
+def _hanging(t: np.ndarray, count: int) -> np.ndarray:
+    """The first link's angle: M(phi) phi'' + ... = 0 of a pendulum of `count` equal masses, phi from the horizontal."""
+    share = count - np.maximum.outer(np.arange(count), np.arange(count))
+
+    def rates(_: float, y: np.ndarray) -> np.ndarray:
+        phi, w = y[:count], y[count:]
+        apart = np.subtract.outer(phi, phi)
+        mass = 0.25 * share * np.cos(apart)
+        force = -0.25 * (share * np.sin(apart)) @ w**2 - 0.5 * GRAVITY * np.diag(share) * np.cos(phi)
+        return np.concatenate([w, np.linalg.solve(mass, force)])
+
+    return solve_ivp(rates, (0, t[-1]), np.zeros(2 * count), "DOP853", t, rtol=1e-12, atol=1e-12).y[0]
+
+
+def _error(solution: Solution, channel: str, expected: Any) -> float:
+    """Of an angle, rad; infinite where steps are those of noise."""
+    if solution.solver["name"] == "projected" and solution.solver["steps"] > MOST_STEPS:
+        return float("inf")
+    return float(np.max(np.abs(solution[channel] - expected(solution.t))))
+
+
+def _case(name: str, scene: Any, channel: str, expected: Any, rtol: float, **how: Any):
+    solver = how.get("scheme", how["solver"])
+    return simulation(
+        f"{name}, {solver} at {rtol:.0e}", "angle against the Euler-Lagrange equations", scene,
+        partial(_error, channel=channel, expected=expected), 1e3 * rtol, duration=1.0, points=11, rtol=rtol, **how,
+    )  # fmt: skip
+
+
+WAYS: tuple[dict[str, Any], ...] = (
+    {"solver": "auto"}, {"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}, {"solver": "projected", "scheme": "dopri5"},
+)  # fmt: skip
+CASES = (
+    *(
+        _case(f"sprung mass of {inertia:.0e} kg m^2", partial(sprung, inertia), "mass.angle", partial(_sprung, inertia=inertia), rtol, **how)
+        for inertia in (1e-6, 1e-9, 1e-12, 1e-15) for rtol in (1e-4, 1e-6, 1e-8) for how in WAYS
+    ),
+    *(
+        _case(f"{count} links of {mass:.0e} kg", partial(links, mass, count), "link0.angle", partial(_hanging, count=count), 1e-7, **how)
+        for count in (1, 2, 4) for mass in (1e-8, 1e-12) for how in WAYS
+    ),
+)  # fmt: skip

@@ -1,0 +1,1 @@
+"""Structure: redundancy, assembly, poses, loops, random mechanisms."""

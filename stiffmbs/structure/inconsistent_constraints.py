@@ -1,0 +1,172 @@
+"""Redundant equations that say not the same but something else: no motion satisfies them all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from .drop_first import Redundant
+from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
+from .loop_rank import LoopRank
+
+INSTANTS = (0.0137, 0.0931, 0.2113, 0.3719, 0.6131, 0.8677, 0.9941)
+"""Parts of the run at which scenes that depend on time are looked at again, and as often in between as they move."""
+NEARLY = 1e-3
+"""Violation up to which equations that are independent by their disagreement alone would hold the same if they agreed."""
+CLEARLY = 0.2
+"""Part of a row of J that is at right angles to others from which on it is independent of them for sure."""
+DISAGREES = 1e-7
+"""Part of the largest prescribed velocity by which two equations may differ."""
+NEAR = 20.0
+"""Length of the move that satisfies the other equations, in gaps, up to which the gap is put down to a contradiction."""
+STRIDE, MOST_STRIDES = 0.2, 150
+"""Longest move (arms, rad) between two instants, so that no other branch is met, and how many are made at the most."""
+REGULAR = 1e-5
+"""Least singular value for a velocity to be computed from the equations kept."""
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """Redundant equations that disagree with those that hold the same.
+
+    Attributes
+    ----------
+    row : int
+        The redundant equation, counted in its loop.
+    joints : tuple of str
+        Its joint and those it disagrees with; of these the ones that depend on time, where there are such.
+    t : float
+        When, s.
+    level : str
+        ``position`` or ``velocity``.
+    gap : float
+        What the equation is off by where the others hold, in its own unit.
+    """
+
+    row: int
+    joints: tuple[str, ...]
+    t: float
+    level: str
+    gap: float
+
+
+def time_dependent(equations: LoopEquations, pose: Pose, duration: float) -> np.ndarray:
+    """Which rows have time in them, or prescribe velocities, as seen at instants of the run."""
+    rates = [equations.pose(pose.q, pose.t + part * duration).rates for part in (0.0, *INSTANTS)]
+    return equations.timed | np.any(np.array(rates) != 0.0, axis=0)
+
+
+def contradictions(found: LoopRank, redundant: list[Redundant], duration: float) -> list[Contradiction]:
+    """Redundant equations of a loop that cannot hold together with the others, at the first instant where that shows.
+
+    Each redundant equation must hold where the others do: in position at the assembled pose, and in velocity
+    (J u + C_t = 0 for the u of the others).
+    """
+    if not redundant and not AGREES < found.start.gap < NEARLY:
+        return []
+    equations = found.equations
+    driven = time_dependent(equations, found.start, duration)
+    for pose in _followed(equations, found.start, duration if redundant and driven.any() else 0.0):
+        asked = redundant if pose is found.start else [r for r in redundant if driven[[r.row, *r.others]].any()]
+        level, gaps = _disagreement(equations, redundant, pose)
+        if pose is found.start and pose.gap > AGREES and not gaps:
+            gaps = _nearby(equations, redundant, pose)
+            asked = _blamed(pose, gaps)
+        if against := [r for r in asked if r.row in gaps]:
+            return [Contradiction(r.row, _joints(equations, r, driven), pose.t, level, gaps[r.row]) for r in against]
+    return []
+
+
+def _followed(equations: LoopEquations, start: Pose, duration: float) -> Iterator[Pose]:
+    """The start, and poses along one motion that the equations allow, up to the first that cannot be assembled."""
+    yield start
+    pose, strides = start, 0
+    for part in INSTANTS:
+        end = start.t + part * duration
+        while pose.t < end and pose.gap <= AGREES:
+            u = np.linalg.lstsq(pose.J.dense(), -pose.rates)[0]
+            h = min(end - pose.t, STRIDE / max(float(np.linalg.norm(u)), 1e-300))
+            while True:
+                strides += 1
+                t = end if h >= end - pose.t else pose.t + h
+                there = equations.assembled(equations.moved(pose.q, h * u), t)
+                if strides > MOST_STRIDES or not there.J.finite:
+                    return
+                if equations.distance(pose, there) <= 2 * STRIDE:
+                    break
+                h /= 2
+            pose = there
+            yield pose
+
+
+def _disagreement(equations: LoopEquations, redundant: list[Redundant], pose: Pose) -> tuple[str, dict[int, float]]:
+    """The level, and the rows that do not hold where others do, with what they are off by."""
+    kept = np.ones(len(pose.C), dtype=bool)
+    kept[[r.row for r in redundant]] = False
+    if not pose.J.finite:
+        return "", {}
+    if pose.gap <= AGREES:
+        return "velocity", _off(equations, _velocity_gaps(pose, kept), DISAGREES * np.abs(pose.rates).max())
+    return "position", _off(equations, _position_gaps(equations, pose, kept), AGREES)
+
+
+def _nearby(equations: LoopEquations, redundant: list[Redundant], pose: Pose) -> dict[int, float]:
+    """The rows that do not hold where those hold that are independent for sure; the others hold nearly the same."""
+    first = np.ones(len(pose.C), dtype=bool)
+    first[[r.row for r in redundant]] = False
+    return _off(equations, _position_gaps(equations, pose, _clearly_independent(pose, first)), AGREES)
+
+
+def _off(equations: LoopEquations, gaps: np.ndarray, most: float) -> dict[int, float]:
+    """The rows that are off by more than rounding, the worst first, each in its own unit."""
+    worst = sorted(np.flatnonzero(gaps > most).tolist(), key=lambda row: -gaps[row])
+    return {row: float(gaps[row] / equations.row_scale[row]) for row in worst}
+
+
+def _velocity_gaps(pose: Pose, kept: np.ndarray) -> np.ndarray:
+    """What the rows left out miss by at the velocities of those kept: nothing where all rates are zero."""
+    if not np.any(pose.rates):
+        return np.zeros(len(pose.rates))
+    u, _, _, values = np.linalg.lstsq(pose.J.of_rows(kept).dense(), -pose.rates[kept])
+    gaps: np.ndarray = np.abs(pose.J.times(u) + pose.rates) * ~kept * (values[-1] >= REGULAR)
+    return gaps
+
+
+def _position_gaps(equations: LoopEquations, pose: Pose, kept: np.ndarray) -> np.ndarray:
+    """What the rows left out miss by nearby, where those kept hold; nothing where these do not close either."""
+    alone = equations.assembled(pose.q, pose.t, kept)
+    closes = np.abs(alone.C[kept]).max(initial=0.0) <= CLOSED and equations.distance(pose, alone) < NEAR * pose.gap
+    gaps: np.ndarray = np.abs(alone.C) * ~kept * closes
+    return gaps
+
+
+def _clearly_independent(pose: Pose, first: np.ndarray) -> np.ndarray:
+    """Rows that hardly depend on each other, some asked first: the others hold the same as these, or something else."""
+    J, kept = pose.J.dense(), np.zeros(len(first), dtype=bool)
+    basis = np.zeros((0, J.shape[1]))
+    for row in np.argsort(~first, kind="stable"):
+        rest = J[row] - basis.T @ (basis @ J[row])
+        rest -= basis.T @ (basis @ rest)
+        length = float(np.linalg.norm(rest))
+        if length > CLEARLY * np.linalg.norm(J[row]) > 0:
+            basis, kept[row] = np.vstack([basis, rest / length]), True
+    return kept
+
+
+def _blamed(pose: Pose, gaps: dict[int, float]) -> list[Redundant]:
+    """The row that is off most, with those that hold nearly the same."""
+    if not gaps:
+        return []
+    row, J = next(iter(gaps)), pose.J.dense()
+    others = np.delete(np.arange(len(J)), row)
+    share = np.abs(np.linalg.lstsq(J[others].T, J[row])[0])
+    return [Redundant(row, tuple(others[share > CLEARLY * share.max()].tolist()))]
+
+
+def _joints(equations: LoopEquations, redundant: Redundant, driven: np.ndarray) -> tuple[str, ...]:
+    names = [joint.name for joint in equations.loop.joints for _ in joint.rows]
+    rows = [redundant.row, *redundant.others]
+    of_time = [row for row in rows if driven[row]]
+    return tuple(dict.fromkeys(names[row] for row in (of_time if len(of_time) > 1 else rows)))

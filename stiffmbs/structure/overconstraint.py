@@ -1,0 +1,240 @@
+"""Redundant equations in a designer's words: what is held twice, what that leaves open, and what would settle it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.system import System
+from .drop_first import TAKES_PART, Redundant
+from .loops import LoopJoint
+from .rank_result import LoopFinding
+from .redundancy import Redundancy
+from .replacements import Choice, replacements
+from .sharing import ELASTIC, elastic_joints
+from .uniqueness import Undetermined, undetermined
+
+MOST_NAMES = 6
+
+
+@dataclass(frozen=True)
+class Overconstraint:
+    """Joints that together hold something more than once.
+
+    Attributes
+    ----------
+    joints : tuple of str
+        All that take part.
+    redundant : tuple of (str, str)
+        Joint and name of the equations that give way.
+    undetermined : tuple of Undetermined
+        The reactions that have no unique value because of it.
+    shared : bool
+        Whether all hold the same bodies against each other, so that what they carry together is unique.
+    remedies : tuple of tuple of str
+        Joints that would have to be left out, all of one tuple together, for every reaction to be unique.
+    elastic : tuple of str
+        Joints that would have to be elastic, all together, for their stiffness to decide about every reaction.
+    replacements : tuple of tuple of (str, str)
+        Joints and the kinds that would let go of just what is held too often: each that does alone, or a few together.
+    reason, remedy : str
+        Each a sentence without a full stop.
+    """
+
+    joints: tuple[str, ...]
+    redundant: tuple[tuple[str, str], ...]
+    undetermined: tuple[Undetermined, ...]
+    shared: bool
+    remedies: tuple[tuple[str, ...], ...]
+    elastic: tuple[str, ...]
+    replacements: tuple[Choice, ...]
+    reason: str
+    remedy: str
+
+
+def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
+    """What is held more than once in a system, independent cases apart."""
+    blocks = [(finding, block) for finding in redundancy.findings for block in _blocks(finding)]
+    what = "all reactions" if len(blocks) == 1 else "these reactions"
+    for finding, block in blocks:
+        yield _overconstraint(redundancy.system, finding, block, what)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a row, the last after an 'and'; long rows are cut short."""
+    if len(names) > MOST_NAMES:
+        names = [*names[: MOST_NAMES - 1], f"{len(names) - MOST_NAMES + 1} more"]
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
+
+
+def _blocks(finding: LoopFinding) -> list[list[Redundant]]:
+    """Redundant equations that are repeated by common rows, or among the same joints, together."""
+    joint_of = [joint.name for joint in finding.rank.equations.loop.joints for _ in joint.rows]
+    blocks: list[tuple[set[int], list[Redundant]]] = []
+    for part in finding.redundant:
+        blocks.append(({part.row, *part.others}, [part]))
+        while other := _alike(blocks, joint_of):
+            blocks.remove(other)
+            rows, members = blocks.pop()
+            blocks.append((rows | other[0], [*other[1], *members]))
+    return [members for _, members in blocks]
+
+
+def _alike(
+    blocks: list[tuple[set[int], list[Redundant]]], joint_of: list[str]
+) -> tuple[set[int], list[Redundant]] | None:
+    """A block that belongs together with the last one."""
+    *others, (rows, _) = blocks
+    joints = {joint_of[row] for row in rows}
+    return next((o for o in others if o[0] & rows or {joint_of[row] for row in o[0]} == joints), None)
+
+
+def _overconstraint(system: System, finding: LoopFinding, block: list[Redundant], what: str) -> Overconstraint:
+    """What is said of one block; `what` becomes unique by a remedy."""
+    loop = finding.rank.equations.loop
+    joint_of = [joint for joint in loop.joints for _ in joint.rows]
+    rows = sorted({row for part in block for row in (part.row, *part.others)})
+    joints = list({joint_of[row].name: joint_of[row] for row in rows}.values())
+    driven = list(dict.fromkeys(joint_of[row].name for row in rows if finding.driven[row]))
+    names = {joint.name for joint in joints}
+    spaces = [(pose, _of_block(finding, space, block)) for pose, space in finding.rank.null_spaces]
+    remedies = list(_remedies(finding, spaces[-1][1], joints))
+    shares = [spaces[-1][1][rows] for rows in _own_rows(finding, joints)]
+    elastic = elastic_joints(joints, shares)
+    chosen = replacements(finding.rank.equations, spaces, joints) if system.of_body.dimensions == 3 else []
+    parts = undetermined(finding.rank, spaces)
+    channels = {name for part in finding.undetermined if part.element in names for name in part.channels}
+    return Overconstraint(
+        joints=tuple(joint.name for joint in joints),
+        redundant=tuple(system.equations[row] for row in sorted(loop.rows[part.row] for part in block)),
+        undetermined=tuple(parts),
+        shared=_between_the_same(joints) and {name for part in parts for name in part.channels} == channels,
+        remedies=tuple(tuple(joint.name for joint in some) for some in remedies),
+        elastic=tuple(joint.name for joint in elastic),
+        replacements=tuple(chosen),
+        reason=_reason(system, joints, driven, len(block)),
+        remedy=_remedy(remedies, elastic, chosen, what),
+    )
+
+
+def _reason(system: System, joints: list[LoopJoint], driven: list[str], count: int) -> str:
+    names, equations = [joint.name for joint in joints], f"{count} equation{'s' if count > 1 else ''} too many"
+    bodies = sorted({body for joint in joints for body in joint.bodies})
+    held = listed([system.bodies[body] for body in bodies])
+    if len(driven) > 1:
+        return f"over-driven: {listed(driven)} prescribe the same motion of {held} ({equations})"
+    if driven:
+        return f"over-driven: {driven[0]} prescribes a motion of {held} that other joints hold already ({equations})"
+    if _between_the_same(joints):
+        against = " against each other" if len(bodies) > 1 else ""
+        return f"{held} {'are' if against else 'is'} guided twice{against}: {listed(names)} hold the same ({equations})"
+    return f"{held} form loops that hold themselves: {listed(names)} close them more often than needed ({equations})"
+
+
+def _between_the_same(joints: list[LoopJoint]) -> bool:
+    """Whether joints hold the same bodies against each other."""
+    return all(set(joint.bodies) == set(joints[0].bodies) for joint in joints)
+
+
+def _of_block(finding: LoopFinding, space: np.ndarray, block: list[Redundant]) -> np.ndarray:
+    """The null vectors that belong to redundant equations, one for each."""
+    chosen = [finding.redundant.index(part) for part in block]
+    one_each: np.ndarray = space @ np.linalg.inv(space[[part.row for part in finding.redundant]])
+    return one_each[:, chosen]
+
+
+def _remedies(finding: LoopFinding, space: np.ndarray, joints: list[LoopJoint]) -> Iterator[tuple[LoopJoint, ...]]:
+    """Each joint that alone would settle it; where there is none, a few that do together."""
+    count = space.shape[1]
+    own = list(_own_rows(finding, joints))
+    alone = [joint for joint, rows in zip(joints, own, strict=True) if _rank(space[rows]) == count]
+    if alone:
+        yield from ((joint,) for joint in alone)
+        return
+    yield tuple(joints[k] for k in _together(space, own, [joint.element.kind in ELASTIC for joint in joints]))
+
+
+def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> Iterator[int]:
+    """Joints, by their rows of a null space, that have all of it: each next one has the most of what is left."""
+    place = np.full((len(own), max(map(len, own))), len(space))
+    for k, rows in enumerate(own):
+        place[k, : len(rows)] = rows
+    rest = np.vstack([space, np.zeros(space.shape[1])])  # its last row stands for those that a joint has not
+    while True:
+        grams = rest[place] @ rest[place].transpose(0, 2, 1)
+        gains = np.sum(np.linalg.eigvalsh(grams) > TAKES_PART**2, axis=1).tolist()
+        best = max(range(len(own)), key=lambda k: (gains[k], elastic[k], k))
+        if not gains[best]:
+            return
+        yield best
+        _, sizes, directions = np.linalg.svd(rest[own[best]], full_matrices=False)
+        taken = directions[sizes > TAKES_PART]
+        rest = rest - (rest @ taken.T) @ taken
+
+
+def _own_rows(finding: LoopFinding, joints: list[LoopJoint]) -> Iterator[np.ndarray]:
+    """The rows of each joint in the loop."""
+    first = {joint.name: row for row, joint in _first_rows(finding)}
+    yield from (np.arange(first[joint.name], first[joint.name] + len(joint.rows)) for joint in joints)
+
+
+def _first_rows(finding: LoopFinding) -> Iterator[tuple[int, LoopJoint]]:
+    first = 0
+    for joint in finding.rank.equations.loop.joints:
+        yield first, joint
+        first += len(joint.rows)
+
+
+def _rank(rows: np.ndarray) -> int:
+    values = np.linalg.svd(rows, compute_uv=False)
+    return int(np.sum(values > TAKES_PART)) if values.size else 0
+
+
+def _remedy(
+    remedies: list[tuple[LoopJoint, ...]], elastic: tuple[LoopJoint, ...], chosen: list[Choice], what: str
+) -> str:
+    """What makes reactions determinate by statics, and what lets stiffness decide."""
+    ways = [f"with {kinds}" for kinds in _replaced(chosen)]
+    left_out = [joint.name for joint, *more in remedies if not more and joint.element.kind not in ELASTIC]
+    if left_out or not (ways or elastic):
+        ways.append(f"without {_one_of(left_out) if left_out else listed([joint.name for joint in remedies[0]])}")
+    told = [f"{', or '.join(ways)}, {what} are statically determinate"] if ways else []
+    if elastic:
+        told.append(
+            f"with {_elastic_words(elastic)}, stiffness decides how {what} are shared; one elastic joint beside rigid ones "
+            "that hold the same would carry nothing"
+        )
+    return "; ".join(told)
+
+
+def _elastic_words(elastic: Sequence[LoopJoint]) -> str:
+    """Bushings and springs in place of joints, in words."""
+    of_kind: dict[str, list[str]] = {}
+    for joint in elastic:
+        of_kind.setdefault(ELASTIC[joint.element.kind], []).append(joint.name)
+    return " and ".join(f"{kind}s in place of {_all_of(names)}" for kind, names in of_kind.items())
+
+
+def _all_of(names: Sequence[str]) -> str:
+    return f"both {listed(names)}" if len(names) == 2 else f"all of {listed(names)}" if len(names) > 2 else names[0]
+
+
+def _replaced(chosen: list[Choice]) -> Iterator[str]:
+    """The joints and their other kinds in words, those of one kind together."""
+    if chosen and len(chosen[0]) > 1:
+        yield listed([f"{_a(kind)} in place of {joint}" for joint, kind in chosen[0]])
+        return
+    kinds: dict[str, list[str]] = {}
+    for ((joint, kind),) in chosen:
+        kinds.setdefault(kind, []).append(joint)
+    yield from (f"{_a(kind)} in place of {_one_of(joints)}" for kind, joints in kinds.items())
+
+
+def _a(kind: str) -> str:
+    return f"a{'n' if kind[0] in 'aeio' else ''} {kind} joint"
+
+
+def _one_of(names: Sequence[str]) -> str:
+    return f"one of {listed(names)}" if len(names) > 1 else names[0]

@@ -1,0 +1,116 @@
+"""Which reactions redundant equations leave without a unique value (Wojtyra, Mech. Mach. Theory 40, 2005)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.reactions import reactions
+from .directions import Direction, directions
+from .loop_equations import LoopEquations, Pose
+from .loop_rank import LoopRank
+
+CHANGES = 1e-6
+"""Change of a reaction, in parts of the largest, from which on it is not unique."""
+TORQUES = ("torque", "tx", "ty", "tz")
+SPEED = 1.0
+"""Velocity (arms and rad per second) at which forces that depend on reactions are looked at: friction has none at rest."""
+
+
+@dataclass(frozen=True)
+class Undetermined:
+    """What of a joint's or force's reaction has no unique value.
+
+    Attributes
+    ----------
+    element : str
+    channels : tuple of str
+        Components in ground axes, such as ``hinge.fx``.
+    directions : tuple of Direction
+        Where the undetermined force always lies, and in space the torque; what is at right angles to that is unique.
+    """
+
+    element: str
+    channels: tuple[str, ...]
+    directions: tuple[Direction, ...] = ()
+
+
+def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> list[Undetermined]:
+    """The reactions that change along the null space of J^T.
+
+    Parameters
+    ----------
+    null_spaces : list of (Pose, ndarray)
+        Poses and null vectors of the scaled J^T there.
+
+    Notes
+    -----
+    M u' = f - J^T lam leaves lam free along the null space of J^T; a reaction is unique where it does not change
+    along it.  What changes at one of the poses is not unique as a history.
+    """
+    equations = found.equations
+    changes = [changes_of(equations, pose, space) for pose, space in null_spaces]
+    of_owner: dict[str, list[str]] = {}
+    for name in changes[0]:
+        if any(np.abs(change[name]).max() > CHANGES for change in changes):
+            of_owner.setdefault(name.partition(".")[0], []).append(name)
+    poses = [pose for pose, _ in null_spaces]
+    return [
+        Undetermined(owner, tuple(names), tuple(directions(equations, poses, changes, owner, CHANGES)))
+        for owner, names in of_owner.items()
+    ]
+
+
+def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> bool:
+    """Whether applied forces (friction) depend on reactions that are not unique: then the motion is not unique either."""
+    equations = found.equations
+    state = equations.state
+    if not len(state.system.term("acceleration", "f_lam").source):
+        return False
+    for pose, space in null_spaces:
+        _place(equations, pose)
+        rng = np.random.default_rng(1)
+        columns = equations.loop.columns
+        state.u[columns] = equations.velocities(SPEED * rng.uniform(-1, 1, len(columns)))
+        for lam in (*_multipliers(equations, space).T, *-_multipliers(equations, space).T):
+            at_zero, loaded = (_force(equations, part * lam, pose.t) for part in (0.0, 1.0))
+            if np.abs(loaded - at_zero).max() > CHANGES:
+                return True
+    return False
+
+
+def changes_of(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[str, np.ndarray]:
+    """For each channel its change along each null vector, scaled so that the largest is one; torques by arms."""
+    state = equations.state
+    _place(equations, pose)
+    rows = []
+    for lam in (np.zeros(len(space)), *_multipliers(equations, space).T):
+        state.lam[equations.loop.rows] = lam
+        state.evaluate("output", pose.t)
+        rows.append(state.values["output"].copy())
+    state.lam[:] = 0.0
+    found = {
+        name: (values[1:] - values[0]) / (equations.length if name.partition(".")[2] in TORQUES else 1.0)
+        for name, values in reactions(state.system, np.array(rows)).items()
+    }
+    largest = np.max([np.abs(change) for change in found.values()], axis=0)
+    return {name: change / np.where(largest > 0, largest, 1.0) for name, change in found.items()}
+
+
+def _place(equations: LoopEquations, pose: Pose) -> None:
+    equations.state.q[equations.loop.coordinates] = pose.q
+    equations.state.u[equations.loop.columns] = 0.0
+
+
+def _multipliers(equations: LoopEquations, space: np.ndarray) -> np.ndarray:
+    """Null vectors of J^T, scaled so that the generalised forces of their rows are of order one."""
+    return equations.row_scale[:, None] * equations.length * space
+
+
+def _force(equations: LoopEquations, lam: np.ndarray, t: float) -> np.ndarray:
+    state = equations.state
+    state.lam[equations.loop.rows] = lam
+    state.evaluate("acceleration", t)
+    state.lam[:] = 0.0
+    return state.vector("acceleration", "f")

@@ -1,0 +1,224 @@
+"""What a comparison of runs gives reason to doubt, in sentences."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..diagnostics.singular_poses import SingularPose
+from ..jobs.run import Job
+from ..results.error_bars import ErrorBar, Fine
+from ..results.scales import UNITS, kind_of
+from ..results.solution import Solution
+from ..solve.explicit import ADAPTIVE
+from .dense_sampling import Between
+from .parting import SENSITIVE, Parting, distance, parting
+from .poses import poses_of
+from .solve_again import Again
+
+AMPLIFIED, VISIBLE, LOOSE = 1e6, 1e-2, 100.0
+"""An error may be so many times the tolerance, but no more than a hundredth of the channel's scale, unless so many times
+the tolerance is more."""
+CONVERGES = 2.0
+"""Factor by which the error must shrink at a ten times tighter tolerance."""
+MISSED = 0.05
+"""Part of its scale by which a peak may lie above the output instants before it is told."""
+NAMED = 3
+"""Channels that a sentence names."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A run and those that it is compared with.
+
+    Attributes
+    ----------
+    job : Job
+    first : Solution
+    tighter : tuple of Again
+        By the same solver, the tightest last.
+    other : Again or None
+        By the other solver.
+    between : Between or None
+        What lies between output instants.
+    bars : mapping of str to ErrorBar
+    sizes : mapping of str to float
+        Scales of the channels.
+    """
+
+    job: Job
+    first: Solution
+    tighter: tuple[Again, ...]
+    other: Again | None
+    between: Between | None
+    bars: Mapping[str, ErrorBar]
+    sizes: Mapping[str, float]
+
+    @property
+    def acceptable(self) -> float:
+        """Part of its scale by which a peak may be wrong before it is told."""
+        settings = self.job.settings
+        if settings.solver == "projected" and settings.scheme not in ADAPTIVE:
+            return VISIBLE
+        return max(min(AMPLIFIED * settings.rtol, VISIBLE), LOOSE * settings.rtol)
+
+    @cached_property
+    def uncertain(self) -> dict[str, float]:
+        """Channels with a peak of which less is known than acceptable, the worst first: parts of the channel's scale."""
+        parts = {name: self._part(name, bar) for name, bar in self.bars.items() if self.sizes[name]}
+        beyond = {name: part for name, part in parts.items() if part > self.acceptable}
+        return dict(sorted(beyond.items(), key=lambda item: -item[1]))
+
+    def _part(self, name: str, bar: ErrorBar) -> float:
+        of_solver = max(bar.least - bar.sampled_least, bar.greatest - bar.sampled_greatest)
+        return of_solver / self.sizes[name]
+
+    def partings(self) -> list[Parting | None]:
+        """Where the first run parts from the next tighter one, that from the next, and the first from the other's."""
+        runs = [self.first.channels, *({name: run.reported(name) for name in self.first} for run in self.tighter)]
+        pairs = [*itertools.pairwise(runs)]
+        if self.other is not None:
+            pairs.append((runs[0], {name: self.other.reported(name) for name in self.first}))
+        found = []
+        for one, two in pairs:
+            count = min(len(one["energy.total"]), len(two["energy.total"]))
+            found.append(parting(self.first.time, distance(one, two, count, self.sizes)) if count else None)
+        return found
+
+    @property
+    def suspicious(self) -> bool:
+        """Whether differences are larger than they should be."""
+        return bool(self.uncertain) or any(self.partings())
+
+
+def doubts(comparison: Comparison) -> Iterator[str]:
+    """Everything that the runs give reason to doubt, a sentence each; nothing where they agree as they should."""
+    partings = comparison.partings()
+    met = [found for found in partings if found is not None]
+    if met:
+        yield _parting_sentence(comparison, partings, min(met, key=lambda found: found.t))
+    if comparison.uncertain:
+        yield _uncertain_sentence(comparison, parted=bool(met))
+    missed = _missed(comparison)
+    if missed and not met:
+        yield _missed_sentence(comparison, missed)
+
+
+def _parting_sentence(comparison: Comparison, partings: list[Parting | None], first: Parting) -> str:
+    pose = _pose(comparison, first)
+    settings = comparison.job.settings
+    if pose is not None:
+        where = ", ".join(
+            f"{body} at {words}" for body, words in zip(pose.bodies[:NAMED], pose.poses[:NAMED], strict=True)
+        )
+        return (
+            f"another branch: at t = {pose.t:.6g} s the mechanism passes a (nearly) singular pose ({where}), where "
+            f"{', '.join(pose.joints)} hold less than elsewhere and the motion may go on in more than one way; the runs "
+            f"part there ({first.body} is elsewhere from t = {first.t:.4g} s on). Remedy: a tighter rtol until two runs "
+            "agree, exact dimensions, or a gear or stop that decides the branch"
+        )
+    names = _run_names(comparison)
+    of_levels = partings[: len(comparison.tighter)]
+    if len(of_levels) > 1 and of_levels[0] and of_levels[1]:
+        begin = comparison.job.grid.start
+        later = of_levels[1].t - begin
+        if later < SENSITIVE * (of_levels[0].t - begin):
+            return (
+                f"a sensitive (chaotic) motion: from t = {of_levels[0].t:.4g} s on {of_levels[0].body} is elsewhere in "
+                f"{names[1]}, and that parts from {names[2]} at t = {of_levels[1].t:.4g} s; a tighter tolerance puts "
+                "the parting off but never away, so beyond it the results are one of many possible motions"
+            )
+    remedy = f"tighten {'the step' if settings.solver == 'projected' and settings.scheme not in ADAPTIVE else 'rtol'}"
+    other = names[1] if of_levels and of_levels[0] else names[-1]
+    return (
+        f"the motion is not resolved: from t = {first.t:.4g} s on {first.body} is elsewhere in {other}; {remedy} until "
+        "two runs agree"
+    )
+
+
+def _run_names(comparison: Comparison) -> list[str]:
+    others = [comparison.other.name] if comparison.other else []
+    return ["this run", *(run.name for run in comparison.tighter), *others]
+
+
+def _pose(comparison: Comparison, found: Parting) -> SingularPose | None:
+    """The singular pose on the way to where the runs part, if there is one."""
+    solution = comparison.between.solution if comparison.between else comparison.first
+    return poses_of(comparison.job, solution).nearest(found.begun, found.t)
+
+
+def _uncertain_sentence(comparison: Comparison, parted: bool) -> str:
+    worst = list(comparison.uncertain)[:NAMED]
+    peaks = ", ".join(_peak(comparison, name) for name in worst)
+    more = len(comparison.uncertain) - len(worst)
+    others = f" and {more} more channels" if more else ""
+    return f"peaks are less certain than they should be: {peaks}{others}; {_remedy(comparison, worst[0], parted)}"
+
+
+def _peak(comparison: Comparison, name: str) -> str:
+    bar, values = comparison.bars[name], comparison.first[name]
+    low = bar.least - bar.sampled_least > bar.greatest - bar.sampled_greatest
+    value, half = (np.nanmin(values), bar.least) if low else (np.nanmax(values), bar.greatest)
+    unit = UNITS.get(kind_of(name), "")
+    return f"{name} {value:.3g} ± {half:.1g} {unit}".rstrip()
+
+
+def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
+    """What a tighter tolerance would bring, as far as the runs tell."""
+    settings, first = comparison.job.settings, comparison.first
+    fixed = settings.solver == "projected" and settings.scheme not in ADAPTIVE
+    what, ratio = (f"step {settings.step:.3g} s", 2.0) if fixed else (f"rtol {settings.rtol:.3g}", 10.0)
+    if parted:
+        return f"at {what} they belong to motions that part"
+    whole = [run for run in comparison.tighter if not run.obstacle]
+    if len(whole) < 2:
+        return f"{what} is too coarse for them, or the integrators disagree; compare with a tighter one"
+    peaks = [(float(np.nanmin(v)), float(np.nanmax(v))) for v in (first[name], *(run.reported(name) for run in whole))]
+    once = max(abs(a - b) for a, b in zip(peaks[0], peaks[1], strict=True))
+    twice = max(abs(a - b) for a, b in zip(peaks[1], peaks[2], strict=True))
+    shrinks = once / twice if twice else math.inf
+    if shrinks < CONVERGES:
+        return f"they do not settle with a tighter tolerance than {what}: differences shrink by {shrinks:.2g} only"
+    needed = comparison.uncertain[name] / comparison.acceptable
+    steps = math.ceil(math.log(needed) / math.log(min(shrinks, ratio)))
+    if fixed:
+        return f"they converge; step {settings.step / ratio**steps:.2g} s should do"
+    return f"they converge; rtol {settings.rtol / ratio**steps:.1g} should do"
+
+
+def _missed(comparison: Comparison) -> list[str]:
+    """Channels whose peaks lie between output instants, the worst first."""
+    if comparison.between is None:
+        return []
+    parts = {
+        name: max(_beyond(comparison.between.fine(name))) / comparison.sizes[name]
+        for name in comparison.bars
+        if comparison.sizes[name]
+    }
+    return sorted((name for name, part in parts.items() if part > MISSED), key=lambda name: -parts[name])
+
+
+def _beyond(fine: Fine) -> tuple[float, float]:
+    """How far a channel goes below and above what it is at output instants."""
+    _, values, at = fine
+    return float(np.nanmin(values[at]) - np.nanmin(values)), float(np.nanmax(values) - np.nanmax(values[at]))
+
+
+def _missed_sentence(comparison: Comparison, missed: list[str]) -> str:
+    name = missed[0]
+    assert comparison.between is not None
+    times, values, at = comparison.between.fine(name)
+    below, above = _beyond((times, values, at))
+    low = below > above
+    k = int(np.nanargmin(values) if low else np.nanargmax(values))
+    reported = np.nanmin(values[at]) if low else np.nanmax(values[at])
+    more = f", and {len(missed) - 1} more channels alike" if len(missed) > 1 else ""
+    return (
+        f"peaks lie between the output instants: {name} comes to {values[k]:.4g} at t = {times[k]:.6g} s, "
+        f"{reported:.4g} at output instants{more}; take a smaller output, or points: steps"
+    )

@@ -1,0 +1,110 @@
+"""Where the motions of two runs part, and why: a singular pose, a motion that magnifies all errors, or loose tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.bodies import SPACE
+from ..compile.quaternions import CONJUGATE, rotation_vector, times
+from ..results.scales import kind_of
+
+APART = 0.05
+"""Part of the motion's size, or rad, by which positions must differ for two motions to have parted."""
+TOGETHER = 1e-3
+"""Part of `APART` at which the difference began to grow."""
+TURNING = (*SPACE.positions[SPACE.linear :], *SPACE.velocities[SPACE.linear :])
+NOTHING = 1e-300
+"""Lengths that are divided by are at least this, so that what does not turn has no axis."""
+SENSITIVE = 2.0
+"""A motion is sensitive where a tighter tolerance puts the parting off by less than this factor of time."""
+
+
+@dataclass(frozen=True)
+class Parting:
+    """Two motions that part.
+
+    Attributes
+    ----------
+    body : str
+        That does so first.
+    begun, t : float
+        When the difference began to grow, and when it was to be seen, s.
+    """
+
+    body: str
+    begun: float
+    t: float
+
+
+def distance(
+    first: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], count: int, sizes: Mapping[str, float]
+) -> dict[str, np.ndarray]:
+    """How far each body is from where it is in another run, in parts of the motion's size and in rad, over time.
+
+    Parameters
+    ----------
+    first, other : mappings of str to ndarray
+        Channels at the same instants.
+    count : int
+        Number of instants to compare.
+    sizes : mapping of str to float
+        Scales of the channels.
+    """
+    found: dict[str, np.ndarray] = {}
+    for name, values in first.items():
+        kind, (body, _, ending) = kind_of(name), name.partition(".")
+        if not sizes[name] or not (kind in ("position", "angle") or ending == TURNING[0]):
+            continue
+        if ending == TURNING[0] and not all(f"{body}.{part}" in first for part in TURNING):
+            continue  # a request
+        if kind == "orientation":
+            apart = _turned_apart(
+                *(np.stack([run[f"{body}.{part}"] for part in TURNING])[:, :count] for run in (first, other))
+            )
+        else:
+            scale = max(sizes[name], 1.0) if kind == "angle" else sizes[name]
+            apart = np.abs(values[:count] - other[name][:count]) / scale
+        found[body] = np.maximum(found.get(body, 0.0), apart)
+    return found
+
+
+def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """By how much two motions differ in orientation over time: about all axes but that of the turning in rad, about this
+    one in parts of all that the first turns by, if that is more than 1 rad (as for angles in the plane).
+
+    Parameters
+    ----------
+    first, other : ndarrays, shape (7, n)
+        Quaternion, of which either sign is the same orientation, and angular velocity in the body's own axes.
+    """
+    p, w = first[:4], first[4:]
+    turn = rotation_vector(times(CONJUGATE * p.T, other[:4].T))
+    axis = (w / np.maximum(np.linalg.norm(w, axis=0), NOTHING)).T
+    along = np.sum(turn * axis, axis=1, keepdims=True)
+    turned = 4 * np.arcsin(np.minimum(np.linalg.norm(np.diff(p), axis=0) / 2, 1.0))
+    phase = np.abs(along[:, 0]) / max(1.0, float(np.nansum(turned)))
+    return np.maximum(phase, np.linalg.norm(turn - along * axis, axis=1))
+
+
+def parting(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Parting | None:
+    """Where two motions part; None where they stay together.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+    distances : mapping of str to ndarray
+        Of each body (`distance`).
+    """
+    if not distances:
+        return None
+    bodies, rows = list(distances), np.array(list(distances.values()))
+    beyond = rows > APART
+    if not beyond.any():
+        return None
+    k = int(np.argmax(beyond.any(axis=0)))
+    body = int(np.argmax(rows[:, k]))
+    together = np.flatnonzero(rows[:, :k].max(axis=0) < TOGETHER * APART)
+    return Parting(bodies[body], float(times[together[-1] if len(together) else 0]), float(times[k]))

@@ -1,0 +1,19 @@
+"""The poses of a solution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..diagnostics.singular_poses import PosesOnTheWay
+from ..jobs.run import Job
+from ..results.body_axes import from_own_axes
+from ..results.solution import Solution
+
+
+def poses_of(job: Job, solution: Solution) -> PosesOnTheWay:
+    """How near to singular ones the poses of a solution are."""
+    system = job.mechanics.system
+    names = [f"{body}.{name}" for body in system.bodies for name in system.of_body.positions]
+    q = from_own_axes(system, np.column_stack([solution[name] for name in names]))
+    counters = np.zeros((len(q), system.n_counters))  # of no account where only J is asked for
+    return PosesOnTheWay(system, solution.time, np.column_stack([q, counters]))

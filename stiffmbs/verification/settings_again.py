@@ -1,0 +1,52 @@
+"""The settings with which a run is solved again: tolerances, steps, and what these are called."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..describe.settings import RunSettings
+from ..results.solution import Solution
+from ..solve.explicit import ADAPTIVE
+
+TIGHTEST = 1e-13
+"""Relative tolerance below which steps fail by rounding."""
+APART = 2.0
+"""Times tighter that a tolerance must be at the least to tell anything beside another."""
+MORE_STEPS, MANY = 4, 1000
+"""Times as many steps, and at least so many, that a run with another longest step takes."""
+
+
+def levels_of(rtol: float) -> tuple[int, ...]:
+    """A hundredth and a tenth of a tolerance, as far as rounding leaves both."""
+    return tuple(level for level, most in ((2, 10 * APART), (1, 0.0)) if rtol > most * TIGHTEST)
+
+
+def tolerances(settings: RunSettings, level: int) -> dict[str, Any]:
+    """Tighter by so many powers of ten, down to the tightest; looser where that is hardly tighter: then that run's error shows."""
+    rtol = max(settings.rtol / 10**level, TIGHTEST)
+    if settings.rtol < APART * rtol:
+        rtol = 10 * settings.rtol
+    return {"rtol": rtol, **({"atol": settings.atol * rtol / settings.rtol} if settings.atol else {})}
+
+
+def shorter_step(first: Solution) -> float:
+    """A longest step with which a run takes some times as many steps as it did, s."""
+    steps, whole = np.diff(first.step_times), float(first.time[-1] - first.time[0])
+    if not len(steps):
+        return whole / MANY
+    wanted = max(MORE_STEPS * len(steps), MANY)
+    few, many = whole / (8 * wanted), whole
+    for _ in range(60):  # by bisection of the number of steps, which falls with their length
+        middle = np.sqrt(few * many)
+        few, many = (middle, many) if np.sum(np.ceil(steps / middle)) > wanted else (few, middle)
+    return float(f"{many:.2g}")
+
+
+def has_fixed_steps(settings: RunSettings) -> bool:
+    return settings.solver == "projected" and settings.scheme not in ADAPTIVE
+
+
+def name_of_solver(solver: str, scheme: str) -> str:
+    return scheme if solver == "projected" else solver

@@ -1,0 +1,280 @@
+"""Trust in one run: the scene is solved again, tighter and in another way, and what differs becomes error bars and doubts.
+
+1. With the same solver at a hundredth of the tolerance (half the step of fixed schemes), reported at the first run's own
+   steps besides its output instants, so that peaks between these are seen.
+2. With the other integrator, at a hundredth of the tolerance: bdf's errors and those of explicit steps have nothing in common.
+3. With the same solver at a tolerance between (a quarter of the step), where the other integrator says nothing, or the
+   first two look suspicious: then the order of convergence tells.
+
+None of these need see what begins and ends within one step.  So the run is looked along (`stiffmbs.verification.stepped_over`),
+and where the scene has laws or events in the state it is solved once more with another longest step:
+
+4. As 1, with steps so short that they are several times as many, or that they see what was found along the run.
+
+A tenth of the tolerance is not enough for the first: bdf's error then shrinks by 2 to 10 times, and one peak in twenty has
+nearly the same error in both runs.
+
+The reruns take a few times the first run's time, and looking along it as much again; what was not done is said.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.settings import RunSettings
+from ..diagnostics.laws import has_laws
+from ..jobs.run import Job, prepare, solved
+from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
+from ..results.scales import scales
+from ..results.solution import Solution
+from ..solve.settings import changed
+from ..solve.trajectory import Outcome, Watch
+from .dense_sampling import Between, looked_between, more_instants
+from .diagnostics import Comparison, doubts
+from .parting import distance, parting
+from .settings_again import has_fixed_steps, levels_of, name_of_solver, shorter_step, tolerances
+from .solve_again import Again, solve_again
+from .step_diagnostics import by_luck, doubts_of_steps
+from .stepped_over import Along, SteppedOver, looked_along
+
+MOST_EFFORT, PATIENCE = 3.0, 1.0
+"""Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
+OTHER_OF_FIXED = 1e-10
+"""Relative tolerance of the other solver where the first has fixed steps."""
+ROUNDING = 1e-13
+"""Part of a channel's scale that rounding takes."""
+
+
+def verify(
+    model: ModelBuilder | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any
+) -> Solution:
+    """Solve a model, and solve it again to see what its results are worth; parameters and errors as for `run`.
+
+    Returns
+    -------
+    Solution
+        The same that `run` returns, with `errors` (the bars of each channel), `verification` (what was compared) and
+        further `notes` where the results are in doubt.
+    """
+    begun = time.perf_counter()
+    job = prepare(model, settings, **changes)
+    first = solved(job, watch)
+    if len(first.time) < 2:
+        return replace(first, verification=("not verified: nothing was solved",))
+    if first.outcome is Outcome.INTERRUPTED:
+        return replace(first, verification=("not verified: interrupted by the user",))
+    try:
+        return verified(job, first, max(PATIENCE, MOST_EFFORT * (time.perf_counter() - begun)))
+    except KeyboardInterrupt:
+        return replace(first, verification=("verification interrupted by the user",))
+
+
+@np.errstate(all="ignore")  # as for `solved`
+def verified(job: Job, first: Solution, allowed: float) -> Solution:
+    """What `verify` returns, for a job that was solved already.
+
+    Parameters
+    ----------
+    job : Job
+    first : Solution
+        Of the job, at two instants at least.
+    allowed : float
+        Time for all that is solved again, s.
+    """
+    return _Verification(job, first, allowed).result()
+
+
+class _Verification:
+    """The runs that one run is compared with."""
+
+    def __init__(self, job: Job, first: Solution, allowed: float) -> None:
+        self._job, self._first = job, first
+        self._begun, self._allowed = time.perf_counter(), allowed
+        self._sizes = scales(first.channels, job.mechanics.system.size)
+        self._exact = job.settings.solver == "kinematic"
+        self._between: Between | None = None
+        self._tighter: dict[int, Again] = {}
+        self._other: Again | None = None
+        self._along = Along(None)
+        self._shorter: Again | None = None
+        self._narrow: tuple[SteppedOver, ...] = ()
+        self._skipped: list[str] = []
+
+    def result(self) -> Solution:
+        """The first run with what the others say of it."""
+        try:
+            self._solve()
+        except KeyboardInterrupt:
+            self._skipped.append("verification interrupted by the user")
+        comparison = self._comparison()
+        of_steps = tuple(doubts_of_steps(comparison, self._along, self._shorter))
+        steps_decide = self._along.stretches or by_luck(comparison, self._shorter)
+        told = () if steps_decide else tuple(doubts(comparison))  # these know no remedy but the tolerance
+        return replace(
+            self._first, errors=comparison.bars, verification=tuple(self._told()),
+            notes=(*self._first.notes, *told, *of_steps), balance=self._along.balance or self._first.balance,
+        )  # fmt: skip
+
+    def _solve(self) -> None:
+        self._look_between()
+        if self._exact:
+            return
+        self._ask_the_other()
+        if self._other is None or self._other.obstacle or not _judges(self._other) or self._comparison().suspicious:
+            self._tighten()
+        self._look_along()
+
+    def _look_along(self) -> None:
+        """What the first run's steps went over, and a run with shorter ones where there may be such."""
+        if has_fixed_steps(self._job.settings):
+            return
+        spare = self._allowed / 2
+        self._along = looked_along(self._job, self._first, spare)
+        self._narrow = self._along.stretches + self._along.elsewhere
+        if self._along.obstacle:
+            self._skipped.append(self._along.obstacle)
+        elif not self._along.stretches:
+            self._look_along_others(spare)
+        if self._along.stretches or has_laws(self._job.mechanics.system):
+            longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
+            name, changes = self._tighter_settings(self._levels()[0])
+            reported = self._first.time
+            self._shorter = solve_again(
+                self._job, f"{name} with steps of at most {longest:.3g} s", {**changes, "max_step": longest}, reported,
+                np.arange(len(reported)), spare,
+            )  # fmt: skip
+
+    def _look_along_others(self, allowed: float) -> None:
+        """Leave out runs that part from the first where they have gone over something themselves."""
+        for level, run in self._tighter.items():
+            self._tighter[level] = self._looked_along(run, self._tighter_settings(level)[1], allowed)
+        if self._other is not None and _judges(self._other):
+            self._other = self._looked_along(self._other, self._other_settings(), allowed)
+        if self._between is not None and any(run.blind for run in self._tighter.values()):
+            self._between = None
+
+    def _looked_along(self, run: Again, changes: dict[str, Any], allowed: float) -> Again:
+        """A run, with what its steps go over."""
+        if run.solution is None or run.obstacle:
+            return run
+        reported = {name: run.reported(name) for name in self._first}
+        away = distance(self._first.channels, reported, len(self._first.time), self._sizes)
+        if parting(self._first.time, away) is None:
+            return run
+        job = replace(self._job, settings=changed(self._job.settings, changes))
+        found = looked_along(job, run.solution, allowed)
+        self._narrow += found.stretches + found.elsewhere
+        if not found.stretches:
+            return run
+        whose = f"'{found.stretches[0].element}'" if found.stretches[0].element else "something"
+        return replace(
+            run, blind=f"its steps go over {whose} at t = {found.stretches[0].at:.6g} s, which this run has seen"
+        )
+
+    def _look_between(self) -> None:
+        """The first tighter run, also at instants between those of the output; the next one where it does not end."""
+        start, end = float(self._first.time[0]), float(self._first.time[-1])
+        times = more_instants(self._first, self._job.mechanics.input_features(start, end))
+        at = np.searchsorted(times, self._first.time)
+        for level in self._levels():
+            run = self._run(level, times, at)
+            self._between = looked_between(self._job, run, self._sizes, max(self._left(), PATIENCE))
+            if not run.obstacle:
+                return
+
+    def _tighten(self) -> None:
+        """The next of the tighter runs."""
+        reported = self._first.time
+        for level in self._levels():
+            if level not in self._tighter:
+                self._run(level, reported, np.arange(len(reported)))
+                return
+
+    def _run(self, level: int, times: np.ndarray, at: np.ndarray) -> Again:
+        name, changes = self._tighter_settings(level)
+        run = solve_again(self._job, name, changes, times, at, self._left())
+        if not self._exact:
+            self._tighter[level] = run
+        return run
+
+    def _levels(self) -> tuple[int, ...]:
+        """How much tighter the runs are, in tenths of the tolerance or halves of the step, in the order of their use."""
+        settings = self._job.settings
+        if self._exact:
+            return (1,)
+        return (1, 2) if has_fixed_steps(settings) else levels_of(settings.rtol)
+
+    def _tighter_settings(self, level: int) -> tuple[str, dict[str, Any]]:
+        settings = self._job.settings
+        if self._exact:
+            return "kinematic between the output instants", {}
+        if has_fixed_steps(settings):
+            step = settings.step / 2**level
+            return f"{settings.scheme} with steps of {step:.3g} s", {"step": step}
+        changes = tolerances(settings, level)
+        return f"{name_of_solver(settings.solver, settings.scheme)} at rtol {changes['rtol']:.3g}", changes
+
+    def _ask_the_other(self) -> None:
+        changes, reported = self._other_settings(), self._first.time
+        name = f"{name_of_solver(changes['solver'], 'dop853')} at rtol {changes['rtol']:.3g}"
+        self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
+
+    def _other_settings(self) -> dict[str, Any]:
+        settings = self._job.settings
+        solver = "projected" if self._first.solver["name"] == "bdf" else "bdf"
+        how = {"solver": solver, "scheme": "dop853", "formulation": "SI2", "projection": True}
+        return {**how, **({"rtol": OTHER_OF_FIXED} if has_fixed_steps(settings) else tolerances(settings, 2))}
+
+    def _left(self) -> float:
+        return self._allowed - (time.perf_counter() - self._begun)
+
+    def _comparison(self) -> Comparison:
+        levels = [self._tighter[level] for level in sorted(self._tighter)]
+        tighter = tuple(run for run in levels if run.solution is not None and not run.blind)
+        other = self._other if _judges(self._other) else None
+        shorter = self._shorter if _judges(self._shorter) else None
+        lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
+        runs = [*tighter, *([other] if other else []), *([shorter] if shorter else [])]
+        bars = {
+            name: UNKNOWN if lost else self._bar(name, runs)
+            for name in self._first
+            if name not in self._first.not_unique and not name.startswith("constraint.")
+        }
+        return Comparison(self._job, self._first, tighter, other, self._between, bars, self._sizes)
+
+    def _bar(self, name: str, runs: list[Again]) -> ErrorBar:
+        fine = self._between.fine(name) if self._between else None
+        return error_bar(self._first[name], [run.reported(name) for run in runs], fine, ROUNDING * self._sizes[name])
+
+    def _told(self) -> list[str]:
+        """What was compared with, and what could not be."""
+        runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
+        done = [
+            run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
+        ]
+        told = [f"solved again with {' and '.join(done)}"] if done else []
+        if self._exact:
+            told = ["kinematic: positions follow from the drives alone, exact but for rounding; bars are of sampling"]
+        told += [f"{run.name}: {run.obstacle}" for run in runs if run.obstacle]
+        told += [f"{run.name}, not counted: {run.blind}" for run in runs if run.blind]
+        if self._other is not None and self._other.remark:
+            told.append(f"{self._other.name}, not counted: {self._other.remark}")
+        if self._between is None:
+            told.append("nothing is known between the output instants")
+        elif self._between.singular:
+            told.append(
+                f"at t = {self._between.singular[0]:.6g} s the pose is singular: accelerations and reactions have no value "
+                "there, and their peaks are those of other instants"
+            )
+        return [*told, *self._skipped]
+
+
+def _judges(other: Again | None) -> bool:
+    """Whether a run of the other solver says something: explicit steps at their limit of stability are noisy."""
+    return other is not None and other.solution is not None and not other.remark and not other.blind

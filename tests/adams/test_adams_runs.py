@@ -1,0 +1,491 @@
+"""Runs of Adams datasets against closed forms: every statement that moves, holds or pushes something."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import stiffmbs
+from stiffmbs.adams.load import read_adams
+
+HEAD = """title
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+PART/1, GROUND
+MARKER/1, PART=1
+"""
+G = 9.80665
+GRAVITY = f"ACCGRAV/KGRAV=-{G}\n"
+
+
+def run(text, duration=1.0, rtol=1e-9, **settings):
+    return stiffmbs.run(read_adams(HEAD + text + "\nEND\n"), duration=duration, rtol=rtol, **settings)
+
+
+TWO = """PART/2, MASS=2, CM=20, IP=0.1,0.1,0.2
+MARKER/20, PART=2
+MARKER/21, PART=2
+PART/3, MASS=3, CM=30, IP=0.3,0.2,0.4, QG=1,0,0
+MARKER/30, PART=3
+MARKER/31, PART=3
+MARKER/13, PART=1, QP=1,0,0
+"""
+
+
+@pytest.mark.parametrize(
+    "statement, equations",
+    [
+        ("JOINT/1, REVOLUTE, I=21, J=1", 5),
+        ("JOINT/1, TRANSLATIONAL, I=21, J=1", 5),
+        ("JOINT/1, CYLINDRICAL, I=21, J=1", 4),
+        ("JOINT/1, SPHERICAL, I=21, J=1", 3),
+        ("JOINT/1, FIXED, I=21, J=1", 6),
+        ("JOINT/1, HOOKE, I=21, J=1", 4),
+        ("MARKER/22, PART=2, REULER=0,90D,0\nJOINT/1, UNIVERSAL, I=22, J=1", 4),
+        ("JOINT/1, PLANAR, I=21, J=1", 3),
+        ("JOINT/1, SCREW, I=21, J=1, PITCH=0.1", 1),
+        ("MARKER/22, PART=2, REULER=0,180D,0\nJOINT/1, CONVEL, I=22, J=1", 4),
+        ("MARKER/22, PART=2, QP=0,-0.2,0, REULER=90D,90D,0\nJOINT/1, RACKPIN, I=1, J=22, PD=0.4", 1),
+        ("JPRIM/1, ATPOINT, I=21, J=1", 3),
+        ("JPRIM/1, INLINE, I=21, J=1", 2),
+        ("JPRIM/1, INPLANE, I=21, J=1", 1),
+        ("JPRIM/1, ORIENTATION, I=21, J=1", 3),
+        ("JPRIM/1, PARALLEL_AXES, I=21, J=1", 2),
+        ("MARKER/22, PART=2, REULER=0,90D,0\nJPRIM/1, PERPENDICULAR, I=22, J=1", 1),
+        ("GCON/1, FUNCTION=DX(21,1)+DY(21,1)", 1),
+        ("GCON/1, FUNCTION=VX(21)-0.5*WZ(21)", 1),
+        ("MOTION/1, I=21, J=1, X, FUNC=TIME", 1),
+        ("MOTION/1, I=21, J=1, B2, FUNC=TIME", 1),
+    ],
+)
+def test_constraints_take_as_many_freedoms_as_in_adams(statement, equations):
+    report = stiffmbs.check(read_adams(HEAD + TWO + statement + "\nEND"))
+    assert (report.rank, report.degrees_of_freedom) == (equations, 12 - equations)
+
+
+def test_a_linear_actuator_carries_weight_and_inertia():
+    """1 kg on a guide at 45 degrees, led by 0.1 sin 5t along it: f = m (a + g sin 45)."""
+    text = (
+        GRAVITY
+        + r"""MARKER/2, PART=1, REULER=0,45D,0
+PART/4, MASS=1, CM=40, IP=0.1,0.1,0.1
+MARKER/40, PART=4
+MARKER/41, PART=4, REULER=0,45D,0
+JOINT/1, TRANSLATIONAL, I=41, J=2
+MOTION/1, JOINT=1, FUNCTION=0.1*SIN(5*TIME)
+REQUEST/1, F2=MOTION(1,0,4,2)\F3=MOTION(1,0,1,0)\F4=DZ(41,2,2)\F6=VZ(41,2,2)\F7=ACCZ(41,2,2)\F8=JOINT(1,0,3,2)
+"""
+    )
+    solution = run(text)
+    s = 0.1 * np.sin(5 * solution.t)
+    force = -25 * s + G * math.cos(math.pi / 4)
+    np.testing.assert_allclose(solution["REQUEST_1.f2"], force, atol=1e-6)
+    np.testing.assert_allclose(solution["REQUEST_1.f3"], np.abs(force), atol=1e-6)
+    np.testing.assert_allclose(solution["REQUEST_1.f4"], s, atol=1e-9)
+    np.testing.assert_allclose(solution["REQUEST_1.f6"], 0.5 * np.cos(5 * solution.t), atol=1e-7)
+    np.testing.assert_allclose(solution["REQUEST_1.f7"], -25 * s, atol=1e-6)
+    np.testing.assert_allclose(np.abs(solution["REQUEST_1.f8"]), G * math.sin(math.pi / 4), atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["DISPLACEMENT, FUNC=8*TIME", "VELOCITY, FUNC=8", "ACCELERATION, FUNC=16"])
+def test_a_motor_turns_many_times(kind):
+    text = TWO + f"JOINT/1, REVOLUTE, I=21, J=1\nMOTION/1, JOINT=1, {kind}\nVARIABLE/1, FUNC=AZ(21,1)"
+    solution = run(text, 3.0)
+    angle = 8 * solution.t**2 if "ACCEL" in kind else 8 * solution.t
+    np.testing.assert_allclose(solution["VARIABLE_1"], angle, atol=1e-5)
+    torque = 0.2 * 16 if "ACCEL" in kind else 0.0
+    np.testing.assert_allclose(solution["MOTION_1.tz"], torque, atol=1e-5)
+
+
+def test_a_sleeve_is_turned_and_pushed():
+    text = (
+        TWO
+        + "JOINT/1, CYLINDRICAL, I=21, J=1\nMOTION/1, JOINT=1, ROT, FUNC=7*TIME\nMOTION/2, JOINT=1, TRANS, FUNC=TIME**2\n"
+    )
+    solution = run(text + "VARIABLE/1, FUNC=AZ(21,1)\nVARIABLE/2, FUNC=DZ(21,1,1)")
+    np.testing.assert_allclose(solution["VARIABLE_1"], 7 * solution.t, atol=1e-7)
+    np.testing.assert_allclose(solution["VARIABLE_2"], solution.t**2, atol=1e-8)
+    np.testing.assert_allclose(solution["MOTION_2.fz"], 2 * 2, atol=1e-6)
+
+
+def test_three_motors_lead_the_body_123_angles():
+    """B1, B2, B3 against the axes of J: the body's quaternion is that of turns about x, the new y and the new z."""
+    motions = "".join(f"MOTION/{k}, I=21, J=1, B{k}, FUNC={0.2 * k}+{0.3 * k}*TIME\n" for k in (1, 2, 3))
+    solution = run(TWO + "JPRIM/1, ATPOINT, I=21, J=1\n" + motions)
+    half = [(0.2 * k + 0.3 * k * solution.t) / 2 for k in (1, 2, 3)]
+    (c1, c2, c3), (s1, s2, s3) = np.cos(half), np.sin(half)
+    expected = [
+        c1 * c2 * c3 - s1 * s2 * s3,
+        s1 * c2 * c3 + c1 * s2 * s3,
+        c1 * s2 * c3 - s1 * c2 * s3,
+        c1 * c2 * s3 + s1 * s2 * c3,
+    ]
+    sign = np.sign(solution["PART_2.q0"][0] * expected[0][0])
+    for k in range(4):
+        np.testing.assert_allclose(solution[f"PART_2.q{k}"] * sign, expected[k], atol=1e-7)
+
+
+GEARS = (
+    TWO
+    + """JOINT/1, REVOLUTE, I=21, J=1
+JOINT/2, REVOLUTE, {}
+MARKER/14, PART=1, QP=0.25,0,0, REULER=0,90D,0
+GEAR/1, JOINTS=1,2, CV=14
+SFORCE/1, ROTATIONAL, I=21, J=1, FUNCTION=2
+"""
+)
+
+
+@pytest.mark.parametrize("second", ["I=31, J=13", "I=13, J=31"])
+def test_gears_share_a_torque(second):
+    """Radii 0.25 and 0.75: w1 = -3 w2; 2 N m on wheel 1 turns it with 2/(I1 + I2/9)."""
+    solution = run(GEARS.format(second))
+    rate = 2 / (0.2 + 0.4 / 9) * solution.t
+    np.testing.assert_allclose(solution["PART_2.wz"], rate, atol=1e-6)
+    np.testing.assert_allclose(solution["PART_3.wz"], -rate / 3, atol=1e-6)
+
+
+def test_couplers_share_a_force():
+    """A drum of 0.2 m with a rope: s = 0.2 angle."""
+    text = (
+        TWO
+        + "JOINT/1, REVOLUTE, I=21, J=1\nJOINT/2, TRANSLATIONAL, I=31, J=13\nCOUPLER/1, JOINTS=2,1, TYPE=T:R, SCALES=1,-0.2\n"
+    )
+    solution = run(text + GRAVITY)
+    fall = -G * 3 / (3 + 0.2 / 0.2**2)
+    np.testing.assert_allclose(solution["PART_3.vz"], fall * solution.t, atol=1e-6)
+    np.testing.assert_allclose(solution["PART_2.wz"], fall * solution.t / 0.2, atol=1e-5)
+
+
+def test_a_coupler_of_three_keeps_what_is_drawn():
+    """Wheels that turn over several times, one of which is drawn turned by 20 degrees."""
+    wheels = "".join(
+        f"MARKER/1{k}, PART=1, QP={k},0,0\nPART/{k}, MASS=1, CM={k}0, IP=0.1,0.1,0.1, QG={k},0,0{turned}\n"
+        f"MARKER/{k}0, PART={k}\nJOINT/{k}, REVOLUTE, I={k}0, J=1{k}\n"
+        for k, turned in ((2, ""), (3, ", REULER=20D,0,0"), (4, ""))
+    )
+    solution = run(
+        wheels
+        + """COUPLER/1, JOINTS=2,3,4, TYPE=R:R:R, SCALES=1,-2,3
+MOTION/1, JOINT=2, FUNCTION=20*TIME
+SFORCE/1, I=30, J=13, ROTATIONAL, FUNCTION=5*SIN(3*TIME)
+REQUEST/9, F2=AZ(20,12)-2*(AZ(30,13)-20D)+3*AZ(40,14)\\ F3=AZ(30,13)
+"""
+    )
+    np.testing.assert_allclose(solution["REQUEST_9.f2"], 0, atol=1e-10)
+    assert np.abs(solution["REQUEST_9.f3"]).max() > 2 * np.pi
+
+
+def test_a_rack_pulls_a_pinion():
+    """The rack's line is 0.2 m below the pinion's axis: turned forwards the pinion carries it along +x."""
+    text = (
+        TWO
+        + """JOINT/1, REVOLUTE, I=21, J=1
+MARKER/32, PART=3, QP=-1,-0.2,0, REULER=90D,90D,0
+MARKER/15, PART=1, QP=0,-0.2,0, REULER=90D,90D,0
+JOINT/2, TRANSLATIONAL, I=32, J=15
+JOINT/3, RACKPIN, I=21, J=32, PD=0.4
+SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=32, J=15, FUNCTION=5
+"""
+    )
+    solution = run(text)
+    gained = 5 / (3 + 0.2 / 0.2**2) * solution.t
+    np.testing.assert_allclose(solution["PART_3.vx"], gained, atol=1e-6)
+    np.testing.assert_allclose(solution["PART_2.wz"], gained / 0.2, atol=1e-5)
+
+
+def test_a_nut_falls_along_its_spindle():
+    text = TWO + "JOINT/1, CYLINDRICAL, I=21, J=1\nJOINT/2, SCREW, I=21, J=1, PITCH=0.3\n" + GRAVITY
+    solution = run(text)
+    lead = 0.3 / (2 * math.pi)
+    fall = -G * 2 / (2 + 0.2 / lead**2)
+    np.testing.assert_allclose(solution["PART_2.vz"], fall * solution.t, atol=1e-6)
+    np.testing.assert_allclose(solution["PART_2.wz"], fall * solution.t / lead, atol=1e-5)
+
+
+BENT = math.radians(30)
+SHAFTS = f"""PART/2, MASS=1, CM=20, IP=0.1,0.1,0.1
+MARKER/20, PART=2
+MARKER/21, PART=2
+MARKER/22, PART=2, REULER=0,180D,0
+PART/3, MASS=1, CM=30, IP=0.1,0.1,0.1, REULER=0,{BENT!r},0
+MARKER/30, PART=3
+MARKER/11, PART=1, REULER=0,{BENT!r},0
+JOINT/1, REVOLUTE, I=21, J=1
+JOINT/2, REVOLUTE, I=30, J=11
+MOTION/1, JOINT=1, FUNCTION=4*TIME
+VARIABLE/1, FUNCTION=AZ(30,11)
+"""
+
+
+def test_a_hooke_joint_turns_unevenly():
+    """The arms are x of I (across the bend) and y of J: tan out = cos(bend) tan in."""
+    solution = run(SHAFTS + "JOINT/3, HOOKE, I=21, J=30", 2.0)
+    angle = 4 * solution.t
+    out = solution["VARIABLE_1"]
+    np.testing.assert_allclose(np.sin(out) * np.cos(angle), np.cos(out) * np.sin(angle) * math.cos(BENT), atol=1e-6)
+
+
+@pytest.mark.parametrize("marker", [21, 22])
+def test_a_constant_velocity_joint_turns_evenly(marker):
+    solution = run(SHAFTS + f"JOINT/3, CONVEL, I={marker}, J=30", 2.0)
+    np.testing.assert_allclose(solution["VARIABLE_1"], 4 * solution.t, atol=1e-6)
+
+
+def test_a_ball_rolls_by_its_own_constraint():
+    """A disc on edge that rolls along x: x' = -r w about y, held upright."""
+    text = (
+        GRAVITY
+        + """PART/4, MASS=2, CM=40, IP=0.1,0.2,0.1, QG=0,0,0.5, VX=3, WY=6
+MARKER/40, PART=4
+MARKER/12, PART=1, QP=0,0,0.5, REULER=90D,90D,0
+JPRIM/1, ORIENTATION, I=12, J=41
+MARKER/41, PART=1, REULER=90D,90D,0
+GCON/1, I=40, FUNCTION=VX(40) - 0.5*WY(40)
+GCON/2, FUNCTION=DZ(40) - 0.5
+GCON/3, FUNCTION=DY(40)
+GFORCE/1, I=40, JFLOAT=19, RM=1, FX=1.4
+MARKER/19, PART=1, FLOATING
+"""
+    )
+    text = text.replace("JPRIM/1, ORIENTATION, I=12, J=41\n", "").replace(
+        "QG=0,0,0.5, VX=3, WY=6", "QG=0,0,0.5, VX=3, WY=6"
+    )
+    solution = run(text)
+    gained = 1.4 / (2 + 0.2 / 0.25) * solution.t
+    np.testing.assert_allclose(solution["PART_4.vx"], 3 + gained, atol=1e-6)
+    np.testing.assert_allclose(solution["PART_4.wy"], (3 + gained) / 0.5, atol=1e-6)
+
+
+def test_action_and_reaction_between_two_parts():
+    """Whatever a GFORCE, an SFORCE, a bushing and a field do between two free parts, their momenta are kept."""
+    text = (
+        TWO.replace("QG=1,0,0", "QG=1,0.2,0.1, REULER=20D,30D,0, WX=1, WY=2, WZ=3")
+        + r"""
+MARKER/39, PART=3, FLOATING
+GFORCE/1, I=21, JFLOAT=39, RM=30, FX=SIN(3*TIME)\ FY=2\ FZ=DX(21,31)\ TX=1\ TY=TIME\ TZ=WZ(21,31,31)
+SFORCE/1, TRANS, I=21, J=31, FUNC=-20*(DM(21,31)-0.7) - 3*VR(21,31)
+BUSHING/1, I=21, J=31, K=10,20,30, KT=1,2,3, C=1,1,1, CT=0.1,0.1,0.1, FORCE=1,0,0, TORQUE=0,1,0
+VTORQUE/1, I=21, JFLOAT=39, RM=1, TX=1\ TY=2\ TZ=3
+VFORCE/1, I=21, JFLOAT=39, FX=1\ FY=2\ FZ=-10*VZ(21,31,30,30)
+SPRINGDAMPER/1, TRANS, I=20, J=30, K=5, C=1, LENGTH=0.5, FORCE=2
+"""
+    )
+    solution = run(text)
+    linear, angular = np.zeros(3), np.zeros(3)
+    for name, mass, moments in (("PART_2", 2, (0.1, 0.1, 0.2)), ("PART_3", 3, (0.3, 0.2, 0.4))):
+        place, velocity, omega = (
+            np.stack([solution[f"{name}.{c}"] for c in names.split()]).T for names in ("x y z", "vx vy vz", "wx wy wz")
+        )
+        w, x, y, z = (solution[f"{name}.q{k}"] for k in range(4))
+        turned = np.stack([
+            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)]),
+            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)]),
+            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]),
+        ])  # fmt: skip
+        linear = linear + mass * velocity
+        angular = angular + mass * np.cross(place, velocity) + np.einsum("ijn,nj->ni", turned, omega * moments)
+    np.testing.assert_allclose(linear, np.broadcast_to(linear[0], linear.shape), atol=1e-6)
+    np.testing.assert_allclose(angular, np.broadcast_to(angular[0], angular.shape), atol=1e-5)
+
+
+def test_springs_bushings_fields_and_beams_start_with_their_forces():
+    """At a known displacement and velocity of marker I in the axes of J, the force is what the statement says."""
+    text = r"""PART/2, MASS=1, CM=20, IP=1,1,1, QG=0.1,0.2,0.3, VX=1, VY=2, VZ=3, WX=0.1, WY=0.2, WZ=0.3
+MARKER/20, PART=2
+BUSHING/1, I=20, J=1, K=1,2,3, KT=4,5,6, C=1,1,1, CT=2,2,2, FORCE=7,8,9, TORQUE=1,2,3
+FIELD/1, I=20, J=1, KMATRIX=1,0,0,0,0,0, 0,2,0,0,0,4, 0,0,3,0,0,0, 0,0,0,1,0,0, 0,0,0,0,1,0, 0,4,0,0,0,9
+, LENGTH=0.1,0,0,0,0,0, FORCE=1,1,1,1,1,1
+SPRINGDAMPER/1, TRANS, I=20, J=1, K=10, C=2, LENGTH=0.5, FORCE=4
+SPRINGDAMPER/2, ROT, I=20, J=1, KT=10, CT=2, ANGLE=30D, TORQUE=4
+BEAM/1, I=20, J=1, LENGTH=0.1, AREA=1E-4, IXX=2E-10, IYY=1E-10, IZZ=1E-10, EMODULUS=1E6, GMODULUS=1E6
+"""
+    solution = run(text, 1e-6)
+    place, v, w = np.array([0.1, 0.2, 0.3]), np.array([1.0, 2, 3]), np.array([0.1, 0.2, 0.3])
+
+    def acting(name):
+        return np.array([[solution[f"{name}.{kind}{axis}"][0] for axis in "xyz"] for kind in "ft"])
+
+    np.testing.assert_allclose(acting("BUSHING_1"), [[7, 8, 9] - [1, 2, 3] * place - v, [1, 2, 3] - 2 * w], atol=1e-9)
+    np.testing.assert_allclose(acting("FIELD_1"), [[1, 1 - 2 * 0.2, 1 - 3 * 0.3], [1, 1, 1 - 4 * 0.2]], atol=1e-9)
+    length = np.linalg.norm(place)
+    force = 4 - 10 * (length - 0.5) - 2 * (place @ v) / length
+    np.testing.assert_allclose(acting("SPRINGDAMPER_1")[0], force * place / length, atol=1e-9)
+    np.testing.assert_allclose(acting("SPRINGDAMPER_2")[1], [0, 0, 4 + 10 * math.pi / 6 - 2 * 0.3], atol=1e-9)
+    bending = 12 * 1e6 * 1e-10 / 0.1**3  # the beam ends at x = 0.1, without stretch
+    moment = 6 * 1e6 * 1e-10 / 0.1**2
+    expected = [[0, -bending * 0.2, -bending * 0.3], [0, -moment * 0.3, moment * 0.2]]
+    np.testing.assert_allclose(acting("BEAM_1"), expected, atol=1e-9)
+
+
+def test_a_force_by_formula():
+    """A pendulum of a point mass on a rod, braked in one sense only: IF, VARVAL, SIGN and a step in time."""
+    text = (
+        GRAVITY
+        + r"""POINT_MASS/2, MASS=1.5, CM=20, QG=2,0,0
+MARKER/20, POINT_MASS=2
+GCON/1, I=1, FUNCTION=DM(20,1)-2
+GCON/2, FUNCTION=DY(20,1)
+VARIABLE/1, FUNCTION=VX(20)
+VARIABLE/2, FUNCTION=IF(VARVAL(1): -3*VARVAL(1), 0, -VARVAL(1))
+VFORCE/1, I=20, JFLOAT=19, RM=1, FX=VARVAL(2) + STEP(TIME,0.2,0,0.6,2)\ FY=0\ FZ=0
+MARKER/19, PART=1, FLOATING
+"""
+    )
+    solution = run(text, 3.0)
+
+    def rates(t, state):
+        angle, rate = state
+        vx = -2 * math.sin(angle) * rate
+        z = min(max((t - 0.2) / 0.4, 0), 1)
+        fx = (-3 * vx if vx < 0 else -vx) + 2 * z * z * (3 - 2 * z)
+        return [rate, (-fx * math.sin(angle) - 1.5 * G * math.cos(angle)) / (1.5 * 2)]
+
+    exact = solve_ivp(rates, (0, 3), [0, 0], rtol=1e-11, atol=1e-11, t_eval=solution.t).y
+    np.testing.assert_allclose(solution["POINT_MASS_2.x"], 2 * np.cos(exact[0]), atol=1e-6)
+    np.testing.assert_allclose(solution["POINT_MASS_2.z"], 2 * np.sin(exact[0]), atol=1e-6)
+    assert np.max(np.abs(solution["POINT_MASS_2.q0"] - 1)) < 1e-9
+
+
+PENDULUM = """title
+UNITS/{units}
+PART/1, GROUND
+MARKER/1, PART=1, REULER=0,90D,0
+PART/2, MASS={m}, CM=20, IP={i},{j},{j}
+MARKER/20, PART=2, QP={a},0,0
+MARKER/21, PART=2, REULER=0,90D,0
+JOINT/1, REVOLUTE, I=21, J=1
+ACCGRAV/KGRAV=-{g}
+SFORCE/1, ROT, I=21, J=1, FUNCTION=-{c}*WZ(21,1,1) - {k}*AZ(21,1)
+SFORCE/2, TRANS, I=20, J=1, FUNCTION=-{s}*DM(20,1)*STEP(TIME, 0, 0, {half}, 1)
+REQUEST/1, V, I=20, J=1
+VARIABLE/1, FUNCTION=DX(20,1)
+END
+"""
+LBF, FT = 4.4482216152605, 0.3048
+SLUG = LBF / FT
+
+
+@pytest.mark.parametrize(
+    "units, force, mass, length, time",
+    [
+        ("FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND", 1, 1, 1e-3, 1),
+        ("FORCE=KNEWTON, MASS=TONNE, LENGTH=CENTIMETER, TIME=MILLISECOND", 1e3, 1e3, 1e-2, 1e-3),
+        ("FORCE=POUND_FORCE, MASS=SLUG, LENGTH=FOOT, TIME=SECOND", LBF, SLUG, FT, 1),
+        ("SYSTEM=CGS", 1e-5, 1e-3, 1e-2, 1),
+    ],
+)
+def test_results_are_in_si_whatever_the_units(units, force, mass, length, time):
+    def solved(units, force, mass, length, time):
+        moment, torque = mass * length**2, force * length
+        numbers = {
+            "m": 2 / mass, "i": 0.01 / moment, "j": 0.02 / moment, "a": 0.3 / length, "g": G / (length / time**2),
+            "c": 0.05 / (torque * time), "k": 1.5 / torque, "s": 7 / (force / length), "half": 0.5 / time,
+        }  # fmt: skip
+        text = PENDULUM.format(units=units, **{name: repr(value) for name, value in numbers.items()})
+        return stiffmbs.run(read_adams(text), duration=2.0, rtol=1e-9)
+
+    found = solved(units, force, mass, length, time)
+    expected = solved("SYSTEM=MKS", 1, 1, 1, 1)
+    for channel in (
+        "PART_2.x",
+        "PART_2.vz",
+        "JOINT_1.fz",
+        "SFORCE_1.ty",
+        "SFORCE_2.fx",
+        "REQUEST_1.vz",
+        "REQUEST_1.wy",
+    ):
+        np.testing.assert_allclose(found[channel], expected[channel], atol=2e-6, err_msg=channel)
+    np.testing.assert_allclose(found["VARIABLE_1"] * length, expected["VARIABLE_1"], atol=1e-6)
+
+
+def test_the_joint_holds_before_assembly_moves_parts():
+    """A part drawn a millimetre off is moved by the least amount, and the run says so."""
+    text = TWO.replace("MARKER/21, PART=2", "MARKER/21, PART=2, QP=0.001,0,0") + "JOINT/1, SPHERICAL, I=21, J=1\n"
+    solution = run(text + GRAVITY, 0.1)
+    assert any("assembly changed PART_2.x by -0.001 m" in note for note in solution.notes)
+
+
+def test_a_motion_and_a_force_by_splines_in_millimetres():
+    """A slider led by a cubic spline of time; a second one pushed by Akima's curve of the distance between both."""
+    from scipy.interpolate import Akima1DInterpolator, CubicSpline
+
+    x, y = [0, 0.5, 1, 1.5, 2], [0, 40, 30, 80, 100]
+    distances, forces = [0, 400, 800, 1200, 2000], [5, 4, 1, 0, -2]
+    text = (
+        HEAD.replace("LENGTH=METER", "LENGTH=MILLIMETER")
+        + f"""PART/2, MASS=2, CM=20, IP=1,1,1
+MARKER/20, PART=2, REULER=90D,90D,0
+PART/3, MASS=3, CM=30, IP=1,1,1, QG=700,0,0
+MARKER/30, PART=3, REULER=90D,90D,0
+MARKER/11, PART=1, REULER=90D,90D,0
+JOINT/1, TRANSLATIONAL, I=20, J=11
+JOINT/2, TRANSLATIONAL, I=30, J=11
+SPLINE/1, X={", ".join(map(str, x))}
+, Y = {", ".join(map(str, y))}
+SPLINE/2, X={", ".join(map(str, distances))}, Y={", ".join(map(str, forces))}
+MOTION/1, JOINT=1, FUNCTION=CUBSPL(TIME,0,1,0)
+SFORCE/1, TRANSLATIONAL, I=30, J=20, FUNCTION=AKISPL(DM(30,20),0,2,0)
+END
+"""
+    )
+    solution = stiffmbs.run(read_adams(text), duration=2.0, rtol=1e-9)
+    lead, push = CubicSpline(x, y, bc_type="not-a-knot"), Akima1DInterpolator(distances, forces)
+    np.testing.assert_allclose(solution["PART_2.x"], lead(solution.t) / 1000, atol=1e-9)
+
+    def rates(t, state):
+        return [state[1], push(1000 * state[0] - lead(t)) / 3]
+
+    exact = solve_ivp(rates, (0, 2), [0.7, 0], rtol=1e-11, atol=1e-11, t_eval=solution.t, max_step=0.01).y
+    np.testing.assert_allclose(solution["PART_3.x"], exact[0], atol=1e-6)
+
+
+@pytest.mark.parametrize("function", ["DM(20,11)-2-0.1*SIN(5*TIME)", "DM(20,11)-2.0+0*TIME", "DM(20,11)**2-4"])
+def test_a_general_constraint_acts_on_its_marker(function):
+    """A stone on a rope whose length is a function: the pull on marker I, on ground, is along the rope."""
+    text = (
+        GRAVITY
+        + rf"""PART/2, MASS=1.5, CM=20, IP=1,1,1, QG=2,0,0
+MARKER/20, PART=2
+MARKER/11, PART=1
+GCON/1, I=11, FUNCTION={function}
+GCON/2, FUNCTION=DY(20)
+REQUEST/1, F, I=11, J=20
+REQUEST/2, F2=GCON(1,0,2,0)\F3=DX(20,11)/DM(20,11)\F4=DZ(20,11)/DM(20,11)
+"""
+    )
+    solution = run(text)
+    length = 2 + 0.1 * np.sin(5 * solution.t) if "SIN" in function else 2 + 0 * solution.t
+    np.testing.assert_allclose(np.hypot(solution["PART_2.x"], solution["PART_2.z"]), length, atol=1e-8)
+    tension = -1.5 * (
+        solution["PART_2.ax"] * solution["REQUEST_2.f3"] + (solution["PART_2.az"] + G) * solution["REQUEST_2.f4"]
+    )
+    np.testing.assert_allclose(solution["REQUEST_1.fx"], tension * solution["REQUEST_2.f3"], atol=1e-6)
+    np.testing.assert_allclose(solution["REQUEST_1.fz"], tension * solution["REQUEST_2.f4"], atol=1e-6)
+    np.testing.assert_allclose(solution["REQUEST_1.tm"], 0, atol=1e-9)
+    np.testing.assert_array_equal(solution["REQUEST_2.f2"], solution["REQUEST_1.fx"])
+
+
+def test_velocities_that_are_left_open_follow_those_that_are_stated():
+    """A crank with WZ stated, its rod without: the crank starts with just that, the rod as the loop demands."""
+    text = """PART/2, MASS=2, CM=20, IP=0.1,0.1,0.2, WZ=6
+MARKER/20, PART=2, QP=0.5,0,0
+MARKER/21, PART=2
+MARKER/22, PART=2, QP=1,0,0
+PART/3, MASS=8, CM=30, IP=0.1,1,1, QG=1,0,0, REULER=90D,0,0
+MARKER/30, PART=3, QP=1,0,0
+MARKER/31, PART=3
+MARKER/32, PART=3, QP=2,0,0
+MARKER/12, PART=1, QP=1,2,0, REULER=0,90D,0
+JOINT/1, REVOLUTE, I=21, J=1
+JOINT/2, SPHERICAL, I=22, J=31
+JPRIM/3, INLINE, I=32, J=12
+JPRIM/4, INPLANE, I=30, J=1
+"""
+    solution = run(text, 0.01)
+    start = {name: values[0] for name, values in solution.channels.items()}
+    assert start["PART_2.wz"] == pytest.approx(6, abs=1e-9) and start["PART_2.vy"] == pytest.approx(3, abs=1e-9)
+    # the rod's lower end moves up with 6 m/s, its upper end stays on x = 1: it moves up as a whole
+    assert start["PART_3.vy"] == pytest.approx(6, abs=1e-9) and start["PART_3.wz"] == pytest.approx(0, abs=1e-9)
+    assert not any("assembly changed" in note and "omega" in note for note in solution.notes)

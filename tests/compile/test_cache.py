@@ -1,0 +1,227 @@
+"""The cache of derived and compiled equations: what is damaged is made again, and the command that looks after it."""
+
+import json
+import multiprocessing
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import stiffmbs
+from stiffmbs import spatial
+from stiffmbs.commands.main import main
+from stiffmbs.compile import record
+from stiffmbs.compile.kind import sorted_out
+from stiffmbs.compile.machine import cache
+from stiffmbs.compile.machine import compiler as machine
+from stiffmbs.compile.machine.cache_contents import OTHERS, clear, stored
+from stiffmbs.describe import model
+from stiffmbs.describe.spatial import model as spatial_model
+from stiffmbs.jobs.warm import USUAL, routines
+
+NAME = f"kernel-{'0' * 40}"
+SOURCE = "def twice(x):\n    return 2.0*x\n"
+
+
+@pytest.fixture
+def directory(tmp_path, monkeypatch):
+    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(tmp_path))
+    return tmp_path
+
+
+def run_in_a_process(arguments, directory, **options):
+    environment = {**os.environ, "STIFFMBS_CACHE": str(directory)}
+    return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, env=environment, **options)
+
+
+def test_a_damaged_entry_is_none(directory):
+    cache.write(NAME, b"content")
+    assert cache.read(NAME) == b"content"
+    entry = cache.own_directory() / NAME
+    whole = entry.read_bytes()
+    for damaged in (whole[:-1], b"", whole[:20], whole[:-1] + b"x"):
+        entry.write_bytes(damaged)
+        assert cache.read(NAME) is None
+    assert [path.name for path in cache.own_directory().iterdir()] == [NAME]
+
+
+@pytest.mark.parametrize("place", ["/dev/null/nowhere", "a file"])
+def test_where_nothing_can_be_written_all_works_but_nothing_is_kept(directory, monkeypatch, place):
+    (directory / "a file").write_text("of the user's")
+    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(directory / place))
+    cache.write(NAME, b"content")
+    assert cache.read(NAME) is None
+    machine.compiled_source.cache_clear()
+    assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
+    assert not any(own.entries for own in stored().values())
+    assert (directory / "a file").read_text() == "of the user's"
+
+
+def test_compiled_code_is_read_back(directory, monkeypatch):
+    machine.compiled_source.cache_clear()
+    assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
+    machine.compiled_source.cache_clear()
+    monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
+    assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
+    assert len(list(cache.own_directory().iterdir())) == 1
+
+
+def test_a_run_on_a_damaged_cache_gives_the_same_numbers(examples, directory, tmp_path):
+    command = ["-m", "stiffmbs", "run", str(examples / "bar_pendulum.yaml"), "--duration", "0.1", "--json"]
+    first = run_in_a_process(command, directory, cwd=tmp_path)
+    entries = sorted(cache.own_directory().iterdir())
+    for k, entry in enumerate(entries):
+        content = entry.read_bytes()
+        entry.write_bytes([content[: len(content) // 2], b"", os.urandom(len(content))][k % 3])
+    again = run_in_a_process(command, directory, cwd=tmp_path)
+    assert again.stderr == ""
+    assert json.loads(again.stdout)["channels"] == json.loads(first.stdout)["channels"]
+    assert sorted(cache.own_directory().iterdir()) == entries
+    assert all(cache.read(entry.name) is not None for entry in entries)
+
+
+def write_many(content):
+    for _ in range(300):
+        cache.write(NAME, content)
+
+
+def test_two_processes_that_write_one_entry_leave_it_whole_at_all_times(directory):
+    contents = b"a" * 200_000, b"b" * 150_000
+    cache.write(NAME, contents[0])
+    context = multiprocessing.get_context("spawn")
+    writers = [context.Process(target=write_many, args=(content,)) for content in contents]
+    for writer in writers:
+        writer.start()
+    seen = set()
+    while any(writer.is_alive() for writer in writers):
+        seen.add(cache.read(NAME))
+    for writer in writers:
+        writer.join()
+    assert seen <= set(contents)
+    assert [path.name for path in cache.own_directory().iterdir()] == [NAME]
+
+
+def test_clearing_removes_entries_of_all_versions_and_nothing_else(directory):
+    cache.write(NAME, b"content")
+    cache.write(f"record-{'1' * 40}", b"{}")
+    other = directory / f"entries-{'0' * 12}"
+    other.mkdir()
+    for entry in (other / NAME, directory / ("a" * 40), cache.own_directory() / f"{cache.PART}x"):
+        entry.write_bytes(b"of another version, or left half written")
+    of_the_user = directory / "notes.txt"
+    of_the_user.write_text("keep")
+    (directory / "sub").mkdir()
+    found = stored()
+    assert (found["kernel"].entries, found["record"].entries, found["routine"].entries) == (1, 1, 0)
+    assert found[OTHERS].entries == 3
+    assert clear().entries == 5
+    assert sorted(path.name for path in directory.iterdir()) == ["notes.txt", "sub"]
+    assert clear().entries == 0
+
+
+def test_the_command_shows_and_clears(directory):
+    cache.write(NAME, b"content")
+    shown = json.loads(CliRunner().invoke(main, ["cache", "show", "--json"]).output)
+    assert shown["directory"] == str(directory)
+    assert shown["kernel"] == {"entries": 1, "bytes": 32 + len(b"content")}
+    assert str(directory) in CliRunner().invoke(main, ["cache", "show"]).output
+    assert "removed 1 entries" in CliRunner().invoke(main, ["cache", "clear"]).output
+    assert json.loads(CliRunner().invoke(main, ["cache", "show", "--json"]).output)["kernel"]["entries"] == 0
+
+
+@pytest.mark.parametrize(("dimensions", "described"), [(2, model), (3, spatial_model)])
+def test_every_kind_of_element_is_among_the_usual_ones(dimensions, described):
+    scene = stiffmbs.load_scene(USUAL[dimensions])
+    found = {type(element) for _, element in scene.elements()}
+    assert found >= {*described.JOINTS.values(), *described.FORCES.values()}
+
+
+def test_routines_of_all_solvers_are_found():
+    found = {(routine.module.rpartition(".")[2], routine.name) for routine in routines()}
+    assert {
+        ("ida_loop", "advance"),
+        ("runge_kutta", "advance"),
+        ("mechanics", "assemble"),
+        ("evaluate", "terms"),
+    } <= found
+
+
+def loaded_by_a_run(scene, solver, directory, tmp_path):
+    heavy = "('sympy', 'numba', 'matplotlib', 'rich', 'stiffmbs.compile.symbolic.derive', 'stiffmbs.compile.machine.translate')"
+    code = (
+        "import sys\nfrom stiffmbs.commands.main import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n"
+        f"    print([m for m in {heavy} if m in sys.modules], file=sys.stderr)\n    raise\n"
+    )
+    arguments = ["-c", code, "run", str(scene), "--duration", "0.1", "--json", "--solver", solver]
+    done = run_in_a_process(arguments, directory, cwd=tmp_path)
+    assert done.returncode == 0
+    return done.stderr.strip()
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path, solver):
+    shared = cache.cache_directory()
+    loaded_by_a_run(examples / "cart_pendulum.yaml", solver, shared, tmp_path)
+    assert loaded_by_a_run(examples / "cart_pendulum.yaml", solver, shared, tmp_path) == "[]"
+
+
+@pytest.mark.long
+def test_after_warming_first_runs_compile_nothing(examples, directory, tmp_path):
+    assert run_in_a_process(["-m", "stiffmbs", "cache", "warm"], directory).returncode == 0
+    entries = sorted(cache.own_directory().iterdir())
+    for scene in ("cart_pendulum", "crank_slider", "chain", "four_bars", "stick_slip", "heavy_top", "spatial_chain"):
+        assert loaded_by_a_run(examples / f"{scene}.yaml", "auto", directory, tmp_path) == "[]"
+    assert sorted(cache.own_directory().iterdir()) == entries
+
+
+def test_one_equation_in_the_plane_and_in_space_has_a_record_for_each(directory):
+    """An equation of coordinates alone reads the same in both, but its coordinates have other places."""
+    columns = []
+    for dimensions, inertia in ((2, 1), (3, [1, 1, 1])):
+        bodies = f"{{a: {{mass: 1, inertia: {inertia}}}, b: {{mass: 1, inertia: {inertia}}}}}"
+        scene = f"{{dimensions: {dimensions}, bodies: {bodies}, joints: {{tie: {{type: equation, zero: a.x - b.y}}}}}}"
+        system = stiffmbs.compile_model(stiffmbs.read_scene(scene))
+        columns.append(system.term("motion", "J").column.tolist())
+    assert columns == [[0, 4], [0, 7]]
+
+
+def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch):
+    body = spatial.Body(mass=1, inertia=(1, 1, 1))
+    model = spatial.Model()
+    model.add("block", body)
+    model.add("mount", spatial.Bushing(i="block", j="ground", stiffness=(1, 1, 1, 1, 1, 1)))
+    described = model.data()
+    kind, _ = sorted_out(described.forces["mount"], described)
+    before, read = record._entry(kind), Path.read_text
+    assert record._entry(kind) == before
+    monkeypatch.setattr(
+        Path, "read_text", lambda path, **how: read(path, **how) + ("#" if path.name == "matrix.py" else "")
+    )
+    assert record._entry(kind) != before
+
+
+def test_sources_do_not_depend_on_the_order_of_sets():
+    """Python orders sets by a seed of the process; sums in kernels must not follow it, or numbers change with a recompilation."""
+    script = (
+        "from stiffmbs.describe.scene import read_scene\n"
+        "from stiffmbs.compile.compile_model import compile_model\n"
+        "from stiffmbs.compile.record import _derived\n"
+        "scene = read_scene('bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}\\n"
+        "forces: {f: {type: bushing, i: a, j: b, stiffness: [1, 2, 3], damping: [1, 2, 3]}}')\n"
+        "print([sorted(_derived(group.kind).sources.items()) for group in compile_model(scene).groups])\n"
+    )
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert found[0] == found[1]

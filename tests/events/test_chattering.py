@@ -1,0 +1,153 @@
+"""Motions that come to no end are told in the same words by every solver, and those that only change their law often are not."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import AppliedForce, Body, Model, Prismatic, Revolute
+from stiffmbs.describe.model import FORCES
+from stiffmbs.solve import bdf
+from stiffmbs.solve.events.chattering import MANY, WINDOW, Chattering
+from stiffmbs.solve.mechanics import Mechanics
+from stiffmbs.solve.trajectory import Outcome
+
+SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
+
+
+def solve(model, solver, monkeypatch, **how):
+    if solver == "callbacks":
+        monkeypatch.setattr(bdf, "available", lambda: (False, "not wanted here"))
+    chosen = (
+        {"solver": "projected", "scheme": solver}
+        if solver.startswith("dop")
+        else {"solver": solver.replace("callbacks", "bdf")}
+    )
+    return stiffmbs.run(model, **chosen, **{"duration": 2.0, "points": 101, **how})
+
+
+def block(law, **body):
+    model = Model()
+    model.add("block", Body(mass=1, inertia=1, **body))
+    model.add("rail", Prismatic(i="block", j="ground"))
+    model.add("push", AppliedForce(i="block", force=(law, 0)))
+    return model
+
+
+def wheel(law):
+    model = Model()
+    model.add("wheel", Body(mass=1, inertia=0.1))
+    model.add("pin", Revolute(i="wheel", j="ground"))
+    model.add("push", FORCES["torque"](i="wheel", torque=law))
+    return model
+
+
+def rubbing_blocks():
+    """One block is slowed by the other, which a spring holds: they stick at 0.54 s."""
+    model = Model()
+    for name, velocity in (("a", (1, 0)), ("b", (0, 0))):
+        model.add(name, Body(mass=1, inertia=1, velocity=velocity))
+        model.add(f"rail_{name}", Prismatic(i=name, j="ground"))
+    model.add("push", AppliedForce(i="a", force=("-sign(a.vx - b.vx)", 0)))
+    model.add("pull", AppliedForce(i="b", force=("sign(a.vx - b.vx) - 3*b.x", 0)))
+    return model
+
+
+def held_pendulum():
+    model = Model(gravity=(0, -9.81))
+    bob = model.add("bob", Body(mass=1, inertia=0.1, position=(1, 0)))
+    model.add("pin", Revolute(i=bob.at(-1, 0), j="ground"))
+    model.add("push", FORCES["torque"](i="bob", torque="-4*sign(bob.omega)"))
+    return model
+
+
+STUCK = {
+    "friction on a block": (lambda: block("-5*sign(block.vx)", velocity=(1, 0)), 0.2),
+    "friction on a block pulled at rest": (lambda: block("3 - 5*sign(block.vx)"), 0.0),
+    "a block on a belt": (lambda: block("-5*sign(block.vx - 1) - 20*block.x"), 0.2476),
+    "a speed kept by a relay": (lambda: wheel("branch(wheel.omega - 5, 3, 0, -3)"), 1 / 6),
+    "two blocks that rub": (rubbing_blocks, 0.537),
+    "a pendulum held by friction": (held_pendulum, 2.325),
+    "a switching line": (lambda: block("branch(block.x + block.vx, 9, 0, -9)", position=(1, 0)), np.sqrt(11) / 3 - 1),
+}
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("scene", STUCK)
+def test_a_force_that_jumps_where_the_motion_stays_is_told_soon(scene, solver, monkeypatch):
+    make, instant = STUCK[scene]
+    solution = solve(make(), solver, monkeypatch, duration=4.0, points=401)
+    assert solution.outcome is Outcome.STOPPED
+    assert "'push' jumps back and forth" in solution.message
+    stopped = float(solution.message.split("t = ")[1].split(" s")[0])
+    assert instant - 1e-3 < stopped < instant + 0.15
+    assert solution.solver["steps"] < 30_000
+
+
+@pytest.mark.parametrize("scheme", ["rk4", "euler_cromer"])
+@pytest.mark.parametrize("scene", ["friction on a block", "two blocks that rub", "a block on a belt"])
+def test_fixed_steps_note_a_force_that_jumps_back_and_forth(scene, scheme):
+    make, instant = STUCK[scene]
+    solution = stiffmbs.run(make(), solver="projected", scheme=scheme, duration=2.0, points=401)
+    assert solution.outcome is Outcome.DONE
+    (note,) = [note for note in solution.notes if "'push' jumps back and forth" in note]
+    assert instant <= float(note.split("t = ")[1].split(" s")[0]) < instant + 0.2
+
+
+def test_looks_at_a_jump_leave_fixed_steps_as_they_are(monkeypatch):
+    found = []
+    for looks in (50, 1):
+        monkeypatch.setattr("stiffmbs.solve.explicit.fixed.LOOKS", looks)
+        found.append(
+            stiffmbs.run(block("-5*sign(block.vx)", velocity=(1, 0)), solver="projected", duration=1.0, points=101)
+        )
+    np.testing.assert_array_equal(found[0]["block.x"], found[1]["block.x"])
+
+
+def spun_up():
+    """A torque that follows a marker's velocity spins the body ever faster: its law changes twice in each turn."""
+    model = Model(gravity=(0, -9.81))
+    marker = {"m": {"point": (0.28, -0.22)}}
+    model.add("b", Body(mass=1, inertia=0.04, angle=-2.87, velocity=(-0.9, -0.4), omega=-1.6, markers=marker))
+    law = "branch(-vy(b.m) - 0.1, 5.66*vy(b.m), 0, -0.566 - 3*(vy(b.m) + 0.1))"
+    model.add("push", FORCES["torque"](i="b", torque=law))
+    return model
+
+
+@pytest.mark.parametrize("solver", [solver for solver in SOLVERS if solver != "callbacks"])
+def test_a_law_that_changes_ever_faster_is_told_within_some_thousand_changes(solver, monkeypatch):
+    solution = solve(spun_up(), solver, monkeypatch, duration=1.0)
+    assert solution.outcome is Outcome.STOPPED
+    assert "'push' changes its law back and forth ever faster" in solution.message
+    assert MANY - 1 <= solution.solver["events"] <= MANY + 3 * WINDOW
+
+
+@pytest.mark.parametrize("solver", ["auto", "dop853", "bdf"])
+def test_a_relay_that_swings_on_and_on_is_followed(solver, monkeypatch):
+    """x'' = -5 sign(x) from x = 0 at 0.01 m/s swings with 250 Hz; each change of law is one of the motion."""
+    solution = solve(block("-5*sign(block.x)", velocity=(0.01, 0)), solver, monkeypatch, rtol=1e-8)
+    assert solution.outcome is Outcome.DONE
+    assert abs(solution.solver["events"] - 500) < 15
+    assert np.max(np.abs(solution["block.x"])) < 1.2e-5
+
+
+def test_the_number_of_events_to_come_follows_the_law_of_their_growth():
+    """Events of a motion that is driven evenly faster are many, but not beyond all bounds; exponential growth is."""
+    mechanics = Mechanics(stiffmbs.compile.compile_model.compile_model(block("-5*sign(block.x)").data()))
+    q, u = np.ones(3), np.ones(3)  # far from the jump
+    evenly = Chattering(mechanics, 10.0, 1e-6)
+    for k in range(1, 30_000):
+        evenly.note_event(10.0 * np.sqrt(k / 60_000), q, u, 0)
+    exponentially = Chattering(mechanics, 2.0, 1e-6)
+    with pytest.raises(stiffmbs.errors.SolverError, match="'push' changes its law back and forth ever faster"):
+        for k in range(1, 10_000):
+            exponentially.note_event(np.log(k) / 10.0, q, u, 0)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "dop853"])
+def test_steps_too_short_to_arrive_end_the_run(solver, monkeypatch):
+    monkeypatch.setattr("stiffmbs.solve.events.chattering.STEPS_SEEN", 5000)
+    monkeypatch.setattr("stiffmbs.solve.events.chattering.STEPS_AHEAD", 20_000)
+    rub = "-1000*block.vx/sqrt(block.vx^2 + block.vy^2)"
+    solution = solve(block(rub, velocity=(1, 0)), solver, monkeypatch, duration=10.0)
+    assert solution.outcome is Outcome.STOPPED
+    assert solution.solver["steps"] < 100_000

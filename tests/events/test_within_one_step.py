@@ -1,0 +1,89 @@
+"""Events that begin and end within one step, and laws with zones: what is found, and what costs nothing."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.compile.compile_model import compile_model
+from stiffmbs.compile.law_zones import edges_of
+from stiffmbs.stress.case import Outcome
+from stiffmbs.stress.families.events import within_one_step
+from stiffmbs.stress.fuzzers import contacts
+
+
+@pytest.mark.parametrize("case", within_one_step.CASES, ids=lambda case: case.name)
+def test_what_begins_and_ends_within_one_step_is_seen(case):
+    verdict = case.judge()
+    assert verdict.outcome is Outcome.RIGHT, verdict
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(20))
+def test_random_contacts_and_bumps(seed):
+    verdict = contacts.trial(seed)
+    assert verdict.outcome in (Outcome.RIGHT, Outcome.TOLD), verdict
+
+
+def pushed(table, law="p(b.x)", velocity=1.0):
+    return stiffmbs.read_scene(f"""
+gravity: [0, 0]
+tables: {{p: {table}}}
+bodies: {{b: {{mass: 1, inertia: 1, velocity: [{velocity}, 0]}}}}
+forces: {{f: {{type: force, i: b, force: ["{law}", 0]}}}}
+""")
+
+
+def edges(table):
+    first, found, period = edges_of(compile_model(pushed(table)))
+    assert first.tolist() == [0, len(found)]
+    return found, period[0]
+
+
+def test_a_smooth_table_has_few_zones_and_a_bump_one_of_its_own():
+    x = np.linspace(0, 2 * np.pi, 361)
+    smooth, _ = edges(f"{{table: {np.column_stack([x, np.cos(x)]).tolist()}}}")
+    assert len(smooth) < 15
+    bump, _ = edges("{table: [[0, 0], [15, 0], [15.05, -1000], [15.1, 0], [30, 0]], lines: true}")
+    assert bump.tolist() == [0, 15, 15.05, 15.1, 30]
+
+
+def test_a_periodic_table_repeats_its_zones():
+    found, period = edges("{table: [[0, 0], [0.9, 0], [0.95, 1], [1, 0]], lines: true, ends: periodic}")
+    assert period == 1 and found.tolist() == [0, 0.9, 0.95]
+
+
+def test_every_period_of_a_narrow_tooth_is_felt():
+    """Teeth of 0.05 N m, one a metre, from 1 m/s on: each adds its work."""
+    scene = pushed("{table: [[0, 0], [0.9, 0], [0.95, 1], [1, 0]], lines: true, ends: periodic}")
+    for how in ({"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}):
+        solution = stiffmbs.run(scene, duration=3.0, points=2, rtol=1e-7, **how)
+        teeth = np.floor(solution["b.x"][-1])
+        assert solution["b.vx"][-1] ** 2 == pytest.approx(1 + 2 * 0.05 * teeth, rel=1e-3)
+
+
+def test_a_law_that_steps_resolve_stops_no_integrator():
+    """A body that swings slowly over a smooth table and tanh: no event, and no more steps than without a search."""
+    x = np.linspace(-5, 5, 41)
+    table = f"{{table: {np.column_stack([x, -x]).tolist()}}}"
+    scene = pushed(table, "p(b.x) - 0.1*tanh(b.vx)")
+    for how in ({"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}):
+        assert stiffmbs.run(scene, duration=20.0, points=2, **how).solver["events"] == 0
+
+
+def test_the_first_of_several_events_in_a_step_comes_first():
+    """A ball between two posts that it meets one after the other, each within the free flight of one step."""
+    scene = stiffmbs.read_scene("""
+gravity: [0, 0]
+bodies: {b: {mass: 1, inertia: 1, velocity: [10, 0]}}
+forces:
+  far: {type: contact, i: b, j: {body: ground, point: [6, 0]}, surface: circle, surface_radius: 0.5, stiffness: 1e8}
+  near: {type: contact, i: b, j: {body: ground, point: [3, 0]}, surface: circle, surface_radius: 0.5, stiffness: 1e8}
+""")
+    for how in (
+        {"solver": "bdf"},
+        {"solver": "projected", "scheme": "dop853"},
+        {"solver": "projected", "scheme": "dopri5"},
+    ):
+        solution = stiffmbs.run(scene, duration=1.0, points=2, **how)
+        assert solution["b.vx"][-1] == pytest.approx(-10, rel=1e-3)
+        assert solution["b.x"][-1] == pytest.approx(2.5 - 7.5, abs=0.05)

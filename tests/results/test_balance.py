@@ -1,0 +1,70 @@
+"""Between the steps of a stiff scene forces are as right as at their ends, and motion is what it was."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.solve.error_control import newton
+from stiffmbs.solve.ida.fixed_order import FixedOrder
+from stiffmbs.solve.ida.matrices import Banded, Dense, Sparse
+from stiffmbs.solve.linear.elimination_order import elimination_order
+from stiffmbs.stress.families.stiffness.stiffness import bar_on_bushing
+from stiffmbs.stress.pendulum import bar_rate, swing
+
+from ..solve.test_native_ida import Problem, hanging_chain
+
+GRAVITY = 9.81
+
+
+def swinging(stiffness, rtol=1e-6):
+    return stiffmbs.run(bar_on_bushing(stiffness), duration=2.0, points=201, rtol=rtol)
+
+
+def force_error(solution):
+    """In weights, against a hinge's force, once the ringing of the start is over."""
+    phi = swing(solution.t, np.pi / 2, bar_rate(1.0))
+    fy = 2.5 * np.cos(phi) ** 2 + 0.25 * np.sin(phi) ** 2
+    return np.max(np.abs(solution["bearing.fy"] / GRAVITY - fy)[len(phi) // 4 :])
+
+
+@pytest.fixture
+def as_interpolated(monkeypatch):
+    return lambda: monkeypatch.setattr(newton, "AMPLIFIED", np.inf)
+
+
+@pytest.mark.parametrize("stiffness", [1e10, 1e12, 1e13])
+def test_force_of_a_stiff_bearing_between_steps(stiffness, as_interpolated):
+    balanced = swinging(stiffness)
+    as_interpolated()
+    plain = swinging(stiffness)
+    assert force_error(balanced) < 1e-3
+    assert force_error(plain) > 0.5  # what the interpolant makes of it
+    assert balanced.solver["steps"] == plain.solver["steps"]
+    np.testing.assert_allclose(balanced["bar.angle"], plain["bar.angle"], atol=2e-6)
+
+
+def test_a_scene_that_is_not_stiff_is_left_alone(examples, as_interpolated):
+    scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
+    balanced = stiffmbs.run(scene, duration=2.0)
+    as_interpolated()
+    np.testing.assert_array_equal(stiffmbs.run(scene, duration=2.0)["bar.angle"], balanced["bar.angle"])
+
+
+@pytest.mark.parametrize("kind", ["banded", "SuperLU_MT", "fixed order"])
+def test_every_matrix_serves(kind):
+    chain, times = Problem(hanging_chain()), np.linspace(0.1, 0.4, 31)
+    n, pattern = chain.equations.n, chain.equations.pattern
+    matrix = {
+        "banded": Banded(n, *pattern),
+        "SuperLU_MT": Sparse(n, *pattern),
+        "fixed order": FixedOrder(n, *pattern, elimination_order(chain.equations)),
+    }[kind]
+
+    def rows(matrix, long_step):
+        ida = chain.native(matrix=matrix)
+        ida.balance_within(long_step, 1e-6)
+        return chain.through(ida, times)[0]
+
+    expected = rows(Dense(n, *pattern), 0.0)
+    np.testing.assert_allclose(rows(matrix, 0.0), expected, atol=1e-6)
+    assert np.max(np.abs(rows(matrix, np.inf) - expected)) > 1e-4

@@ -1,0 +1,161 @@
+"""Runs state their energy balance, and what breaks it or grows beyond sense is told; runs that are right have no note."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import stiffmbs
+from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
+from stiffmbs.commands.main import main
+from stiffmbs.compile.compile_model import compile_model
+from stiffmbs.describe.model import FORCES, JOINTS
+from stiffmbs.results.energy_balance import Balance
+from stiffmbs.results.energy_balance_notes import within_steps
+from stiffmbs.show.report import report_page
+from stiffmbs.solve.events.divergence import exponential
+
+from ..conftest import EXAMPLES
+
+TORSION = """
+gravity: [0, -9.81]
+bodies: {bar: {mass: 2, inertia: 0.1, position: [0.5, 0]}}
+joints: {hinge: {type: revolute, i: {body: bar, point: [-0.5, 0]}, j: ground}}
+forces: {s: {type: torsion_spring, i: bar, j: ground, stiffness: -200}}
+run: {duration: 1.2 s}
+"""
+
+
+def sled(**spring):
+    model = Model("Sled")
+    model.add("sled", Body(mass=2, inertia=0.1, position=(1.3, 0)))
+    model.add("rail", Prismatic(i="sled", j="ground"))
+    post = Marker(body="ground", point=(-1, 0))
+    model.add("spring", SpringDamper(i="sled", j=post, stiffness=50, free_length=2, **spring))
+    return model
+
+
+@pytest.mark.parametrize(
+    ("name", "keeps"),
+    [("cart_pendulum", True), ("andrews", True), ("heavy_top", True), ("bouncing_ball", False), ("door", False),
+     ("half_car", False), ("crank_slider", False), ("stick_slip", False)],
+)  # fmt: skip
+def test_a_scene_keeps_energy_where_nothing_takes_or_gives_it(name, keeps):
+    assert compile_model(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")).keeps_energy is keeps
+
+
+def test_a_damper_of_zero_keeps_energy_and_one_above_does_not():
+    assert compile_model(sled()).keeps_energy
+    assert compile_model(sled(damping=0.0)).keeps_energy
+    assert not compile_model(sled(damping=1.0)).keeps_energy
+    assert not compile_model(sled(damper_law="v^3")).keeps_energy
+    assert not compile_model(sled(spring_law="sin(s)^2")).keeps_energy
+
+
+def test_a_contact_keeps_energy_without_dissipation_alone():
+    model = Model(gravity=(0, -9.81))
+    model.add("ball", Body(mass=1, inertia=1, position=(0, 1)))
+    model.add("floor", FORCES["contact"](i="ball", j="ground", stiffness=1e6))
+    assert compile_model(model).keeps_energy
+    model.add("wall", FORCES["contact"](i="ball", j="ground", stiffness=1e6, dissipation=1.0))
+    assert not compile_model(model).keeps_energy
+
+
+def test_the_work_of_a_damper_is_what_is_lost():
+    solution = stiffmbs.run(sled(damping=3.0), duration=3.0, rtol=1e-9)
+    total = solution["energy.total"]
+    assert solution.balance.work[-1] == pytest.approx(total[-1] - total[0], rel=1e-6)
+    assert solution.balance.imbalance < 1e-6 * solution.balance.scale
+    assert solution.notes == ()
+
+
+def test_the_work_of_a_drive_lifts_a_weight():
+    model = Model(gravity=(0, -9.81))
+    model.add("cabin", Body(mass=3, inertia=1, angle=np.pi / 2))
+    model.add("rail", Prismatic(i="cabin", j=Marker(body="ground", angle=np.pi / 2)))
+    model.add("motor", JOINTS["drive"](joint="rail", position="t^2*(3 - 2*t)"))
+    solution = stiffmbs.run(model, duration=1.0)
+    assert solution.balance.work[-1] == pytest.approx(3 * 9.81, rel=1e-6)
+
+
+def test_the_balance_is_in_the_summary_and_in_json(tmp_path):
+    scene = str(EXAMPLES / "door.yaml")
+    told = CliRunner().invoke(main, ["run", scene, "-o", str(tmp_path / "a.npz")]).stdout
+    assert "work of what has no potential" in " ".join(told.split())
+    line = CliRunner().invoke(main, ["run", scene, "--json", "-o", str(tmp_path / "a.npz")]).stdout
+    balance = json.loads(line)["balance"]
+    assert balance["work"] == pytest.approx(balance["change"], rel=1e-4) and not balance["conservative"]
+
+
+def test_an_energy_that_changes_where_nothing_acts_is_told():
+    solution = stiffmbs.run(sled(), duration=3.0, solver="projected", scheme="euler_cromer", step=0.1, output=0.1)
+    assert any("energy balance is broken" in note for note in solution.notes)
+
+
+def test_a_power_that_one_step_does_not_see_is_told():
+    """Work between instants inside one step is certain; where steps end in between it may be anything."""
+    steps = np.array([0.0, 1.0, 4.0])
+    t = np.array([0.5, 1.0, 1.5, 2.0, 5.0])
+    assert within_steps(t, steps).tolist() == [False, False, True, False]
+    assert not within_steps(t, np.empty(0)).any()
+
+
+def test_intervals_of_many_steps_do_not_count_as_open():
+    t = np.arange(4.0)
+    change, work = np.array([0.0, 1.0, 1.0, 1.0]), np.zeros(4)
+    found = Balance(t, change, work, np.zeros(3), np.array([9, 0, 0]), 0.0, 1.0, False)
+    assert found.imbalance == 0.0 and found.between == 1.0
+
+
+@pytest.mark.parametrize("power", [1, 2, 4])
+def test_powers_of_time_are_no_exponential_growth(power):
+    t = np.linspace(0, 10, 2001)
+    assert not exponential(t, t**power)
+    assert not exponential(t, np.maximum(t - 5, 0) ** power)
+    assert exponential(t, np.exp(2 * t))
+
+
+def test_a_spring_of_wrong_sign_is_told_and_named():
+    solution = stiffmbs.run(stiffmbs.read_scene(TORSION))
+    (told,) = (words for words in (solution.message, *solution.notes) if "grows beyond sense" in words)
+    assert "'bar'" in told
+
+
+def test_a_spring_of_wrong_sign_that_is_solved_to_the_end_is_told_and_named():
+    model = Model()
+    model.add("block", Body(mass=1, inertia=1, position=(0.5, 0)))
+    model.add("spring", SpringDamper(i="block", j="ground", stiffness=-100, free_length=0.4))
+    solution = stiffmbs.run(model, duration=2.6)
+    (note,) = (note for note in solution.notes if "grows beyond sense" in note)
+    assert "'block'" in note and "'spring'" in note
+
+
+def test_a_report_of_a_diverged_run_has_no_all_clear():
+    pytest.importorskip("jinja2")
+    pytest.importorskip("matplotlib")
+    scene = stiffmbs.read_scene(TORSION)
+    page = report_page(scene, stiffmbs.run(scene)).lower()
+    assert "grows beyond sense" in page and "nothing to object to" not in page
+
+
+def test_constraints_that_drift_apart_are_told():
+    scene = stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml")
+    solution = stiffmbs.run(
+        scene, solver="projected", scheme="euler_cromer", projection=False, step=0.02, duration=3.0, output=0.02
+    )
+    assert any("joint 'hinge'" in note and "open by" in note for note in solution.notes)
+
+
+def test_a_request_without_a_value_is_told():
+    model = sled()
+    model.request("root", "sqrt(sled.x - 1)")
+    solution = stiffmbs.run(model, duration=3.0)
+    assert any("root is no finite number" in note for note in solution.notes)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+@pytest.mark.parametrize("name", ["bouncing_ball", "elastic_bearing", "half_car", "chain", "bar_pendulum"])
+def test_examples_have_no_note_of_balance_or_growth(name, solver):
+    solution = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"), solver=solver, scheme="dop853")
+    assert solution.notes == ()

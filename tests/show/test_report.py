@@ -1,0 +1,117 @@
+"""The page on a run holds what there is to say, and needs nothing besides."""
+
+import base64
+import re
+from html.parser import HTMLParser
+from xml.etree import ElementTree
+
+import pytest
+from click.testing import CliRunner
+
+from stiffmbs.commands.main import main
+
+from ..conftest import EXAMPLES
+
+pytest.importorskip("jinja2")
+pytest.importorskip("matplotlib")
+
+
+def stiffmbs(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+class Page(HTMLParser):
+    """Texts, headings and addresses of a page; tags must be closed in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.texts, self.addresses, self.headings = [], [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.addresses += [value for name, value in attributes if name in ("src", "href")]
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data.strip())
+        if self.open and self.open[-1] == "h2":
+            self.headings.append(data)
+
+
+@pytest.fixture
+def page_of(tmp_path):
+    def make(scene, *options):
+        path = tmp_path / "page.html"
+        result = stiffmbs("report", EXAMPLES / f"{scene}.yaml", "-o", path, *options)
+        assert result.exit_code == 0, result.output
+        return Page(path.read_text(encoding="utf-8"))
+
+    return make
+
+
+def test_a_page_holds_check_peaks_figures_and_settings(page_of):
+    page = page_of("cart_pendulum", "--rtol", "1e-7")
+    assert page.headings == ["Check", "Verification", "Figures", "Peaks", "Solver", "Settings"]
+    assert not page.open
+    text = "\n".join(page.texts)
+    for part in (
+        "2 degrees of freedom",
+        "presolve:",
+        "rail.fy",
+        "\u00b1",
+        "solved again with bdf at rtol 1e-09",
+        "steps",
+        "1e-07",
+    ):
+        assert part in text
+
+
+def test_a_page_needs_nothing_from_elsewhere(page_of):
+    page = page_of("cart_pendulum", "--duration", "2")
+    assert len(page.addresses) == 3
+    for address in page.addresses:
+        kind, content = re.fullmatch(r"data:image/([a-z+]+);base64,(.*)", address).groups()
+        image = base64.b64decode(content)
+        assert image[:4] == b"\x89PNG" if kind == "png" else ElementTree.fromstring(image).tag.endswith("svg")
+
+
+def test_a_run_is_not_verified_where_one_says_so(page_of):
+    page = page_of("bar_pendulum", "--no-verify")
+    assert "not verified: peaks have no error bars" in page.texts
+    assert not any("\u00b1" in text for text in page.texts)
+
+
+def test_what_is_in_doubt_stands_first(page_of):
+    page = page_of("cam_follower")
+    doubt = next(k for k, text in enumerate(page.texts) if "sensitive" in text or "less certain" in text)
+    assert doubt < page.texts.index("Check")
+
+
+def test_names_are_no_markup(tmp_path):
+    scene = tmp_path / "odd.yaml"
+    scene.write_text(
+        "name: <b>bold & brash</b>\nbodies: {ball: {mass: 1, inertia: 1}}\nrun: {duration: 0.1, points: 11}\n"
+    )
+    result = stiffmbs("report", scene, "-o", tmp_path / "odd.html")
+    assert result.exit_code == 0, result.output
+    assert "&lt;b&gt;bold &amp; brash&lt;/b&gt;" in (tmp_path / "odd.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("scene", "output", "part"),
+    [
+        (EXAMPLES / "cart_pendulum.yaml", "page.pdf", "expected one of .html"),
+        (EXAMPLES / "cart_pendulum.yaml", "nowhere/page.html", "found no folder"),
+        ("missing.yaml", "page.html", "missing.yaml"),
+    ],
+)
+def test_wrong_input_gets_one_sentence(scene, output, part, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = stiffmbs("report", scene, "-o", output)
+    assert result.exit_code == 2
+    assert part in result.output and "Traceback" not in result.output
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,60 @@
+"""The solver's line of a summary says what its counters mean."""
+
+import stiffmbs
+from stiffmbs.show.counters import solver_words
+
+from ..conftest import EXAMPLES
+
+IDA = {
+    "name": "bdf", "linear_solver": "dense, 19 unknowns", "steps": 1000, "residuals": 2000, "jacobians": 310,
+    "factorizations": 310, "error_test_failures": 4, "convergence_failures": 2, "newton_iterations": 2000,
+    "newton_failures": 302, "rejected": 6, "order": 5, "corners": 0, "events": 3, "seconds": 0.0725,
+}  # fmt: skip
+
+
+def test_matrices_made_anew_are_no_failures():
+    assert solver_words(IDA) == (
+        "bdf, linear solver dense, 19 unknowns; "
+        "1000 steps (4 more failed the error test, 2 more did not converge), order 5 at the end; "
+        "2000 residuals, 310 Jacobians (300 of them as Newton's iteration was too slow with an older one); "
+        "started anew at 3 events; 72.5 ms"
+    )
+
+
+def test_what_did_not_happen_is_not_told():
+    quiet = {
+        **IDA,
+        "error_test_failures": 0,
+        "convergence_failures": 0,
+        "newton_failures": 0,
+        "rejected": 0,
+        "events": 0,
+    }
+    assert solver_words(quiet) == (
+        "bdf, linear solver dense, 19 unknowns; 1000 steps, order 5 at the end; 2000 residuals, 310 Jacobians; 72.5 ms"
+    )
+
+
+def test_explicit_steps_count_accelerations():
+    found = {
+        "name": "projected",
+        "steps": 56,
+        "rejected": 1,
+        "accelerations": 851,
+        "corners": 2,
+        "events": 0,
+        "seconds": 0.001,
+    }
+    assert solver_words(found) == (
+        "projected; 56 steps (1 more refused); 851 accelerations; started anew at 2 corners of inputs; 1.0 ms"
+    )
+
+
+def test_every_counter_of_a_run_is_told_or_known_to_be_part_of_another():
+    solution = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"), duration=0.5)
+    words = solver_words(solution.solver)
+    known = {"newton_failures", "rejected", "corners", "events", "convergence_failures"}
+    told = [
+        k for k, v in solution.solver.items() if isinstance(v, int) and k not in known and v and str(v) not in words
+    ]
+    assert told == []

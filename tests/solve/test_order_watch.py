@@ -1,0 +1,50 @@
+"""Orders 3 to 5 are given up where they creep along a vibration below the tolerance, and nowhere else."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import Body, Bushing, Model
+from stiffmbs.solve.error_control import stability_limit as order_watch
+
+
+def rod_on_bushing(stiffness):
+    """A pendulum of 1 m and 1 kg whose pin is an undamped bushing, let go from 60 degrees in an unloaded bushing."""
+    model = Model(gravity=(0, -9.81))
+    angle = -np.pi / 6
+    centre = (0.5 * np.cos(angle), 0.5 * np.sin(angle))
+    rod = model.add("rod", Body(mass=1, inertia=1 / 12, position=centre, angle=angle))
+    model.add("pin", Bushing(i=rod.at(-0.5, 0), j="ground", stiffness=[stiffness, stiffness, 0], damping=[0, 0, 0]))
+    return model
+
+
+def solved(model, **settings):
+    return stiffmbs.run(model, solver="bdf", duration=0.3, points=101, **settings)
+
+
+@pytest.mark.parametrize(("stiffness", "rtol"), [(1e9, 1e-5), (1e10, 1e-6)])
+def test_a_vibration_below_the_tolerance_is_not_followed(stiffness, rtol, monkeypatch):
+    mended = solved(rod_on_bushing(stiffness), rtol=rtol)
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    creeping = solved(rod_on_bushing(stiffness), rtol=rtol)
+    assert mended.solver["steps"] < 0.7 * creeping.solver["steps"]
+    assert any("order was held at 2" in note and "steps" in note for note in mended.notes)
+    np.testing.assert_allclose(mended["rod.angle"], creeping["rod.angle"], atol=100 * rtol)
+
+
+def test_a_pendulum_on_a_stiff_undamped_bushing_swings_as_on_a_pin():
+    """By its energy: omega^2 = 3 g/l (sin 30 deg + sin of the angle below the horizontal)."""
+    solution = solved(rod_on_bushing(1e9), rtol=1e-6)
+    fallen = np.sin(solution["rod.angle"][0]) - np.sin(solution["rod.angle"])
+    np.testing.assert_allclose(np.abs(solution["rod.omega"]), np.sqrt(3 * 9.81 * fallen), atol=1e-3)
+
+
+@pytest.mark.parametrize("name", ["cart_pendulum", "chain", "andrews"])
+def test_scenes_without_such_a_vibration_are_solved_as_before(examples, name, monkeypatch):
+    scene = stiffmbs.load_scene(examples / f"{name}.yaml")
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 100)
+    watched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    unwatched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    assert watched.solver["steps"] == unwatched.solver["steps"]
+    assert watched.notes == unwatched.notes

@@ -1,0 +1,70 @@
+"""A fuzzer's hangs, crashes and wrong answers are found, and the trials after them run."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from stiffmbs.commands.main import main
+from stiffmbs.stress import fuzz
+from stiffmbs.stress.case import Outcome
+
+TOY = "tests.stress.toy_fuzzer"
+
+
+def stress(*arguments):
+    return CliRunner().invoke(main, ["stress", *arguments])
+
+
+@pytest.fixture
+def toy(monkeypatch):
+    monkeypatch.setattr(fuzz, "fuzzers", lambda: {"toy": TOY})
+
+
+def test_hangs_crashes_and_wrong_answers_are_found():
+    found = {trial.seed: trial.verdict for trial in fuzz.trials(TOY, range(8), time_limit=1.0)}
+    assert [found[seed].outcome.value for seed in range(8)] == ["right", *(5 * ["WRONG"]), "told", "right"]
+    assert found[1].detail == "no end within 1 s"
+    assert found[2].detail == "the process ended by SIGSEGV"
+    assert found[3].detail == "the process ended with exit status 7"
+    assert found[4].detail == "ZeroDivisionError: a step of zero"
+    assert found[5].error == 2.0
+
+
+def test_a_module_that_cannot_be_imported_is_wrong():
+    (trial,) = fuzz.trials("tests.no_such_fuzzer", [0])
+    assert trial.verdict.outcome is Outcome.WRONG
+
+
+def test_the_command_prints_what_is_wrong_and_counts(toy):
+    result = stress("--fuzz", "toy", "--seed", "4", "--count", "4")
+    assert result.exit_code == 1
+    assert result.output.splitlines() == [
+        "WRONG  seed 4: ZeroDivisionError: a step of zero",
+        "WRONG  seed 5: 2.0e+00 of 1e+00  another mass",
+        "4 trials: 1 right, 1 told, 2 WRONG",
+    ]
+    result = stress("--fuzz", "toy", "--seed", "6", "--count", "2", "--json")
+    assert result.exit_code == 0
+    rows = [json.loads(line) for line in result.output.splitlines()]
+    assert [(row["seed"], row["outcome"], row["error"]) for row in rows] == [(6, "told", None), (7, "right", 0.5)]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--fuzz"], "found the fuzzer '', expected one of these: toy (nothing but failures)"),
+        (["--fuzz", "fuzzy"], "found the fuzzer 'fuzzy', expected one of these: toy (nothing but failures)"),
+        (["--fuzz", "toy", "--quick"], "found CASE or --quick beside --fuzz, expected one or the other"),
+        (["--count", "3"], "found --count or --seed, expected them with --fuzz alone"),
+    ],
+)
+def test_what_does_not_fit_is_refused(toy, arguments, sentence):
+    result = stress(*arguments)
+    assert result.exit_code == 2
+    assert result.output == f"stiffmbs: {sentence}\n"
+
+
+def test_every_fuzzer_says_what_it_tries():
+    assert all(fuzz.module_of(name) for name in fuzz.fuzzers())
+    assert stress("--fuzz").exit_code == 2
