@@ -17,7 +17,6 @@ from .files.yaml_text import line_of, read_yaml
 from .model import PlanarData
 from .model_data import ModelData
 from .settings import RunSettings
-from .spatial.model import SpatialData
 from .table import Table
 
 SECTIONS = ("bodies", "joints", "forces")
@@ -42,12 +41,13 @@ class PlanarScene(PlanarData, Scene):
     """A scene in the plane."""
 
 
-class SpatialScene(SpatialData, Scene):
-    """A scene in space."""
+def scene_class(dimensions: int) -> type[Scene]:
+    """The class of scenes of 2 or 3 dimensions; that of space is loaded where a scene needs it."""
+    if dimensions == 2:
+        return PlanarScene
+    from .spatial.scene import SpatialScene
 
-
-FAMILIES: dict[Any, type[Scene]] = {2: PlanarScene, 3: SpatialScene}
-"""By the scene's dimensions."""
+    return SpatialScene
 
 
 def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene") -> Scene:
@@ -169,13 +169,13 @@ def _family(raw: dict[str, Any]) -> type[Scene]:
     found = raw.get("dimensions", 2)
     if found not in (2, 3):
         raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
-    return FAMILIES[found]
+    return scene_class(found)
 
 
 def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
     """Whether a scene that is wrong in the plane would be right in space."""
     try:
-        SpatialScene.model_validate(raw, context=context)
+        scene_class(3).model_validate(raw, context=context)
     except PydanticError:
         return False
     return True

@@ -6,10 +6,7 @@ from typing import Any
 
 from .body import Body as PlanarBody
 from .model import FORCES, JOINTS
-from .scene import PlanarScene, SpatialScene
-from .spatial.body import Body as SpatialBody
-from .spatial.model import FORCES as SPATIAL_FORCES
-from .spatial.model import JOINTS as SPATIAL_JOINTS
+from .scene import PlanarScene
 
 
 def scene_schema() -> dict[str, Any]:
@@ -21,6 +18,11 @@ def scene_schema() -> dict[str, Any]:
         For editors, as ``stiffmbs schema`` prints it.
     """
     from pydantic.json_schema import models_json_schema
+
+    from .spatial.body import Body as SpatialBody
+    from .spatial.model import FORCES as SPATIAL_FORCES
+    from .spatial.model import JOINTS as SPATIAL_JOINTS
+    from .spatial.scene import SpatialScene
 
     planar: list[type[Any]] = [PlanarBody, *JOINTS.values(), *FORCES.values()]
     spatial: list[type[Any]] = [SpatialBody, *SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]

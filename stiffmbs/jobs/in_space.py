@@ -10,10 +10,11 @@ from ..describe.files.scene_text import scene_text
 from ..describe.files.text_file import source_name
 from ..describe.model import PlanarData
 from ..describe.model_builder import ModelBuilder
-from ..describe.scene import SpatialScene, made_scene
+from ..describe.scene import made_scene
 from ..describe.spatial.embedding.markers import Written
 from ..describe.spatial.embedding.scene import scene_in_space
 from ..describe.spatial.model import Model
+from ..describe.spatial.scene import SpatialScene
 from ..errors import InputError
 from .load_scene import load_scene
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator
 from dataclasses import dataclass
+from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 from ..describe.element import Element, JointName
@@ -11,9 +13,6 @@ from ..describe.formula.field import Formula
 from ..describe.joints.fixed import Fixed
 from ..describe.marker import GROUND, MarkerReference
 from ..describe.model_data import ModelData
-from . import planar_composite, spatial_composite
-
-GEOMETRY = {2: planar_composite, 3: spatial_composite}
 
 
 @dataclass(frozen=True)
@@ -68,7 +67,7 @@ class Welded:
         if body == GROUND:
             return body, placed
         carrier, member = self.members[body]
-        return carrier, GEOMETRY[self.dimensions].on(member, placed)
+        return carrier, _geometry(self.dimensions).on(member, placed)
 
 
 def weld(model: ModelData, held: Container[str]) -> Welded | None:
@@ -102,7 +101,7 @@ def weld(model: ModelData, held: Container[str]) -> Welded | None:
             bodies[first], members[first] = model.bodies[first], (first, *placements.values())
             continue
         parts = [(model.bodies[name], placed) for name, placed in placements.items()]
-        bodies[first], places = GEOMETRY[model.dimensions].composite(parts)
+        bodies[first], places = groups.geometry.composite(parts)
         members |= {name: (first, placed) for name, placed in zip(placements, places, strict=True)}
     return Welded(model, bodies, members, tuple(used))
 
@@ -117,13 +116,18 @@ def _candidates(model: ModelData) -> Iterator[str]:
             yield name
 
 
+def _geometry(dimensions: int) -> ModuleType:
+    """Placements of bodies on each other, in the plane or in space."""
+    return import_module(f".{'planar' if dimensions == 2 else 'spatial'}_composite", __package__)
+
+
 class _Groups:
     """Bodies that are one, each group with the places of its members on the first."""
 
     def __init__(self, model: ModelData) -> None:
         self._model = model
-        self._geometry = GEOMETRY[model.dimensions]
-        self.placements: dict[str, dict[str, Any]] = {body: {body: self._geometry.Placement()} for body in model.bodies}
+        self.geometry = _geometry(model.dimensions)
+        self.placements: dict[str, dict[str, Any]] = {body: {body: self.geometry.Placement()} for body in model.bodies}
         self._first = {body: body for body in model.bodies}
         acting = [*model.joints.items(), *model.forces.items()]
         self._acts_between = [(name, {marker.body for _, marker in element.markers()}) for name, element in acting]
@@ -138,7 +142,7 @@ class _Groups:
             between & mine.keys() and between & other.keys() for n, between in self._acts_between if n != name
         ):
             return False
-        on, inverse = self._geometry.on, self._geometry.inverse
+        on, inverse = self.geometry.on, self.geometry.inverse
         at = on(on(mine[body_i], on_i), inverse(on(other[body_j], on_j)))
         for member, placed in other.items():
             mine[member], self._first[member] = on(at, placed), first

@@ -11,7 +11,6 @@ from ..solve.mechanics import OutputRows
 from .body_axes import in_own_axes
 from .energy import kinetic_energy, potential_energy
 from .requests import requests
-from .spatial_requests import outputs
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
@@ -32,4 +31,8 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
     channels["energy.total"] = kinetic + potential
     channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
+    if not any(model.outputs()):
+        return channels
+    from .spatial_requests import outputs
+
     return channels | outputs(model, rows.t, channels, counted)

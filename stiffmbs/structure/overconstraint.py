@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..compile.system import System
 from .drop_first import TAKES_PART, Redundant
+from .loop_equations import Pose
 from .loops import LoopJoint
 from .rank_result import LoopFinding
 from .redundancy import Redundancy
-from .replacements import Choice, replacements
 from .sharing import ELASTIC, elastic_joints
 from .uniqueness import Undetermined, undetermined
+
+if TYPE_CHECKING:
+    from .replacements import Choice
 
 MOST_NAMES = 6
 
@@ -103,7 +107,7 @@ def _overconstraint(system: System, finding: LoopFinding, block: list[Redundant]
     remedies = list(_remedies(finding, spaces[-1][1], joints))
     shares = [spaces[-1][1][rows] for rows in _own_rows(finding, joints)]
     elastic = elastic_joints(joints, shares)
-    chosen = replacements(finding.rank.equations, spaces, joints) if system.of_body.dimensions == 3 else []
+    chosen = _in_space(finding, spaces, joints) if system.of_body.dimensions == 3 else []
     parts = undetermined(finding.rank, spaces)
     channels = {name for part in finding.undetermined if part.element in names for name in part.channels}
     return Overconstraint(
@@ -136,6 +140,14 @@ def _reason(system: System, joints: list[LoopJoint], driven: list[str], count: i
 def _between_the_same(joints: list[LoopJoint]) -> bool:
     """Whether joints hold the same bodies against each other."""
     return all(set(joint.bodies) == set(joints[0].bodies) for joint in joints)
+
+
+def _in_space(
+    finding: LoopFinding, spaces: Sequence[tuple[Pose, np.ndarray]], joints: Sequence[LoopJoint]
+) -> list[Choice]:
+    from .replacements import replacements
+
+    return replacements(finding.rank.equations, spaces, joints)
 
 
 def _of_block(finding: LoopFinding, space: np.ndarray, block: list[Redundant]) -> np.ndarray:

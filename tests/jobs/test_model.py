@@ -1,8 +1,5 @@
 """Models from Python and scenes from files say the same, and compiled systems do not depend on numbers."""
 
-import ast
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -118,29 +115,6 @@ def test_dense_and_sparse_solvers_agree_on_a_chain(count, monkeypatch):
     monkeypatch.setattr("stiffmbs.solve.ida.sundae.DENSE_UP_TO", 10_000 if 10 * count > 90 else 0)
     other = stiffmbs.run(scene)
     np.testing.assert_allclose(other[f"link{count}.x"], chosen[f"link{count}.x"], atol=1e-6)
-
-
-ROOMS = (
-    "describe", "adams", "compile", "presolve", "solve", "structure", "results", "diagnostics", "jobs", "verification", "show",
-    "bench", "stress", "commands",
-)  # fmt: skip
-PACKAGE = Path(stiffmbs.__file__).parent
-
-
-@pytest.mark.parametrize("path", sorted(PACKAGE.glob("*/**/*.py")), ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_a_room_imports_from_rooms_to_its_left_alone(path):
-    parts = path.relative_to(PACKAGE).parts
-    allowed = {*ROOMS[: ROOMS.index(parts[0]) + 1], "errors", "interrupts"}
-    if parts[0] in ("bench", "stress"):  # they use what a user has
-        allowed |= {"spatial"}
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.level == len(parts):
-            names = [node.module.partition(".")[0]] if node.module else [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("stiffmbs."):
-            names = [node.module.split(".")[1]]
-        else:
-            continue
-        assert set(names) <= allowed, f"{path.name} imports from {names}"
 
 
 def test_numbers_without_names_are_refused():

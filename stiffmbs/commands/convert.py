@@ -1,0 +1,57 @@
+"""The command ``stiffmbs convert``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from ..errors import InputError, StiffmbsError
+from .scene import CHANGES, STOPPED_EARLY, refuse, refuse_own_input
+
+
+@click.command(short_help="Write a dataset, or a planar scene, anew.")
+@click.argument("scene")
+@click.option(
+    "-o", "--output", "output", type=click.Path(path_type=Path), help="The scene file; standard output without."
+)
+@click.option("--in-space", is_flag=True, help="Take a planar SCENE, and write it in the x-y plane of space.")
+@CHANGES
+def convert(scene: str, output: Path | None, in_space: bool, changes: list[tuple[str, str]]) -> None:
+    """Write the scene that an Adams/Solver dataset (.adm) is run as, or a planar scene in space.
+
+    Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
+    """
+    try:
+        if output is not None:
+            refuse_own_input("-o", scene, output)
+        text = _in_space(scene, changes) if in_space else _of_dataset(scene, changes)
+    except StiffmbsError as error:
+        refuse(scene, error)
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    from ..results import files
+
+    try:
+        files.written_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+    except OSError as error:
+        click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
+        sys.exit(STOPPED_EARLY)
+
+
+def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:
+    from ..jobs.in_space import text_in_space
+
+    return text_in_space(scene, changes)
+
+
+def _of_dataset(dataset: str, changes: list[tuple[str, str]]) -> str:
+    from ..adams.load import convert_file
+
+    if changes:
+        raise InputError(f"{dataset}: found --set, expected it with --in-space alone")
+    if Path(dataset).suffix in (".yaml", ".yml"):
+        raise InputError(f"{dataset}: found a scene, expected an Adams/Solver dataset (.adm), or --in-space")
+    return convert_file(dataset)

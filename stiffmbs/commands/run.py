@@ -1,0 +1,125 @@
+"""The command ``stiffmbs run``."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..describe.scene import Scene
+from ..errors import StiffmbsError
+from ..jobs.load_scene import load_scene
+from .scene import (
+    STOPPED_EARLY,
+    changes_of,
+    file_beside,
+    refuse,
+    refuse_own_input,
+    solve_scene,
+    solving_options,
+)  # fmt: skip
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+UNBROKEN = 10_000
+"""Characters of a line in files and pipes."""
+
+
+@click.command(short_help="Solve a scene.")
+@click.argument("scene")
+@click.option(
+    "-o",
+    "--output",
+    "output",
+    type=click.Path(path_type=Path),
+    help="Write every channel: .csv, .npz or .nc; to SCENE.results.npz without it and without --json.",
+)
+@click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
+@solving_options
+@click.option(
+    "--verify", is_flag=True, help="Solve again, tighter and in another way: error bars, and what is in doubt."
+)
+def run(scene: str, output: Path | None, figure: Path | None, as_json: bool, verify: bool, **options: Any) -> None:
+    """Solve SCENE and show the range of every joint force.
+
+    Exit status: 0 done, 1 stopped early (results up to there are kept) or a file that was asked for could not be
+    written, 2 the input is wrong.
+    """
+    try:
+        if output is not None:
+            _files().check_output(output)
+            refuse_own_input("-o", scene, output)
+        if figure is not None:
+            _drawing().check_figure(figure)
+            refuse_own_input("--figure", scene, figure)
+        loaded = load_scene(scene, changes_of(options))
+        solution = solve_scene(scene, loaded, verify)
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    results, written = _write(scene, output, as_json, solution)
+    if figure is not None:
+        written = _draw(scene, figure, solution, loaded, as_json) and written
+    _show(scene, solution, results, as_json)
+    sys.exit(0 if solution.outcome.name == "DONE" and written else STOPPED_EARLY)
+
+
+def _files() -> Any:
+    from ..results import files
+
+    return files
+
+
+def _drawing() -> Any:
+    from ..show import figure
+
+    return figure
+
+
+def _draw(scene: str, path: Path, solution: Any, loaded: Scene, as_json: bool) -> bool:
+    """Draw the figure; whether it could be written."""
+    try:
+        _drawing().draw(path, solution, loaded.figure)
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    except OSError as error:
+        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
+        return False
+    return True
+
+
+def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tuple[str, bool]:
+    """Write the results where asked, or beside the user's work; says where they lie, and whether none that was asked for is missing."""
+    path = output or file_beside(scene, ".results.npz")
+    if output is None and as_json:
+        return "not written", True
+    try:
+        _files().write(path, solution)
+    except OSError as error:
+        reason = f"not written: {path}: {error.strerror}"
+        if output is not None:
+            click.echo(f"stiffmbs: {reason}", err=True)
+        return reason, output is None
+    return str(path), True
+
+
+def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
+    from ..show import summary
+
+    if as_json:
+        click.echo(summary.as_json(scene, solution))
+        return
+    summary.print_summary(scene, solution, results, _console())
+
+
+def _console() -> Console:
+    """Standard output; lines are broken to the width of a terminal, or of COLUMNS, and nowhere else."""
+    from rich.console import Console
+
+    to_a_width = sys.stdout.isatty() or "COLUMNS" in os.environ
+    return Console(width=None if to_a_width else UNBROKEN, markup=False, emoji=False)

@@ -1,0 +1,85 @@
+"""The structure of the package: imports go one way, in the order of a run, and folders stay small."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import stiffmbs
+
+ORDER = (
+    "describe", "adams", "compile", "presolve", "solve", "structure", "results", "diagnostics", "jobs", "verification", "show",
+    "bench", "stress", "commands",
+)  # fmt: skip
+"""Packages; each imports from those before it alone."""
+ANYWHERE = {"errors", "interrupts"}
+ROOT = Path(stiffmbs.__file__).parent
+MOST_FILES = 25
+MODULES = {(ROOT.name, *path.relative_to(ROOT).with_suffix("").parts): path for path in sorted(ROOT.glob("**/*.py"))}
+
+
+def _module(path: Path) -> tuple[str, ...]:
+    return (ROOT.name, *path.relative_to(ROOT).with_suffix("").parts)
+
+
+def _imports(module: tuple[str, ...], statements: Iterator[ast.AST]) -> Iterator[tuple[str, ...]]:
+    """What the imports among some statements name: modules, or packages."""
+    for node in statements:
+        if isinstance(node, ast.ImportFrom):
+            start = module[: len(module) - node.level] if node.level else ()
+            base = (*start, *(node.module or "").split(".")) if node.module else start
+            if base[:1] == (ROOT.name,):
+                for alias in node.names:
+                    named = (*base, alias.name)
+                    yield named if named in MODULES or (*named, "__init__") in MODULES else base
+
+
+def _when_loaded(tree: ast.AST) -> Iterator[ast.AST]:
+    """The statements that run when a module is loaded: not those of functions, nor those for type checkers."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            continue
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+            continue
+        yield node
+        yield from _when_loaded(node)
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("*/**/*.py")), ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_package_imports_from_packages_before_it_alone(path):
+    module = _module(path)
+    allowed = {*ORDER[: ORDER.index(module[1]) + 1], *ANYWHERE}
+    if module[1] in ("bench", "stress"):  # they use what a user has
+        allowed |= {"spatial"}
+    found = {name[1] for name in _imports(module, ast.walk(ast.parse(path.read_text()))) if len(name) > 1}
+    assert found <= allowed, f"{path.name} imports from {sorted(found - allowed)}"
+
+
+def test_no_module_imports_itself_through_others():
+    """A circle raises `graphlib.CycleError`, which names its modules."""
+    needed = {}
+    for module, path in MODULES.items():
+        found = _imports(module, _when_loaded(ast.parse(path.read_text())))
+        needed[module] = {name for name in found if name in MODULES}
+    tuple(TopologicalSorter(needed).static_order())
+
+
+@pytest.mark.parametrize(
+    "folder", [ROOT, *(path for path in sorted(ROOT.glob("**/")) if path.name != "__pycache__")], ids=str
+)
+def test_a_folder_holds_few_files(folder):
+    assert len([path for path in folder.iterdir() if path.is_file()]) <= MOST_FILES
+
+
+def test_a_planar_scene_loads_nothing_of_space():
+    """Each package of space is loaded where a scene in space is read."""
+    program = (
+        "import sys, stiffmbs; stiffmbs.run(stiffmbs.read_scene('bodies: {a: {mass: 1, inertia: 1}}'), duration=1);"
+        "print(*[name for name in sys.modules if name.startswith('stiffmbs.') and 'spatial' in name])"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert not found.stdout.split()
