@@ -1,4 +1,4 @@
-"""Adams datasets against Adams' own results: Project Chrono's data/testing/joints (see SOURCE.md beside them)."""
+"""Adams datasets against Adams' own results (`tests/data/adams`)."""
 
 from functools import cache
 from pathlib import Path
@@ -9,7 +9,7 @@ import pytest
 import stiffmbs
 from stiffmbs.adams.load import read_adams
 
-HERE = Path(__file__).parents[3] / "shared" / "references" / "adams"
+HERE = Path(__file__).parents[1] / "data" / "adams"
 CASES = (
     "Cylindrical_Case01", "Cylindrical_Case02", "Distance_Case01", "Distance_Case02", "Prismatic_Case01",
     "Prismatic_Case02", "Revolute_Case01", "RotSpring_Case01", "Spherical_Case01", "Universal_Case01",
@@ -30,12 +30,10 @@ CHANNELS = {
     "Quat": ("REQUEST_4", "f2 f3 f4 f6"), "Avel": ("REQUEST_2", "wx wy wz"), "Aacc": ("REQUEST_3", "wdtx wdty wdtz"),
 }  # fmt: skip
 
-pytestmark = pytest.mark.skipif(not HERE.is_dir(), reason="the references are not there")
-
 
 @cache
 def solved(case, rtol=1e-8):
-    text = (HERE / f"test_{case}.adm").read_text()
+    text = (HERE / case / "dataset.adm").read_text()
     for found, used in SPRING.items() if case == "RotSpring_Case01" else ():
         assert found in text
         text = text.replace(found, used)
@@ -44,7 +42,7 @@ def solved(case, rtol=1e-8):
 
 @cache
 def listing(case, quantity):
-    return np.loadtxt(HERE / f"{case}_ADAMS_{quantity}.txt", skiprows=3)
+    return np.loadtxt(HERE / case / f"{quantity}.txt", skiprows=3)
 
 
 def channels(solution, owner, components):
