@@ -8,6 +8,7 @@ from .bench import bench
 from .cache import cache
 from .check import check
 from .convert import convert
+from .modes import modes
 from .process import Process
 from .report import report
 from .run import run
@@ -21,5 +22,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, convert, schema, bench, cache, report, stress):
+for command in (run, check, modes, convert, schema, bench, cache, report, stress):
     main.add_command(command)
