@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from .eigenvalues import Zeros, eigen
 from .state_space import StateMatrix
@@ -77,13 +78,13 @@ class Mode:
         }
 
 
-def natural_modes(state: StateMatrix, mass: np.ndarray, bodies: tuple[str, ...], scale: np.ndarray) -> list[Mode]:
+def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray) -> list[Mode]:
     """The modes of a state matrix, as many as there are degrees of freedom, by undamped natural frequency.
 
     Parameters
     ----------
     state : StateMatrix
-    mass : ndarray, shape (n_u, n_u)
+    mass : sparse array, shape (n_u, n_u)
         In ground axes.
     bodies : tuple of str
     scale : ndarray, shape (n_u,)
@@ -143,7 +144,7 @@ def _alike(shapes: np.ndarray) -> Iterator[tuple[int, int]]:
 
 
 def _mode(
-    both: tuple[complex, complex], shape: np.ndarray, mass: np.ndarray, bodies: tuple[str, ...], scale: np.ndarray
+    both: tuple[complex, complex], shape: np.ndarray, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray
 ) -> Mode:
     motion = Motion.OSCILLATING if both[0].imag else Motion.APERIODIC if all(both) else Motion.RIGID
     sizes = shape / scale * scale.max()

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_array, diags_array
 
 from ..compile.quaternions import rotated
 from ..compile.system import System
@@ -22,8 +23,10 @@ class Linearised:
 
     Attributes
     ----------
-    mass, stiffness, damping : ndarrays, shape (n_u, n_u)
-        M, K and D; K and D are derivatives of forces, so that a spring has a negative K.
+    mass : sparse array, shape (n_u, n_u)
+        M.
+    stiffness, damping : ndarrays, shape (n_u, n_u)
+        K and D; K and D are derivatives of forces, so that a spring has a negative K.
     reactions : ndarray, shape (n_u, n_c)
         B: J^T less the derivative of forces that depend on multipliers.
     position : ndarray, shape (holonomic, n_u)
@@ -32,12 +35,12 @@ class Linearised:
         J and H, the derivatives of the constraints of velocities by v and by x.
     acceleration_at_position, acceleration_at_velocity : ndarrays, shape (n_c, n_u)
         H_x and H_v, of the constraints of accelerations.
-    own_axes, spin : ndarrays, shape (n_u, n_u)
+    own_axes, spin : sparse arrays, shape (n_u, n_u)
         From ground axes to those that u has, and w x of every body in ground axes: the variation of u' is
         own_axes (v' - w x v).
     """
 
-    mass: np.ndarray
+    mass: csr_array
     stiffness: np.ndarray
     damping: np.ndarray
     reactions: np.ndarray
@@ -46,8 +49,8 @@ class Linearised:
     velocity_at_position: np.ndarray
     acceleration_at_position: np.ndarray
     acceleration_at_velocity: np.ndarray
-    own_axes: np.ndarray
-    spin: np.ndarray
+    own_axes: csr_array
+    spin: csr_array
 
 
 def linearised(mechanics: Mechanics, t: float, acceleration: np.ndarray) -> Linearised:
@@ -81,7 +84,7 @@ def linearised(mechanics: Mechanics, t: float, acceleration: np.ndarray) -> Line
     back = axes.T
     rows = system.active
     to_coordinates = rates @ back
-    mass = axes @ (system.mass[:, None] * back)
+    mass = axes @ diags_array(system.mass) @ back
     return Linearised(
         mass=mass,
         stiffness=axes @ (term("f_q") - term("G_lam")) @ to_coordinates,
@@ -97,21 +100,29 @@ def linearised(mechanics: Mechanics, t: float, acceleration: np.ndarray) -> Line
     )
 
 
-def _axes(system: System, q: np.ndarray) -> np.ndarray:
+def _axes(system: System, q: np.ndarray) -> csr_array:
     """From the axes that u has to those of the ground, shape (n_u, n_u): rotations of the bodies' principal axes."""
-    found = np.eye(system.n_u)
-    for own, orientation in _orientations(system, q):
-        found[own, own] = rotated(orientation, np.eye(3)).T
-    return found
+    blocks = {own.start: rotated(orientation, np.eye(3)).T for own, orientation in _orientations(system, q)}
+    return _block_diagonal(system, blocks, 1.0)
 
 
-def _spin(system: System, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+def _spin(system: System, q: np.ndarray, u: np.ndarray) -> csr_array:
     """w x for the angular velocity of every body in ground axes: with v = A du, A du' = v' - w x v."""
-    found = np.zeros((system.n_u, system.n_u))
+    blocks = {}
     for own, orientation in _orientations(system, q):
         x, y, z = rotated(orientation, u[own])
-        found[own, own] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
-    return found
+        blocks[own.start] = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return _block_diagonal(system, blocks, 0.0)
+
+
+def _block_diagonal(system: System, blocks: dict[int, np.ndarray], elsewhere: float) -> csr_array:
+    """Blocks of angular velocities by the first of them; one number on the diagonal elsewhere."""
+    at = np.array(list(blocks), dtype=int).reshape(-1, 1, 1)
+    row, column = np.broadcast_arrays(at + np.arange(3)[:, None], at + np.arange(3))
+    straight = np.setdiff1d(np.arange(system.n_u), row)
+    values = np.concatenate([np.array([*blocks.values()]).ravel(), np.full(len(straight), elsewhere)])
+    places = np.concatenate([row.ravel(), straight]), np.concatenate([column.ravel(), straight])
+    return csr_array((values, places), shape=(system.n_u, system.n_u))
 
 
 def _orientations(system: System, q: np.ndarray) -> Iterator[tuple[slice, np.ndarray]]:
