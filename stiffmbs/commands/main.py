@@ -11,6 +11,7 @@ from .convert import convert
 from .modes import modes
 from .process import Process
 from .report import report
+from .response import response
 from .run import run
 from .schema import schema
 from .stress import stress
@@ -22,5 +23,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, modes, convert, schema, bench, cache, report, stress):
+for command in (run, check, modes, response, convert, schema, bench, cache, report, stress):
     main.add_command(command)
