@@ -8,6 +8,7 @@ from .bench import bench
 from .cache import cache
 from .check import check
 from .convert import convert
+from .equilibrium import equilibrium
 from .modes import modes
 from .process import Process
 from .report import report
@@ -23,5 +24,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, modes, response, convert, schema, bench, cache, report, stress):
+for command in (run, check, equilibrium, modes, response, convert, schema, bench, cache, report, stress):
     main.add_command(command)
