@@ -12,7 +12,7 @@ import pytest
 import stiffmbs
 
 ORDER = (
-    "describe", "adams", "compile", "presolve", "solve", "structure", "results", "diagnostics", "jobs", "verification", "show",
+    "describe", "adams", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "show",
     "bench", "stress", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""

@@ -89,6 +89,10 @@ def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None
         refuse_contradictions(found.redundancy)
     mechanics = found.mechanics()
     start = initial_values(mechanics, found.grid.start)
+    if isinstance(found.data, Scene) and found.data.start == "equilibrium":
+        from .settled import settled
+
+        start = settled(mechanics, start, found.grid.start).start
     pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
     return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
 
@@ -243,6 +247,7 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
 
         yield from note_sentences(job.redundancy)
     yield from unconnected_sentence(job.mechanics.system)
+    yield from job.start.notes
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:
