@@ -34,17 +34,20 @@ class EventWatch:
         state.load("switch")
         n, n_switches, n_state = system.n_values("switch"), system.n_switches, system.n_q + system.n_u
         self.found, self._mark = np.zeros(n, dtype=np.int64), np.zeros(3)
+        if not n:
+            self.table = np.zeros(len(WATCH), dtype=np.int64)  # nothing to search for: none of its arrays is read
+            return
         first_edge, edges, period = edges_of(system)
         place = np.arange(NODES) * np.pi / (NODES - 1)
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
-        angles = system.turning if n else np.empty(0, dtype=np.int64)
+        angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high")  # fmt: skip
         self._arrays = {
             "n": n, "n_switches": n_switches, "waits": np.zeros(n_switches, dtype=np.int64) if waits is None else waits,
             "first_edge": first_edge, "edges": edges, "period": period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
-            "row": np.zeros((NODES + 1) * n_state if n else 0), "n_angles": len(angles), "angle": angles, "mark": self._mark,
+            "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles, "mark": self._mark,
         }  # fmt: skip
         self.table = packed(WATCH, self._arrays)
 

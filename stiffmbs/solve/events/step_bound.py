@@ -18,11 +18,13 @@ class StepBound:
     """
 
     def __init__(self) -> None:
-        self.table = np.zeros(len(STEP_BOUND), dtype=np.int64)
-        self.follow(InputFeatures())
+        self.table = np.zeros(len(STEP_BOUND), dtype=np.int64)  # no features: none of its arrays is read
 
     def follow(self, features: InputFeatures) -> None:
         """Bound steps by these features from now on."""
+        if not len(features.starts):
+            self.table[:] = 0
+            return
         self._kept = {
             "n": len(features.starts), "place": np.zeros(1, dtype=np.int64),
             "starts": np.ascontiguousarray(features.starts), "longest": np.ascontiguousarray(features.longest),

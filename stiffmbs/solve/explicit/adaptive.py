@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -73,6 +74,7 @@ class AdaptiveRun:
         features = mechanics.input_features(grid.start, grid.end)
         self._corners, self._note = grid.with_stops(features.corners), features.note
         work.step_bound.follow(features)
+        self._tolerances = settings.rtol, absolute_tolerances(mechanics.system, settings)
         self._jumps = VelocityJumps(mechanics)
         self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg
@@ -110,7 +112,7 @@ class AdaptiveRun:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
         work, advance, status = self.work, ADVANCE.load(), PAUSED
         most = min(leaving.first, work.room) if leaving else work.room
-        work.h = first_step(self._scheme, self._mechanics, self._start, work.t, self._grid.end, self._settings)
+        work.h = first_step(self._scheme, self._mechanics, self._start, work.t, self._grid.end, self._tolerances)
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
@@ -163,26 +165,35 @@ class AdaptiveRun:
 
 
 def first_step(
-    scheme: Scheme, mechanics: Mechanics, start: InitialValues, t: float, end: float, settings: RunSettings
+    scheme: Scheme,
+    mechanics: Mechanics,
+    start: InitialValues,
+    t: float,
+    end: float,
+    tolerances: tuple[float, np.ndarray],
 ) -> float:
-    """A first step whose error will be small (Hairer, Norsett, Wanner I, ch. II.4, "starting step size"), s."""
-    atol = absolute_tolerances(mechanics.system, settings)
+    """A first step whose error will be small (Hairer, Norsett, Wanner I, ch. II.4, "starting step size"), s.
+
+    The tolerances are rtol, and atol by coordinate and velocity.
+    """
+    rtol, atol = tolerances
     y = np.concatenate([start.q, start.u])
     rate = np.concatenate([mechanics.position_rates(start.q, start.u), start.acceleration])
-    scale = atol + settings.rtol * np.abs(y)
+    weights = 1.0 / (atol + rtol * np.abs(y))
+    count = max(len(y), 1)
 
     def size(vector: np.ndarray) -> float:
-        with np.errstate(over="ignore", invalid="ignore"):
-            return float(np.sqrt(np.mean((vector / scale) ** 2))) if len(vector) else 0.0
+        ratios = vector * weights
+        return math.sqrt(ratios.dot(ratios) / count)
 
     of_state, of_rate = size(y), size(rate)
-    h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 and np.isfinite(of_rate) else 1e-6
+    h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 and math.isfinite(of_rate) else 1e-6
     q, u = mechanics.system.of_body.moved(start.q, h * start.u), start.u + h * start.acceleration
     mechanics.state.q[:], mechanics.state.u[:] = q, u
     status, acceleration = mechanics.accelerate(t + h)
     change = size(np.concatenate([mechanics.position_rates(q, u), acceleration]) - rate) / h
     largest = max(of_rate, change)
-    if status < 0 or not np.isfinite(largest):
+    if status < 0 or not math.isfinite(largest):
         return h
     longer = (0.01 / largest) ** (1 / scheme.order) if largest > 1e-15 else max(1e-6, 1e-3 * h)
     return min(100 * h, longer, end - t)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from math import sqrt
 
-from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.solve.native.stages import add_stages
+from stiffmbs.compile.machine.native.access import compiled, mechanics_view, shifted, state_view
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.solve.native.stages import add_stages, load_state
+from stiffmbs.solve.native.within_step import noted, watch_view, zone
 
 DOUBTED = 1e3
 """The error that a step counts for which cannot be trusted."""
+UNSEEN = 1e-2
+"""Estimated error, relative to how far the last stage is from the end, below which the schemes say nothing of it."""
 MOST_BELOW = 100.0
 """How far below the better of two embedded schemes the estimate may be.  Two schemes tell the error of a third by the rule that
 orders 3 and 5 give, which holds for smooth motion; where friction rises within a step that is off: dop853 had 137
@@ -40,12 +44,31 @@ def error_of(x, c, h):
 
 
 @compiled
+def _sees_other_laws(x, h):
+    """Whether some event function of a force is in another zone at the last stage, still in `y_stage`, than at the step's end."""
+    s = state_view(mechanics_view(x.mechanics).state)
+    w = watch_view(x.watch)
+    if w.n == 0:
+        return False
+    t = x.t_before[0] + h
+    load_state(s, x.y_stage)
+    noted(w.m, evaluate(s, SWITCH, t), w.n)
+    load_state(s, x.y)
+    at_end = evaluate(s, SWITCH, t)
+    for k in range(w.n):
+        if zone(w, k, w.m[k]) != zone(w, k, at_end[k]):
+            return True
+    return False
+
+
+@compiled
 def error_or_doubt(x, c, h):
     """The estimated error over the tolerance, or at least `DOUBTED` where the stages have gone astray.
 
     Stages that leave a stiff contact at its far side see no force there; all differences between schemes then cancel, and
     the estimate is zero for a step that is nonsense.  The last stage, at the step's end, is then further from the end
-    than the whole step is long.
+    than the whole step is long.  Where stability holds steps back stages go as far, too: an estimate by one scheme tells it
+    then, unless it is far smaller or the stage sees another law.
     """
     error = error_of(x, c, h)
     astray = 0.0
@@ -55,4 +78,7 @@ def error_or_doubt(x, c, h):
         off, moved = (x.y[i] - x.y_stage[i]) / scale, (x.y[i] - x.y_before[i]) / scale
         astray += off * off
         way += moved * moved
-    return max(error, DOUBTED) if astray > way and astray > x.n else error
+    if not (astray > way and astray > x.n):
+        return error
+    unseen = c.n_errors == 2 or error * error * x.n < UNSEEN * UNSEEN * astray
+    return max(error, DOUBTED) if unseen or _sees_other_laws(x, h) else error

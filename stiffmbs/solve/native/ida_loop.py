@@ -176,9 +176,11 @@ def _watch_start(c, toward):
 def _looked_within(c, flag):
     """Where an event has begun and ended within the last step, go back to its beginning; IDA's flag, or ROOT_RETURN."""
     w = watch_view(c.watch)
+    if w.n == 0:
+        return flag
     begun = w.mark[BEGUN]
     h = c.mark[RETURNED] - begun
-    if w.n == 0 or not h > ROUNDINGS * abs(begun):
+    if not h > ROUNDINGS * abs(begun):
         return flag
     s = state_view(c.state)
     e = equations_view(c.equations)
