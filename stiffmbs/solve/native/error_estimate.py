@@ -55,10 +55,11 @@ def _sees_other_laws(x, h):
     noted(w.m, evaluate(s, SWITCH, t), w.n)
     load_state(s, x.y)
     at_end = evaluate(s, SWITCH, t)
+    others = 0
     for k in range(w.n):
         if zone(w, k, w.m[k]) != zone(w, k, at_end[k]):
-            return True
-    return False
+            others += 1
+    return others > 0
 
 
 @compiled
