@@ -10,8 +10,8 @@ import numpy as np
 
 from ..compile.table_values import curve
 from ..describe.formula.field import TIME
+from ..describe.formula.functions import branch_value, step5_value, step_value
 from ..describe.formula.text import evaluate
-from ..describe.formula.value import branch_value, step5_value, step_value
 from ..describe.spatial.output import ACTIONS, COUNTED_ANGLES, Output, Term, ends, placeholder
 from .marker_measures import MAGNITUDES, SCALARS, VECTORS
 from .marker_motion import Motions

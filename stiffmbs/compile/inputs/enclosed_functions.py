@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.formula.value import step5_value, step_value
+from ...describe.formula.functions import step5_value, step_value
 from .enclosure import Enclosure, absolute, atan2, branch, exp, log, maximum, minimum, scaled, sign
 from .ranges import EVERYWHERE, Range, between_turns, hull, power_range, product, real_power_range, wave
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from ...describe.element import Element
 from ...describe.formula.field import TIME, Formula, FormulaOf, is_measure, reading_order
+from ...describe.formula.functions import branch_value, step5_value, step_value
 from ...describe.formula.text import BINARY, UNARY, UNIT
-from ...describe.formula.value import branch_value, step5_value, step_value
 from ...describe.table import Table
 from ..system import System
 from .enclosed_functions import FUNCTIONS as ENCLOSED

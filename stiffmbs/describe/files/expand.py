@@ -75,8 +75,14 @@ def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str,
             )
 
 
-def read_parameters(found: Any) -> dict[str, Quantity]:
+def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) -> dict[str, Quantity]:
     """The scene's own names; one may use those above it.
+
+    Parameters
+    ----------
+    found : mapping of str to number or text
+    replaced : mapping of str to Quantity, optional
+        What some of them were before they were set from outside: a plain number takes the SI unit of what it replaces.
 
     Raises
     ------
@@ -99,7 +105,18 @@ def read_parameters(found: Any) -> dict[str, Quantity]:
             )
         except FormulaError as error:
             raise InputError(f"parameters.{name}: {error}") from None
+        if replaced and name in replaced and parameters[name].dimension is None:
+            parameters[name] = Quantity(parameters[name].value, replaced[name].dimension)
     return parameters
+
+
+def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, str]]) -> dict[str, Quantity]:
+    """The parameters that changes replace, as the scene has them; none where it cannot be read."""
+    changed = {path.removeprefix("parameters.") for path, _ in changes}
+    try:
+        return {name: value for name, value in read_parameters(scene.get("parameters")).items() if name in changed}
+    except InputError:
+        return {}
 
 
 def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
