@@ -145,3 +145,43 @@ def plain_number(part: Part) -> Known:
             f"found {named_unit(known.exponents)} in '{as_written(node)}', expected a plain number or an angle"
         )
     return PLAIN
+
+
+def of_numbers(parts: Sequence[Part], where: ast.expr) -> Known:
+    """A plain number from plain numbers or angles."""
+    for part in parts:
+        plain_number(part)
+    return PLAIN
+
+
+def of_first(parts: Sequence[Part], where: ast.expr) -> Known:
+    """The dimension of the argument."""
+    return parts[0][0]
+
+
+def of_root(parts: Sequence[Part], where: ast.expr) -> Known:
+    """The square root of the argument's."""
+    return power(parts[0][0], (PLAIN, where), 0.5)
+
+
+def of_angle(parts: Sequence[Part], where: ast.expr) -> Known:
+    """An angle from lengths, or from anything alike."""
+    found = alike(parts, where)
+    return Known(PLAIN.exponents, found.stated, found.fits_all)
+
+
+def plain_always(parts: Sequence[Part], where: ast.expr) -> Known:
+    """A plain number from anything."""
+    return PLAIN
+
+
+def of_step(parts: Sequence[Part], where: ast.expr) -> Known:
+    """STEP(x, x0, h0, x1, h1): x0 and x1 are like x; h0 like h1."""
+    x, x0, h0, x1, h1 = parts
+    alike((x, x0, x1), where)
+    return alike((h0, h1), where)
+
+
+def of_branch(parts: Sequence[Part], where: ast.expr) -> Known:
+    """That of the three values that one is chosen of."""
+    return alike(parts[1:], where)

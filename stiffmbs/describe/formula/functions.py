@@ -1,4 +1,8 @@
-"""The functions that formulas may call: how many arguments each takes, its value, and how dimensions go through it."""
+"""The functions that formulas may call, one entry each: what every part of the program knows of them.
+
+A new function is one entry here, and nothing else for one of SymPy's functions of one number, such as ``asinh``: SymPy
+differentiates it, kernels call it by its name in C's library, and its interval form follows from its derivative.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +10,12 @@ import ast
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, reduce
 from typing import Any
 
 import numpy as np
 
-from .dimension import PLAIN, Known, Part, alike, plain_number, power
+from .dimension import Known, Part, alike, of_angle, of_branch, of_first, of_numbers, of_root, of_step, plain_always
 from .text import FormulaError, real_power
 
 
@@ -31,67 +35,63 @@ class Takes:
 
 ONE = Takes(1)
 OF_TABLE = ONE
+Corners = tuple[tuple[int, int | None], ...]
+"""The arguments whose difference passes zero at a function's corners; None for zero itself."""
+EACH: Corners = ((0, -1),)
+"""Where the first argument, or the one chosen before, passes each of the others."""
+EVERYWHERE = (-math.inf, math.inf)
 Rule = Callable[[Sequence[Part], ast.expr], Known]
 """From the dimensions of a function's arguments, and the call for messages, to that of its value."""
 
 
 @dataclass(frozen=True)
 class FormulaFunction:
-    """A function of formulas.
+    """A function of formulas: all that the program knows of it, or where that is.
 
     Attributes
     ----------
     takes : Takes
     dimension : Rule
     value : callable
-        Of plain numbers.
+        Of numbers.
+    array : callable
+        Of NumPy's arrays.
+    symbolic : str
+        What stands for it in equations, and in kernels: ``sympy.sin``, which is also called so in C's library, or a class or
+        function of `stiffmbs.compile.symbolic.nonsmooth`.  Empty for a function whose value jumps, so that no integrator could
+        follow it: only formulas that are reported may call it.
+    enclosure : str
+        Its interval form, of `stiffmbs.compile.inputs.enclosed_functions`; empty where that follows from the derivative.
+    derivative : str
+        By x, of a function of x, as a formula.
+    corners : Corners
+    domain : (float, float)
+        Arguments for which it has a value.
+    poles : bool
+        Whether it grows beyond all bounds within its domain.
+    zones : str
+        The zones of `stiffmbs.compile.law_zones` in which its features are narrow where the argument is steep.
     in_numbers : bool
         Whether numbers may call it, and not only formulas.
-    only_reported : bool
-        Whether only formulas that are reported may call it: its value jumps, and no integrator could follow.
     """
 
     takes: Takes
     dimension: Rule
     value: Callable[..., float]
-    in_numbers: bool = True
-    only_reported: bool = False
+    array: Callable[..., Any]
+    symbolic: str = ""
+    enclosure: str = ""
+    derivative: str = ""
+    corners: Corners = ()
+    domain: tuple[float, float] = EVERYWHERE
+    poles: bool = False
+    zones: str = ""
+    in_numbers: bool = False
 
-
-def _of_numbers(parts: Sequence[Part], where: ast.expr) -> Known:
-    """A plain number from plain numbers or angles."""
-    for part in parts:
-        plain_number(part)
-    return PLAIN
-
-
-def _of_first(parts: Sequence[Part], where: ast.expr) -> Known:
-    return parts[0][0]
-
-
-def _root(parts: Sequence[Part], where: ast.expr) -> Known:
-    return power(parts[0][0], (PLAIN, where), 0.5)
-
-
-def _angle(parts: Sequence[Part], where: ast.expr) -> Known:
-    """An angle from lengths, or from anything alike."""
-    found = alike(parts, where)
-    return Known(PLAIN.exponents, found.stated, found.fits_all)
-
-
-def _of_any(parts: Sequence[Part], where: ast.expr) -> Known:
-    return PLAIN
-
-
-def _step(parts: Sequence[Part], where: ast.expr) -> Known:
-    """STEP(x, x0, h0, x1, h1): x0 and x1 are like x; h0 like h1."""
-    x, x0, h0, x1, h1 = parts
-    alike((x, x0, x1), where)
-    return alike((h0, h1), where)
-
-
-def _branch(parts: Sequence[Part], where: ast.expr) -> Known:
-    return alike(parts[1:], where)
+    @property
+    def in_c(self) -> bool:
+        """Whether kernels call it by the name that it has in C's library."""
+        return self.symbolic.startswith("sympy.")
 
 
 def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
@@ -111,33 +111,85 @@ def branch_value(x: Any, below: Any, at: Any, above: Any) -> Any:
     return np.select([np.less(x, 0), np.greater(x, 0)], [below, above], at)
 
 
-def _smooth(value: Callable[[float], float]) -> FormulaFunction:
+def rounded(x: Any) -> Any:
+    """To the nearest whole number, halves away from zero as Fortran's ANINT takes them."""
+    return np.copysign(np.floor(np.abs(x) + 0.5), x)
+
+
+def _greatest(*values: Any) -> Any:
+    return reduce(np.maximum, values)
+
+
+def _least(*values: Any) -> Any:
+    return reduce(np.minimum, values)
+
+
+def _sign(x: Any) -> Any:
+    return np.where(np.asarray(x) >= 0, 1.0, -1.0)
+
+
+def _smooth(value: Callable[[float], float], array: Callable[..., Any], **others: Any) -> FormulaFunction:
     """A function of a plain number or an angle."""
-    return FormulaFunction(ONE, _of_numbers, value)
+    name = value.__name__
+    enclosure = "" if "derivative" in others else name
+    return FormulaFunction(
+        ONE, of_numbers, value, array, symbolic=f"sympy.{name}", enclosure=enclosure, in_numbers=True, **others
+    )
 
 
 FUNCTIONS: dict[str, FormulaFunction] = {
-    **{f.__name__: _smooth(f) for f in (
-        math.sin, math.cos, math.tan, math.asin, math.acos, math.atan, math.sinh, math.cosh, math.tanh, math.exp, math.log,
-    )},
-    "sqrt": FormulaFunction(ONE, _root, partial(real_power, exponent=0.5)),
-    "atan2": FormulaFunction(Takes(2), _angle, math.atan2),
-    "abs": FormulaFunction(ONE, _of_first, abs),
-    "min": FormulaFunction(Takes(1, True), alike, lambda *values: min(values)),
-    "max": FormulaFunction(Takes(1, True), alike, lambda *values: max(values)),
-    "sign": FormulaFunction(ONE, _of_any, partial(math.copysign, 1.0), in_numbers=False),
-    "step": FormulaFunction(Takes(5), _step, step_value, in_numbers=False),
-    "step5": FormulaFunction(Takes(5), _step, step5_value, in_numbers=False),
-    "branch": FormulaFunction(Takes(4), _branch, branch_value, in_numbers=False),
-    "mod": FormulaFunction(Takes(2), alike, math.fmod, in_numbers=False, only_reported=True),
-    **{name: FormulaFunction(ONE, _of_numbers, value, in_numbers=False, only_reported=True) for name, value in (
-        ("trunc", math.trunc), ("round", round), ("floor", math.floor), ("ceil", math.ceil),
-    )},
+    "sin": _smooth(math.sin, np.sin),
+    "cos": _smooth(math.cos, np.cos),
+    "tan": _smooth(math.tan, np.tan, poles=True),
+    "asin": _smooth(math.asin, np.arcsin, domain=(-1.0, 1.0)),
+    "acos": _smooth(math.acos, np.arccos, domain=(-1.0, 1.0)),
+    "atan": _smooth(math.atan, np.arctan, zones="atan"),
+    "sinh": _smooth(math.sinh, np.sinh, poles=True, zones="exp"),
+    "cosh": _smooth(math.cosh, np.cosh, poles=True, zones="exp"),
+    "tanh": _smooth(math.tanh, np.tanh, zones="tanh"),
+    "asinh": _smooth(math.asinh, np.arcsinh, derivative="1/sqrt(1 + x^2)"),
+    "exp": _smooth(math.exp, np.exp, poles=True, zones="exp"),
+    "log": _smooth(math.log, np.log, domain=(0.0, math.inf)),
+    "sqrt": FormulaFunction(
+        ONE, of_root, partial(real_power, exponent=0.5), np.sqrt, symbolic="sympy.sqrt", enclosure="sqrt",
+        domain=(0.0, math.inf), in_numbers=True,
+    ),
+    "atan2": FormulaFunction(
+        Takes(2), of_angle, math.atan2, np.arctan2, symbolic="sympy.atan2", enclosure="atan2", in_numbers=True
+    ),
+    "abs": FormulaFunction(
+        ONE, of_first, abs, np.abs, symbolic="Magnitude", enclosure="absolute", corners=((0, None),), in_numbers=True
+    ),
+    "min": FormulaFunction(
+        Takes(1, True), alike, lambda *values: min(values), _least, symbolic="less", enclosure="minimum", corners=EACH,
+        in_numbers=True,
+    ),
+    "max": FormulaFunction(
+        Takes(1, True), alike, lambda *values: max(values), _greatest, symbolic="greater", enclosure="maximum", corners=EACH,
+        in_numbers=True,
+    ),
+    "sign": FormulaFunction(
+        ONE, plain_always, partial(math.copysign, 1.0), _sign, symbolic="Sign", enclosure="sign", corners=((0, None),)
+    ),
+    "step": FormulaFunction(
+        Takes(5), of_step, step_value, step_value, symbolic="step", enclosure="step", corners=((0, 1), (0, 3))
+    ),
+    "step5": FormulaFunction(
+        Takes(5), of_step, step5_value, step5_value, symbolic="step5", enclosure="step5", corners=((0, 1), (0, 3))
+    ),
+    "branch": FormulaFunction(
+        Takes(4), of_branch, branch_value, branch_value, symbolic="Chosen", enclosure="branch", corners=((0, None),)
+    ),
+    "mod": FormulaFunction(Takes(2), alike, math.fmod, np.fmod),
+    "trunc": FormulaFunction(ONE, of_numbers, math.trunc, np.trunc),
+    "round": FormulaFunction(ONE, of_numbers, rounded, rounded),
+    "floor": FormulaFunction(ONE, of_numbers, math.floor, np.floor),
+    "ceil": FormulaFunction(ONE, of_numbers, math.ceil, np.ceil),
 }  # fmt: skip
 """``step(x, x0, h0, x1, h1)`` goes from h0 to h1 by a cubic, ``step5`` by a quintic; ``branch(x, below, at, above)`` is the
 second, third or fourth for an x below, at or above zero; ``mod`` has the sign of its first argument."""
 IN_NUMBERS = {name: function for name, function in FUNCTIONS.items() if function.in_numbers}
-IN_FORMULAS = {name: function for name, function in FUNCTIONS.items() if not function.only_reported}
+IN_FORMULAS = {name: function for name, function in FUNCTIONS.items() if function.symbolic}
 
 
 def check_functions(
