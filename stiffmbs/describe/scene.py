@@ -20,14 +20,17 @@ from .files.expand import (
     set_value,
 )
 from .files.quoted import written
+from .files.variables import read_variables
 from .files.yaml_text import line_of, read_yaml
+from .formula.field import OfMotion
 from .model import PlanarData
 from .model_data import ModelData
+from .request import Request
 from .settings import RunSettings
 from .table import Table
 from .units.units import Quantity, in_text
 
-SECTIONS = ("bodies", "joints", "forces")
+SECTIONS = ("variables", "bodies", "joints", "forces")
 
 
 class Scene(ModelData):
@@ -35,6 +38,7 @@ class Scene(ModelData):
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
+    variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
@@ -52,6 +56,15 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
 
 class PlanarScene(PlanarData, Scene):
     """A scene in the plane."""
+
+    variables: dict[str, OfMotion] = Field(
+        default_factory=dict, description="formulas by name, which other formulas use"
+    )
+
+    def check_requests(self) -> None:
+        super().check_requests()
+        for name, formula in self.variables.items():
+            self.check_request(f"variables.{name}", Request(formula=formula))
 
 
 def scene_class(dimensions: int) -> type[Scene]:
@@ -163,11 +176,12 @@ def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity]) -> Scene
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
+        variables = read_variables(raw.get("variables"), parameters, tables)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"] = tables
-    context = {"parameters": parameters, "tables": tables}
+    context = {"parameters": parameters, "tables": tables, "variables": variables}
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:

@@ -22,6 +22,7 @@ from .dimension import UNKNOWN, Known, measured_in
 from .functions import FUNCTIONS, IN_FORMULAS, check_functions
 from .names import MEASURES
 from .text import UNIT, FormulaError, parse
+from .variables import with_variables
 
 TIME = "t"
 
@@ -78,8 +79,13 @@ class Formula:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Formula) and all(
-            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables")
+            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables", "_told")
         )
+
+    @property
+    def _told(self) -> str:
+        """What the tree says, with variables in their places."""
+        return ast.unparse(self.tree)
 
     def __hash__(self) -> int:
         return hash(self.text)
@@ -164,11 +170,17 @@ class FormulaOf:
         if isinstance(found, Table | dict) and self.table:
             return found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
         context = info.context or {}
-        formula = self._made(found, context.get("parameters") or {}, context.get("tables") or {})
+        formula = self._made(found, *(context.get(key) or {} for key in ("parameters", "tables", "variables")))
         self._check(formula)
         return formula
 
-    def _made(self, found: Any, parameters: Mapping[str, Quantity], tables: Mapping[str, Table]) -> Formula:
+    def _made(
+        self,
+        found: Any,
+        parameters: Mapping[str, Quantity],
+        tables: Mapping[str, Table],
+        variables: Mapping[str, ast.expr],
+    ) -> Formula:
         if isinstance(found, Real) and not isinstance(found, bool):
             found = repr(as_float(found))
         elif hasattr(found, "free_symbols"):
@@ -178,7 +190,7 @@ class FormulaOf:
         if not isinstance(found, str):
             allowed = "a formula or a table" if self.table else "a formula"
             raise FormulaError(f"found {written(found)}, expected {allowed}")
-        tree = parse(found)
+        tree = with_variables(parse(found), variables, self.variables)
         check_functions(
             tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
         )
