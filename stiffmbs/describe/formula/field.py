@@ -16,10 +16,10 @@ from ..marker import GROUND, MarkerReference
 from ..table import Table
 from ..units.quantity import as_float, is_unit, of_name
 from ..units.units import ANY, CONSTANTS, UNITS, Quantity
-from . import measured
-from .check_dimensions import check_dimension, dimension_of
+from .check_dimensions import check_dimension
 from .dimension import UNKNOWN, Known, measured_in
-from .functions import FUNCTIONS, IN_FORMULAS, check_functions
+from .functions import IN_FORMULAS, check_functions
+from .measured import dimension_within
 from .names import MEASURES
 from .text import UNIT, FormulaError, parse
 from .variables import with_variables
@@ -229,34 +229,11 @@ class FormulaOf:
     def dimension_of(
         self, tree: ast.expr, used: Mapping[str, Quantity], terms: Mapping[str, Known] | None = None
     ) -> Known:
-        """The dimension of a formula's value.
-
-        Parameters
-        ----------
-        tree : ast.expr
-        used : mapping of str to Quantity
-            As `quantities` finds them.
-        terms : mapping of str to Known, optional
-            Other names in the tree.
-
-        Raises
-        ------
-        FormulaError
-            When a unit stands in it and dimensions do not fit; without any it is in SI units as it stands.
+        """The dimension of a formula's value, as `stiffmbs.describe.formula.measured.dimension_within`; `terms` are other
+        names in the tree.
         """
-        own = zip(self.variables, map(measured_in, self.measured_in), strict=False)
-        names: dict[str, Quantity | Known] = {TIME: measured.TIME, **dict(own), **used, **(terms or {})}
-
-        def called(call: ast.Call) -> Known | None:
-            name = call.func.id  # type: ignore[attr-defined]
-            return measured.MEASURES.get(name, UNKNOWN) if is_measure(call) or name not in FUNCTIONS else None
-
-        try:
-            return dimension_of(tree, lambda name: names.get(name) or measured.of_coordinate(name), called)
-        except FormulaError:
-            if any(quantity.dimension is not None for quantity in used.values()):
-                raise
-            return UNKNOWN
+        own = dict(zip(self.variables, map(measured_in, self.measured_in), strict=False))
+        return dimension_within(tree, used, own | dict(terms or {}))
 
     def _check(self, formula: Formula) -> None:
         if not self.time and any(isinstance(n, ast.Name) and n.id == TIME for n in reading_order(formula.tree)):

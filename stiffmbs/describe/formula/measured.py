@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+import ast
+from collections.abc import Mapping
+
+from ..units.units import Quantity
+from .check_dimensions import dimension_of
 from .dimension import UNKNOWN, Known, measured_in
+from .functions import FUNCTIONS
+from .text import FormulaError
 
 _COORDINATES = {
     "length": "x y z", "angle": "angle q0 q1 q2 q3", "velocity": "vx vy vz", "angular velocity": "omega wx wy wz",
@@ -30,3 +37,33 @@ def of_coordinate(name: str) -> Known:
     """The dimension of ``body.name``."""
     owner, _, coordinate = name.rpartition(".")
     return COORDINATES.get(coordinate, UNKNOWN) if owner else UNKNOWN
+
+
+def dimension_within(tree: ast.expr, used: Mapping[str, Quantity], own: Mapping[str, Known]) -> Known:
+    """The dimension of a formula's value.
+
+    Parameters
+    ----------
+    tree : ast.expr
+    used : mapping of str to Quantity
+        The parameters, units and constants in it.
+    own : mapping of str to Known
+        Names with a meaning of the formula's own.
+
+    Raises
+    ------
+    FormulaError
+        When a unit stands in it and dimensions do not fit; without any it is in SI units as it stands.
+    """
+    names: dict[str, Quantity | Known] = {"t": TIME, **own, **used}
+
+    def called(call: ast.Call) -> Known | None:
+        name = call.func.id  # type: ignore[attr-defined]
+        return MEASURES.get(name, None if name in FUNCTIONS else UNKNOWN)
+
+    try:
+        return dimension_of(tree, lambda name: names.get(name) or of_coordinate(name), called)
+    except FormulaError:
+        if any(quantity.dimension is not None for quantity in used.values()):
+            raise
+        return UNKNOWN
