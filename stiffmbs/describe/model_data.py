@@ -82,7 +82,8 @@ class ModelData(Described):
                 if used:
                     name = used.group()
                     raise ValueError(
-                        f"found '{name}' in '{quoted(text)}', which is a unit and a request, expected one or the other"
+                        f"found '{name}' in '{quoted(text)}', which is a unit and a request, expected one or the other: "
+                        "rename the request"
                     )
         return named
 
@@ -111,7 +112,11 @@ class ModelData(Described):
     def check_requests(self) -> None:
         """Refuse requests that name what the model does not have."""
         for name, request in self.requested():
-            check_element(f"requests.{name}", request, self.bodies, self.joints, self.markers, NAMES[self.dimensions])
+            self.check_request(f"requests.{name}", request)
+
+    def check_request(self, where: str, request: Request) -> None:
+        """Refuse a request that names what the model does not have."""
+        check_element(where, request, self.bodies, self.joints, self.markers, NAMES[self.dimensions])
 
     def outputs(self) -> Iterator[tuple[str, Any]]:
         """The requests that are evaluated after the run, by channel."""

@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
 from .fields import sentence
 from .figure import Figure
-from .files.expand import read_parameters, read_tables, refuse_unused_parameters, repeat_entries, set_value
+from .files.expand import (
+    read_parameters,
+    read_tables,
+    refuse_unused_parameters,
+    repeat_entries,
+    replaced_parameters,
+    set_value,
+)
 from .files.quoted import written
+from .files.variables import read_variables
 from .files.yaml_text import line_of, read_yaml
+from .formula.field import OfMotion
 from .model import PlanarData
 from .model_data import ModelData
+from .request import Request
 from .settings import RunSettings
 from .table import Table
+from .units.units import Quantity, in_text
 
-SECTIONS = ("bodies", "joints", "forces")
+SECTIONS = ("variables", "bodies", "joints", "forces")
 
 
 class Scene(ModelData):
@@ -27,12 +38,18 @@ class Scene(ModelData):
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
+    variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
     start: Literal["described", "equilibrium"] = Field(
         "described", description="where a run starts: as described, or at rest in the equilibrium found from there"
     )
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
+    _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
+
+    def written_parameters(self) -> dict[str, float | str]:
+        """The parameters as a scene writes them, with their units."""
+        return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
@@ -42,6 +59,15 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
 
 class PlanarScene(PlanarData, Scene):
     """A scene in the plane."""
+
+    variables: dict[str, OfMotion] = Field(
+        default_factory=dict, description="formulas by name, which other formulas use"
+    )
+
+    def check_requests(self) -> None:
+        super().check_requests()
+        for name, formula in self.variables.items():
+            self.check_request(f"variables.{name}", Request(formula=formula))
 
 
 def scene_class(dimensions: int) -> type[Scene]:
@@ -106,11 +132,12 @@ def made_scene(
         When it is no valid scene.
     """
     refuse_unused_parameters(found, changes)
+    replaced = replaced_parameters(found, changes)
     for path, value in changes:
         set_value(found, path, read_yaml(value, f"--set {path}"))
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found)
+        return _validated(found, replaced)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
 
@@ -145,26 +172,29 @@ class _Located(Exception):
         self.path = path
 
 
-def _validated(found: dict[str, Any]) -> Scene:
+def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity]) -> Scene:
     try:
-        parameters = read_parameters(found.get("parameters"))
+        parameters = read_parameters(found.get("parameters"), replaced)
         tables = read_tables(found.get("tables"), parameters)
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
+        variables = read_variables(raw.get("variables"), parameters, tables)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"] = tables
-    context = {"parameters": parameters, "tables": tables}
+    context = {"parameters": parameters, "tables": tables, "variables": variables}
     try:
-        return _family(raw).model_validate(raw, context=context)
+        scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
         if "dimensions" not in raw and _right_in_space(raw, context):
             raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
         message = sentence(error)
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
+    scene._quantities = parameters
+    return scene
 
 
 def _family(raw: dict[str, Any]) -> type[Scene]:

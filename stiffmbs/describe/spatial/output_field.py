@@ -11,10 +11,13 @@ from pydantic_core import core_schema
 
 from ..body import check_names
 from ..files.quoted import written
+from ..formula import measured
 from ..formula.field import FormulaOf, called_tables
-from ..formula.functions import FUNCTIONS, OF_TABLE, ROUNDING, check_functions
+from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, parse
+from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
+from ..units.units import Quantity
 from .output import ACTIONS, ALONG_AXES, MEASURES, Output, Term, placeholder
 
 
@@ -69,7 +72,7 @@ def _reference(node: ast.expr) -> str:
     raise FormulaError(f"found '{ast.unparse(node)}', expected a name such as bar.end")
 
 
-class _OutputField:
+class OutputField:
     """Marks a field as the formula of a request."""
 
     def read(self, found: Any, info: ValidationInfo) -> Output:
@@ -81,20 +84,17 @@ class _OutputField:
         if not isinstance(found, str):
             raise FormulaError(f"found {written(found)}, expected a formula")
         terms = _Terms()
-        tree = terms.visit(parse(found))
-        tables = (info.context or {}).get("tables") or {}
-        known = FUNCTIONS | ROUNDING | dict.fromkeys(tables, OF_TABLE)
-        check_functions(tree, known, (), (*known, *MEASURES, *ACTIONS))
-        places = {placeholder(k): 0.0 for k in range(len(terms.found))}
-        parameters = {name: value.value for name, value in ((info.context or {}).get("parameters") or {}).items()}
-        values = _NAMES.values(found, tree, parameters | places)
-        return Output(
-            found,
-            tree,
-            tuple(terms.found),
-            {name: v for name, v in values if name not in places},
-            called_tables(tree, tables),
-        )
+        context = info.context or {}
+        tree = terms.visit(with_variables(parse(found), context.get("variables") or {}))
+        tables = context.get("tables") or {}
+        check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*MEASURES, *ACTIONS))
+        places = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(terms.found)}
+        parameters = context.get("parameters") or {}
+        named = _NAMES.quantities(found, tree, parameters | dict.fromkeys(places, Quantity(0.0)))
+        used = {name: quantity for name, quantity in named if name not in places}
+        _NAMES.dimension_of(tree, used, places)
+        values = {name: quantity.value for name, quantity in used.items()}
+        return Output(found, tree, tuple(terms.found), values, called_tables(tree, tables))
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
@@ -107,7 +107,7 @@ class _OutputField:
 _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
-class _RequestedField(_OutputField):
+class _RequestedField(OutputField):
     """Marks a field as the formula of a request, or formulas by the names of their components."""
 
     def read(self, found: Any, info: ValidationInfo) -> Any:
