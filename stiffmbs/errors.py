@@ -9,6 +9,12 @@ class InputError(StiffmbsError):
     """The description is wrong: a scene, a model, or a setting (exit status 2)."""
 
 
+class ChannelError(InputError, KeyError):
+    """A solution has no channel of that name; a `KeyError` too, as of every mapping."""
+
+    __str__ = InputError.__str__
+
+
 class AssemblyError(StiffmbsError):
     """The bodies cannot be moved or accelerated so that every joint holds (exit status 1)."""
 

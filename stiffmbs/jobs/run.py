@@ -211,7 +211,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
-        requested=frozenset(job.data.requested_channels()),
+        requested=frozenset(job.data.requested_channels()), figure=job.data.figure if isinstance(job.data, Scene) else None,
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
 
