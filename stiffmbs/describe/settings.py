@@ -140,12 +140,19 @@ class RunSettings(Described):
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+class _AsItIs:
+    """The default of a setting in a signature: what the scene, or the settings that are given, have."""
+
+    def __repr__(self) -> str:
+        return "..."
+
+
 def takes_settings(function: Function) -> Function:
     """Let a function that takes the settings by keyword show them in its signature, for ``help`` and for completion."""
     signature = inspect.signature(function)
     own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
     settings = [
-        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=..., annotation=kind)
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_AsItIs(), annotation=kind)
         for name, kind in Settings.__annotations__.items()
     ]
     function.__signature__ = signature.replace(parameters=[*own, *settings])  # type: ignore[attr-defined]
