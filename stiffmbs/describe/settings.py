@@ -152,8 +152,8 @@ def takes_settings(function: Function) -> Function:
     signature = inspect.signature(function)
     own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
     settings = [
-        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_AsItIs(), annotation=kind)
-        for name, kind in Settings.__annotations__.items()
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_AsItIs(), annotation=kind.__forward_arg__)
+        for name, kind in Settings.__annotations__.items()  # as text, like all annotations here
     ]
     function.__signature__ = signature.replace(parameters=[*own, *settings])  # type: ignore[attr-defined]
     return function
