@@ -25,7 +25,7 @@ from stiffmbs.describe.spatial import model as spatial_model
 HERE = Path(__file__).parent.parent
 PAGES = [HERE / "README.md", *sorted((HERE / "docs").rglob("*.md"))]
 TESTED = {"yaml", "python", "console"}
-QUICK = r"\$ stiffmbs (run|check) "
+QUICK = r"\$ stiffmbs (run|check|equilibrium|modes|response) "
 """Commands that are run; those that measure take long, and never print the same twice."""
 PLOT = ".. plot::\n"
 NUMBER = r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?"

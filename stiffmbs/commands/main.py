@@ -8,8 +8,11 @@ from .bench import bench
 from .cache import cache
 from .check import check
 from .convert import convert
+from .equilibrium import equilibrium
+from .modes import modes
 from .process import Process
 from .report import report
+from .response import response
 from .run import run
 from .schema import schema
 from .stress import stress
@@ -21,5 +24,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, convert, schema, bench, cache, report, stress):
+for command in (run, check, equilibrium, modes, response, convert, schema, bench, cache, report, stress):
     main.add_command(command)

@@ -23,10 +23,11 @@ FIXED = {
     "exp": _on_both_sides(0.5, 2.0, 6.0, 15.0, 37.0),
     "tanh": _on_both_sides(1.0, 3.0, 8.0, 19.0),
     "atan": _on_both_sides(1.0, 4.0, 20.0),
-    "reciprocal": _on_both_sides(0.0, *4.0 ** np.arange(-20, 21))[1:],
+    "reciprocal": _on_both_sides(0.0, *2.0 * 4.0 ** np.arange(-20, 21))[1:],
 }
 """Edges of functions: of exp, cosh and sinh (exp(-37) is rounding); of tanh (so is 1 - tanh(19)); of atan; of 1/x and other
-negative powers.  They are graded, so that a step that begins near a feature is no longer than what it has seen of it."""
+negative powers, none at 1, where 1 + x^2 and cos(x) turn round and rounding would decide.  They are graded, so that a step
+that begins near a feature is no longer than what it has seen of it."""
 DESCRIBED = 1e-3
 """Part of the range of a table's values up to which one cubic describes pieces of it that then are one zone."""
 WITHIN = np.array([0.0, 0.25, 0.5, 0.75, 1.0])

@@ -75,14 +75,17 @@ class System:
 
     @property
     def n_q(self) -> int:
+        """The number of coordinates."""
         return len(self.q)
 
     @property
     def n_u(self) -> int:
+        """The number of velocities."""
         return len(self.u)
 
     @property
     def n_c(self) -> int:
+        """The number of constraint equations."""
         return len(self.equations)
 
     def per_coordinate(self, linear: float, angular: float) -> np.ndarray:

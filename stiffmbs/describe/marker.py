@@ -84,6 +84,7 @@ class MarkerReference(Described):
 
     @property
     def label(self) -> str:
+        """What messages call it: ``body.marker``, or the body alone."""
         return f"{self.body}.{self.marker}" if self.marker else self.body
 
 

@@ -49,6 +49,7 @@ class PlanarData(ModelData):
         return weights(bodies, self.gravity)
 
     def drawn_marker(self, marker: MarkerReference) -> DrawnMarker:
+        """A marker with numbers, in ground axes, as the bodies are drawn."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return DrawnMarker(np.array(placed.point), placed.angle)

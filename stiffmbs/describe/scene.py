@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 from pydantic import ValidationError as PydanticError
@@ -28,6 +28,9 @@ class Scene(ModelData):
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
+    start: Literal["described", "equilibrium"] = Field(
+        "described", description="where a run starts: as described, or at rest in the equilibrium found from there"
+    )
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
 

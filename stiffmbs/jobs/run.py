@@ -16,6 +16,7 @@ from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.far_away import refuse_far_away
 from ..diagnostics.growth import senseless
+from ..diagnostics.lost_turns import lost_turns_sentence
 from ..errors import AssemblyError, InputError
 from ..presolve.presolve import parts_of
 from ..results.channels import channels_of
@@ -31,6 +32,7 @@ from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
+from ..solve.storage import blocks, release
 from ..solve.subsystems import Piece, leave_out_coordinates, piece_of, solve_pieces
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
@@ -38,6 +40,7 @@ from ..structure.redundancy import Redundancy, examine
 from ..structure.told.unconnected import unconnected_sentence
 from .load_scene import load_scene
 from .presolve_report import presolve_sentences
+from .taken_again import Computed, seen_through
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,10 @@ def prepare(model: Runnable, settings: RunSettings | None = None, **changes: Any
         refuse_contradictions(found.redundancy)
     mechanics = found.mechanics()
     start = initial_values(mechanics, found.grid.start)
+    if isinstance(found.data, Scene) and found.data.start == "equilibrium":
+        from .settled import settled
+
+        start = settled(mechanics, start, found.grid.start).start
     pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
     return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
 
@@ -190,13 +197,12 @@ def run(
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    trajectory = _sound_part(job, job.integrate(watch))
-    project = near_constraints(job.settings)
-    rows, left_out = reported(job.mechanics, trajectory, project)
+    computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
+    trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
         raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
-    if project:
+    if near_constraints(job.settings):
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
     system, channels = job.mechanics.system, channels_of(job.data, job.mechanics.system, rows)
@@ -205,15 +211,21 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     wrong = tuple(senseless(job.mechanics, rows, job.settings))
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
-    known = {name: values[solved_there] for name, values in channels.items() if not np.isfinite(values).all()}
-    wrong = (*wrong, *no_number_sentences(rows.t[solved_there], known))
+    known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
+    wrong = (*wrong, *lost_turns_sentence(job.mechanics, rows), *no_number_sentences(rows.t[solved_there], known))
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
-        message=message, notes=(*_notes(job, trajectory), *left_out, *wrong), solver=statistics,
+        message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
         requested=frozenset(job.data.requested_channels()), figure=job.data.figure if isinstance(job.data, Scene) else None,
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
+
+
+def _computed(job: Job, watch: Watch | None) -> Computed:
+    """Integrate a job and report it."""
+    trajectory = _sound_part(job, job.integrate(watch))
+    return Computed(trajectory, *reported(job.mechanics, trajectory, near_constraints(job.settings)))
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
@@ -233,6 +245,16 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
     )  # fmt: skip
 
 
+def _all_finite(values: np.ndarray) -> bool:
+    """Whether all are numbers, block by block: a channel of a large run lies in a file, whose memory is let go of."""
+    for block in blocks(len(values)):
+        finite = np.isfinite(values[block]).all()
+        release(values)
+        if not finite:
+            return False
+    return True
+
+
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
     """How the run ended, and the sentence for it: also stopped where states have no accelerations and reactions."""
     if len(rows.t) == len(trajectory.t):
@@ -249,6 +271,7 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
 
         yield from note_sentences(job.redundancy)
     yield from unconnected_sentence(job.mechanics.system)
+    yield from job.start.notes
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:

@@ -17,7 +17,7 @@ import numpy as np
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 
-MOST_INSTANTS = 1_000_000
+MOST_INSTANTS = 100_000
 """Instants that a balance is made of at the most; of more every other one counts, or fewer."""
 SEEN = 1
 """Steps of the solver that may end inside an interval whose work the values at its ends tell."""

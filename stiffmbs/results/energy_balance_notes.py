@@ -100,7 +100,7 @@ def _changed(system: System, balance: Balance, rows: OutputRows, allowed: float)
 
 def _left(system: System, balance: Balance, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[str]:
     """Of any other scene: the interval within one step of the solver whose balance is open the furthest."""
-    inside = within_steps(balance.t, steps)
+    inside = within_steps(balance.t[:-1], balance.t[1:], steps)
     missing = np.abs(np.diff(balance.open))
     missing = np.where(inside & (missing > CERTAIN * np.abs(balance.within)), missing, 0.0)
     if not len(missing) or missing.max() <= allowed:
@@ -113,13 +113,13 @@ def _left(system: System, balance: Balance, rows: OutputRows, steps: np.ndarray,
     )
 
 
-def within_steps(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Whether each interval between instants lies inside one step of the solver, its ends strictly, shape (n - 1,)."""
+def within_steps(begin: np.ndarray, end: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Whether each interval between two instants lies inside one step of the solver, its ends strictly."""
     if not len(steps):
-        return np.zeros(max(len(t) - 1, 0), dtype=bool)
-    after, before = np.searchsorted(steps, t[:-1], side="right"), np.searchsorted(steps, t[1:], side="left")
+        return np.zeros(len(begin), dtype=bool)
+    after, before = np.searchsorted(steps, begin, side="right"), np.searchsorted(steps, end, side="left")
     last = len(steps) - 1
-    begun, ended = steps[np.maximum(after - 1, 0)] < t[:-1], steps[np.minimum(before, last)] > t[1:]
+    begun, ended = steps[np.maximum(after - 1, 0)] < begin, steps[np.minimum(before, last)] > end
     return (after == before) & (after > 0) & (before <= last) & begun & ended
 
 

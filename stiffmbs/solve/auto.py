@@ -15,7 +15,7 @@ import numpy as np
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from . import bdf, cost
-from .events.restart import restarted
+from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
 from .explicit.integration import Integration
@@ -119,7 +119,7 @@ class _Shared:
         times = self._grid.times
         if t == self._grid.start:
             return self._grid
-        return Grid(t, self._grid.end, None if times is None else np.append(t, times[times > t]))
+        return replace(self._grid, start=t, times=None if times is None else np.append(t, times[times > t]))
 
     def _explicit_leg(self, start: InitialValues, t: float) -> float | None:
         """Explicit steps from t on; the time at which they were left, or None at the end."""
@@ -177,7 +177,7 @@ class _Shared:
         """Whether BDF keeps ahead of explicit steps, over so many of its steps that its start does not count."""
         effort = self._effort()
         taken, way = effort.steps - self._before.steps, reached.t - self._pace.t
-        if taken < FAIR_TRIAL:
+        if taken < FAIR_TRIAL or self._is_corner(reached.t):
             return True
         spent, explicit = effort.cost - self._before.cost, way * self._explicit_cost
         self._pace, self._before = _Pace(reached.t), effort
@@ -185,6 +185,11 @@ class _Shared:
         if not pays:
             self._trial = cost.of_implicit_start(self._unknowns) + spent - explicit  # as seen: the way is not lost
         return pays
+
+    def _is_corner(self, t: float) -> bool:
+        """Whether inputs may still show at t what they were before: no integrator can start there."""
+        corners = self._mechanics.input_features(self._grid.start, self._grid.end).corners
+        return bool(np.any((corners >= just_before(t)) & (corners <= just_after(t))))
 
     def _effort(self) -> _Effort:
         """The implicit integrator's, but for the small steps after each of its starts at corners and events."""

@@ -19,7 +19,8 @@ from .events.chattering import Chattering
 from .events.divergence import refuse_beyond_sense
 from .events.limits import refuse_beyond_limits
 from .events.masked import HeldSwitches
-from .events.restart import restarted
+from .events.restart import just_after, restarted
+from .events.velocity_jumps import VelocityJumps
 from .formulations import FORMULATIONS
 from .ida.choice import chosen
 from .ida.engine import Engine, Reached
@@ -30,13 +31,6 @@ from .initial import InitialValues
 from .mechanics import Mechanics
 from .suspect import suspect
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
-
-MOST_JUMPS = 3
-"""Jumps of velocities that are told one by one."""
-INDISTINCT = 4 * float(np.finfo(float).eps)
-"""Part of a time within which IDA takes another one for the same."""
-WORTH_TELLING = 1e-2
-"""Change of a velocity at a corner, in parts of the largest, that is told."""
 
 SHORT = 8
 """Stretches of a run before its counters are looked at: reading them costs as much as some steps."""
@@ -105,11 +99,6 @@ def _failure(integrator: Integrator, reached: Reached) -> str:
     return reached.failure and reached.failure + suspect(integrator.mechanics, reached.t, q, u)
 
 
-def _just_after(t: float) -> float:
-    """The last instant that IDA cannot tell from t: it refuses to start towards one that is nearer than two roundings."""
-    return t + INDISTINCT * abs(t)
-
-
 def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:
     """Those of increasing times that lie after one and not after another."""
     first, end = np.searchsorted(times, (after, until), side="right")
@@ -163,15 +152,13 @@ class Integrator:
                 self._notes.append(
                     "contacts and other events that begin and end within one step are not seen this way; set max_step"
                 )
-        self._jumps: list[str] = []
+        self._jumps = VelocityJumps(mechanics)
         self._of_inputs = ""
         self._events = self._corners = 0
 
     def note(self) -> str:
         """What the user should know: how IDA runs, jumps of velocities, an order held down."""
-        more = len(self._jumps) - MOST_JUMPS
-        jumps = [*self._jumps[:MOST_JUMPS], *([f"and {more} more such jumps"] if more > 0 else [])]
-        return "; ".join(filter(None, (*self._notes, self._of_inputs, *jumps, self.engine.note())))
+        return "; ".join(filter(None, (*self._notes, self._of_inputs, self._jumps.sentence(), self.engine.note())))
 
     def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """q and u from a vector of unknowns."""
@@ -187,8 +174,8 @@ class Integrator:
         self._of_inputs = features.note
         chattering = Chattering(self.mechanics, grid.end, self.settings.rtol)
         self._held = HeldSwitches(self.mechanics, chattering)
-        for stop in (*features.corners.tolist(), grid.end):
-            while _just_after(t) < stop:
+        for stop in (*grid.with_stops(features.corners).tolist(), grid.end):
+            while just_after(t) < stop:
                 refuse_beyond_limits(self.mechanics, t, start.q, start.u)
                 self._begin(start, t)
                 chattering.begin(t, start.q, start.u)
@@ -206,9 +193,9 @@ class Integrator:
                     if self._held.any:
                         self._held.note(t, q, u, self.steps(), reached.fired)
                     if t >= stop:  # min(2*t, 1) still rises at its corner: what follows is told behind it
-                        t = _just_after(t)
+                        t = just_after(t)
                     start = restarted(self.mechanics, t, q, u)
-                    self._tell_jump(before, start.u - u)
+                    self._jumps.note(before, start.u - u)
                     yield from self._at_once(start, before, t, grid)
                     self._events += before < stop
                     self._corners += before >= stop
@@ -222,30 +209,18 @@ class Integrator:
         jumping = self._held.failed(reached.t, *self.split(reached.y))
         return replace(reached, failure=jumping or reached.failure)
 
-    def _tell_jump(self, t: float, change: np.ndarray) -> None:
-        """Note a change of velocities at a corner that no error of the integrator explains: a drive jumped."""
-        if not change.any():
-            return
-        k = int(np.argmax(np.abs(change)))
-        if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self.mechanics.state.u)))):
-            system = self.mechanics.system
-            name = system.name_of(k, system.of_body.velocities)
-            self._jumps.append(
-                f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); no force shows that blow"
-            )
-
     def _leg(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
         """Integrate from t to `stop` or to the first event."""
         if grid.times is None:
             return self.engine.by_steps(stop)
-        return self.engine.to_times(_within(grid.times, _just_after(t), stop), stop)
+        return self.engine.to_times(_within(grid.times, just_after(t), stop), stop)
 
     def _at_once(self, start: InitialValues, before: float, t: float, grid: Grid) -> Iterator[Reached]:
         """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs.
 
         Those up to `before` have been given.
         """
-        times = np.empty(0) if grid.times is None else _within(grid.times, before, _just_after(t))
+        times = np.empty(0) if grid.times is None else _within(grid.times, before, just_after(t))
         if len(times):
             state = self.equations.coordinates.state(start.q, start.u)
             yield Reached(times, np.tile(state, (len(times), 1)), t, state)

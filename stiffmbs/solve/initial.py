@@ -29,6 +29,8 @@ class InitialValues:
         What was changed of each body noticeably.
     size : float
         Of the mechanism as described, m.
+    notes : tuple of str
+        What there is to say of it, a sentence each.
     """
 
     q: np.ndarray
@@ -37,6 +39,7 @@ class InitialValues:
     lam: np.ndarray
     moved: tuple[Move, ...]
     size: float = 1.0
+    notes: tuple[str, ...] = ()
 
     def sentence(self) -> str:
         """What was changed, in words: the largest moves of bodies, and of their velocities; empty where nothing was."""

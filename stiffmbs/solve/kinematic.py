@@ -7,10 +7,11 @@ import time
 import numpy as np
 
 from ..compile.inputs.features import InputFeatures
+from ..compile.inputs.of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .events.limits import refuse_beyond_limits
-from .events.narrow_inputs import narrower_than_output
+from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .failures import FAILURES
 from .initial import InitialValues
 from .mechanics import Mechanics
@@ -67,7 +68,8 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     except KeyboardInterrupt:
         outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": time.perf_counter() - begun}
-    note = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
+    narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
+    note = narrow or hidden_peak(inputs_of(system), features, times)
     return Trajectory(*rows.stored, outcome, message, statistics, note=note)
 
 

@@ -84,7 +84,9 @@ def solve_pieces(
 
 def _up_to(grid: Grid, rows: int) -> Grid:
     assert grid.times is not None
-    return grid if rows == len(grid.times) else Grid(grid.start, float(grid.times[rows - 1]), grid.times[:rows])
+    if rows == len(grid.times):
+        return grid
+    return replace(grid, end=float(grid.times[rows - 1]), times=grid.times[:rows])
 
 
 def _share(watch: Watch, grid: Grid, k: int, count: int) -> Watch:

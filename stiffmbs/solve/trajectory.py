@@ -54,11 +54,21 @@ class History:
 
 @dataclass(frozen=True)
 class Grid:
-    """When to report: the ends of the run, and output times (ends included) or None for the solver's own steps."""
+    """When to report: the ends of the run, and output times (ends included) or None for the solver's own steps.
+
+    Solvers that choose their steps start anew at `stops`, as at corners of inputs.
+    """
 
     start: float
     end: float
     times: np.ndarray | None
+    stops: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+    def with_stops(self, corners: np.ndarray) -> np.ndarray:
+        """Where to start anew: at corners of inputs, and at the stops within the run."""
+        if not len(self.stops):
+            return corners
+        return np.union1d(corners, self.stops[(self.stops > self.start) & (self.stops < self.end)])
 
 
 @dataclass(frozen=True)

@@ -118,11 +118,13 @@ class _Maker:
     def slow(self) -> Made:
         """Something smooth that does not vanish."""
         w, phase = self.rng.uniform(0.2, 6.0), self.rng.uniform(0, 6)
-        kind = self.rng.choice(["sine", "ramp", "decay", "rectified"])
+        kind = self.rng.choice(["sine", "ramp", "decay", "growth", "rectified"])
         if kind == "ramp":
             return self.simple(f"(0.2 + t/{END})", lambda t: 0.2 + t / END)
         if kind == "decay":
             return self.simple(f"exp(-{self.number(w)}*t)", lambda t: np.exp(-w * t))
+        if kind == "growth":
+            return self.simple(f"exp({self.number(w)}*(t - {END}))", lambda t: np.exp(w * (t - END)))
         if kind == "rectified":
             zeros = (np.arange(0, 30) * np.pi - phase) / w
             return self.made(
@@ -187,28 +189,27 @@ class _Maker:
         x, y = x[keep], y[keep]
         how = {} if kind == "spline" else {kind: True}
         self.tables[name] = {"table": np.column_stack([x, y]).tolist(), **how}
-        text, argument = self.argument()
-        knots = np.concatenate([_passed(argument, knot) for knot in x[1:-1]])
+        text, argument, bends = self.argument()
+        knots = np.concatenate([bends, *(_passed(argument, knot) for knot in x[1:-1])])
         around = (knots[:, None] + w * np.linspace(-1, 1, 9)).ravel()
         values = _curve(kind, x, y)
         return self.made(f"{name}({text})", lambda t: values(argument(t)), np.concatenate([knots, around]))
 
-    def argument(self) -> tuple[str, Function]:
-        """Something that does not fall with time."""
+    def argument(self) -> tuple[str, Function, list[float]]:
+        """Something that does not fall with time, and when it bends or jumps."""
         c = self.rng.uniform(0.3, 0.95) * END
-        kinds: list[tuple[str, Function]] = [
-            ("t", lambda t: t),
-            (f"min(t, {self.number(c)})", lambda t: np.minimum(t, c)),
-            (f"max(t - {self.number(c / 10)}, 0)", lambda t: np.maximum(t - c / 10, 0)),
-            (f"t^2/{self.number(c)}", lambda t: t**2 / c),
-            (f"{END}*step(t, 1, 0, {self.number(c)}, 1)", lambda t: END * _ramp((t - 1) / (c - 1))),
-            (f"{END}*(1 - exp(-t/2))", lambda t: END * (1 - np.exp(-t / 2))),
-            ("(t + 0.9*sin(t))", lambda t: t + 0.9 * np.sin(t)),
+        kinds: list[tuple[str, Function, list[float]]] = [
+            ("t", lambda t: t, []),
+            (f"min(t, {self.number(c)})", lambda t: np.minimum(t, c), [c]),
+            (f"max(t - {self.number(c / 10)}, 0)", lambda t: np.maximum(t - c / 10, 0), [c / 10]),
+            (f"t^2/{self.number(c)}", lambda t: t**2 / c, []),
+            (f"{END}*step(t, 1, 0, {self.number(c)}, 1)", lambda t: END * _ramp((t - 1) / (c - 1)), [1.0, c]),
+            (f"{END}*(1 - exp(-t/2))", lambda t: END * (1 - np.exp(-t / 2)), []),
+            ("(t + 0.9*sin(t))", lambda t: t + 0.9 * np.sin(t), []),
         ]
         if not self.continuous:
-            kinds.append(
-                (f"branch(t - {self.number(c / 2)}, 0, {self.number(c / 2)}, t)", lambda t: np.where(t < c / 2, 0.0, t))
-            )
+            half = self.number(c / 2)
+            kinds.append((f"branch(t - {half}, 0, {half}, t)", lambda t: np.where(t < c / 2, 0.0, t), [c / 2]))
         return kinds[int(self.rng.integers(len(kinds)))]
 
 

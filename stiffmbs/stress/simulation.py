@@ -53,7 +53,7 @@ def _judged(
     names: tuple[str, ...], noted: tuple[str, ...], how: dict[str, Any],
 ) -> Verdict:  # fmt: skip
     try:
-        solution = run(scene(), watch=_patience(), **how)
+        solution = run(scene(), watch=patience(PATIENCE), **how)
     except StiffmbsError as refusal:
         return told(str(refusal), names)
     found = error(solution)
@@ -67,12 +67,12 @@ def _judged(
     return measured(found, allowed, f"{solution.solver['steps']} steps" + (f"; {notes}" if notes else ""))
 
 
-def _patience() -> Watch:
-    """Interrupts a run, as its user would, when it takes too long."""
+def patience(seconds: float) -> Watch:
+    """Interrupts a run, as its user would, when it takes longer than that from now."""
     begun = time.perf_counter()
 
     def watch(t: float) -> None:
-        if time.perf_counter() - begun > PATIENCE:
+        if time.perf_counter() - begun > seconds:
             raise KeyboardInterrupt
 
     return watch

@@ -45,8 +45,10 @@ def shorter_step(first: Solution) -> float:
 
 
 def has_fixed_steps(settings: RunSettings) -> bool:
+    """Whether a run with these settings takes steps of one length."""
     return settings.solver == "projected" and settings.scheme not in ADAPTIVE
 
 
 def name_of_solver(solver: str, scheme: str) -> str:
+    """What a message calls a solver: the projected integrator by its scheme."""
     return scheme if solver == "projected" else solver

@@ -108,6 +108,7 @@ def test_a_sleeve_is_turned_and_pushed():
     np.testing.assert_allclose(solution["MOTION_2.fz"], 2 * 2, atol=1e-6)
 
 
+@pytest.mark.long
 def test_three_motors_lead_the_body_123_angles():
     """B1, B2, B3 against the axes of J: the body's quaternion is that of turns about x, the new y and the new z."""
     motions = "".join(f"MOTION/{k}, I=21, J=1, B{k}, FUNC={0.2 * k}+{0.3 * k}*TIME\n" for k in (1, 2, 3))
@@ -157,6 +158,7 @@ def test_couplers_share_a_force():
     np.testing.assert_allclose(solution["PART_2.wz"], fall * solution.t / 0.2, atol=1e-5)
 
 
+@pytest.mark.long
 def test_a_coupler_of_three_keeps_what_is_drawn():
     """Wheels that turn over several times, one of which is drawn turned by 20 degrees."""
     wheels = "".join(
@@ -176,6 +178,7 @@ REQUEST/9, F2=AZ(20,12)-2*(AZ(30,13)-20D)+3*AZ(40,14)\\ F3=AZ(30,13)
     assert np.abs(solution["REQUEST_9.f3"]).max() > 2 * np.pi
 
 
+@pytest.mark.long
 def test_a_rack_pulls_a_pinion():
     """The rack's line is 0.2 m below the pinion's axis: turned forwards the pinion carries it along +x."""
     text = (
@@ -257,6 +260,7 @@ MARKER/19, PART=1, FLOATING
     np.testing.assert_allclose(solution["PART_4.wy"], (3 + gained) / 0.5, atol=1e-6)
 
 
+@pytest.mark.long
 def test_action_and_reaction_between_two_parts():
     """Whatever a GFORCE, an SFORCE, a bushing and a field do between two free parts, their momenta are kept."""
     text = (
@@ -370,7 +374,14 @@ SLUG = LBF / FT
     "units, force, mass, length, time",
     [
         ("FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND", 1, 1, 1e-3, 1),
-        ("FORCE=KNEWTON, MASS=TONNE, LENGTH=CENTIMETER, TIME=MILLISECOND", 1e3, 1e3, 1e-2, 1e-3),
+        pytest.param(
+            "FORCE=KNEWTON, MASS=TONNE, LENGTH=CENTIMETER, TIME=MILLISECOND",
+            1e3,
+            1e3,
+            1e-2,
+            1e-3,
+            marks=pytest.mark.long,
+        ),
         ("FORCE=POUND_FORCE, MASS=SLUG, LENGTH=FOOT, TIME=SECOND", LBF, SLUG, FT, 1),
         ("SYSTEM=CGS", 1e-5, 1e-3, 1e-2, 1),
     ],
@@ -441,7 +452,14 @@ END
     np.testing.assert_allclose(solution["PART_3.x"], exact[0], atol=1e-6)
 
 
-@pytest.mark.parametrize("function", ["DM(20,11)-2-0.1*SIN(5*TIME)", "DM(20,11)-2.0+0*TIME", "DM(20,11)**2-4"])
+@pytest.mark.parametrize(
+    "function",
+    [
+        "DM(20,11)-2-0.1*SIN(5*TIME)",
+        pytest.param("DM(20,11)-2.0+0*TIME", marks=pytest.mark.long),
+        pytest.param("DM(20,11)**2-4", marks=pytest.mark.long),
+    ],
+)
 def test_a_general_constraint_acts_on_its_marker(function):
     """A stone on a rope whose length is a function: the pull on marker I, on ground, is along the rope."""
     text = (

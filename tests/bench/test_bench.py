@@ -52,7 +52,9 @@ def test_starts_by_hand_are_consistent(name):
     run.close()
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long if name == "andrews" else ()) for name in PROBLEMS]
+)
 def test_contestants_agree_with_the_reference(name):
     problem = PROBLEMS[name]
     reference = problem.reference()
@@ -103,11 +105,12 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-12, atol=1e-12, err_msg=name)
 
 
+LONG_LOOKS = ("elements_in_space", "chain_scaling", "stiffness")
 WITHOUT_YARDSTICK = ("chain_in_space", "elements_in_space")
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.long if name == "elements_in_space" else ()) for name in FAMILIES]
+    "name", [pytest.param(name, marks=pytest.mark.long if name in LONG_LOOKS else ()) for name in FAMILIES]
 )
 def test_quick_look_in_json(name):
     result = CliRunner().invoke(main, ["bench", "--quick", "--json", name])

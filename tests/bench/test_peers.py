@@ -32,7 +32,9 @@ LOOSE = {"lambdify and NumPy": 1.0, "Exudyn generalised-alpha": 5e-3}
 NUMPY = Maths(np.sin, np.cos, np.sqrt, min, max)
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long if name == "half_car" else ()) for name in PROBLEMS]
+)
 def test_all_tools_solve_the_same_problem(name):
     problem = PROBLEMS[name]
     reference = problem.reference()

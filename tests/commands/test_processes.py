@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -13,6 +12,22 @@ import pytest
 import stiffmbs
 
 COMMAND = [sys.executable, "-m", "stiffmbs", "run"]
+TELLING = """
+import sys
+from stiffmbs.__main__ import start
+from stiffmbs.commands.progress import ProgressBar
+
+told = []
+
+def tell(bar, t):
+    if t > 1 and not told:
+        told.append(t)
+        print("under way", file=sys.stderr, flush=True)
+
+ProgressBar.__call__ = tell
+start()
+"""
+"""The command, which says on standard error when it has come beyond 1 s."""
 
 
 def environment(cache):
@@ -30,9 +45,12 @@ def test_interruption_keeps_what_was_computed(examples, tmp_path, solver):
     stiffmbs.run(stiffmbs.load_scene(scene), duration=0.01, solver=solver)  # compiled before
     options = ["--duration", "100000", "--solver", solver, "--set", "run.output=0.1", "--json", "-o", str(results)]
     process = subprocess.Popen(
-        [*COMMAND, str(scene), *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_heed_interrupts
+        [sys.executable, "-c", TELLING, "run", str(scene), *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=_heed_interrupts,
     )
-    time.sleep(3)
+    assert process.stderr.readline() == b"under way\n"
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     report = json.loads(out)

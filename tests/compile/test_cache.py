@@ -69,6 +69,7 @@ def test_compiled_code_is_read_back(directory, monkeypatch):
     assert len(list(cache.own_directory().iterdir())) == 1
 
 
+@pytest.mark.long
 def test_a_run_on_a_damaged_cache_gives_the_same_numbers(examples, directory, tmp_path):
     command = ["-m", "stiffmbs", "run", str(examples / "bar_pendulum.yaml"), "--duration", "0.1", "--json"]
     first = run_in_a_process(command, directory, cwd=tmp_path)

@@ -142,6 +142,7 @@ def test_code_of_another_function_or_garbage_under_a_right_code_is_compiled_anew
         assert cache.read(name) != content
 
 
+@pytest.mark.long
 def test_a_run_on_a_cache_of_entries_in_each_other_s_places_gives_the_same_numbers(examples, directory, tmp_path):
     command = [
         sys.executable,

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.integrate import quad
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 import stiffmbs
@@ -74,8 +75,13 @@ INPUTS = {
 }
 
 
+LONG = ("noisy(t)", "akima(t)")
+
+
 @pytest.mark.parametrize("how", WAYS, ids=str)
-@pytest.mark.parametrize("force", INPUTS)
+@pytest.mark.parametrize(
+    "force", [pytest.param(force, marks=pytest.mark.long if force in LONG else ()) for force in INPUTS]
+)
 def test_every_solver_sees_a_short_input_after_a_long_rest(force, how):
     tables, impulse = INPUTS[force]
     solution = stiffmbs.run(scene(force, **tables), duration=10.0, points=11, rtol=1e-6, **how)
@@ -220,6 +226,10 @@ def test_a_kinematic_peak_between_output_points_is_told_and_found_by_verify():
     peak = 2 * 2e-3 / 1e-6
     assert found.errors["motor.fx"].least == pytest.approx(peak, rel=0.3)
     assert any("peaks lie between the output instants" in note for note in found.notes)
+    wide = stiffmbs.run(driven("1/(1 + ((t - 8.25)/0.49)^2)"), duration=10.0, points=21, solver="kinematic")
+    assert any("a peak of 1 at t = 8.25 s, between output points" in note for note in wide.notes)
+    bent = stiffmbs.run(driven("max(0, 1 - abs(t - 8.25))"), duration=10.0, points=21, solver="kinematic")
+    assert any("a peak of 1 at t = 8.25 s, between output points" in note for note in bent.notes)
     quiet = stiffmbs.run(driven("1e-3*sin(t)"), **how)
     assert not any("output points" in note for note in quiet.notes)
 
@@ -239,3 +249,30 @@ def test_fixed_steps_tell_of_shorter_features():
 def test_a_drive_by_the_root_of_a_square_turns_round():
     solution = stiffmbs.run(driven("sqrt((t - 0.52)^2)"), duration=1.0, points=11, solver="kinematic")
     np.testing.assert_allclose(solution["b.x"], np.abs(solution.t - 0.52), atol=1e-9)
+
+
+DRIVES = {
+    "min(2*t, 1)": (lambda t: np.minimum(2 * t, 1), [0.5]),
+    "max(0, 2*t - 18.5)": (lambda t: np.maximum(0, 2 * t - 18.5), [9.25]),
+    "abs(sin(0.5*pi*t))": (lambda t: np.abs(np.sin(0.5 * np.pi * t)), [2, 4, 6, 8]),
+    "sqrt((t - 7.3)^2) - sqrt((t - 7.83)^2)": (lambda t: np.abs(t - 7.3) - np.abs(t - 7.83), [7.3, 7.83]),
+}
+
+
+@pytest.mark.parametrize("how", [*WAYS, {"solver": "auto"}], ids=str)
+@pytest.mark.parametrize("position", DRIVES)
+def test_behind_a_corner_a_drive_leads_with_its_new_velocity(position, how):
+    """It pushes a free mass, and no force tells in which steps its velocity was the old one."""
+    given = {
+        "gravity": [0, 0],
+        "bodies": {"b": {"mass": 2, "inertia": 1}, "g": {"mass": 1, "inertia": 1}},
+        "joints": {
+            "rail": {"type": "prismatic", "i": "b", "j": "ground"},
+            "motor": {"type": "drive", "joint": "rail", "position": position},
+        },
+        "forces": {"f": {"type": "force", "i": "g", "force": ["b.x", 0]}},
+    }
+    solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(given)), duration=10.0, points=11, rtol=1e-8, **how)
+    values, corners = DRIVES[position]
+    assert solution["g.vx"][-1] == pytest.approx(quad(values, 0, 10, points=corners)[0], abs=1e-5)
+    assert any("a drive makes velocities jump" in note for note in solution.notes)

@@ -84,7 +84,18 @@ CONSERVATIVE = {
 }
 
 
-@pytest.mark.parametrize("name", INNER)
+LONG = {
+    "force_in_axes_of_b", "coupled_bushing", "bushing_free_about_x", "bushing_free_about_y", "bushing_free_about_z", "bushing_by_laws",
+    "field", "sphere_contact", "hollow_contact",
+}  # fmt: skip
+"""Variants of other cases, and what takes seconds to compile."""
+
+
+def cases(names):
+    return [pytest.param(name, marks=pytest.mark.long if name in LONG else ()) for name in names]
+
+
+@pytest.mark.parametrize("name", cases(INNER))
 def test_action_is_reaction_in_force_and_in_torque(name):
     element, fields = INNER[name]
     for seed in range(10):
@@ -93,7 +104,7 @@ def test_action_is_reaction_in_force_and_in_torque(name):
         assert np.max(np.abs(found.sum(axis=0))) < 1e-13 * np.max(np.abs(found))
 
 
-@pytest.mark.parametrize("name", CONSERVATIVE)
+@pytest.mark.parametrize("name", cases(CONSERVATIVE))
 def test_energy_and_momenta_are_kept(name):
     element, fields = CONSERVATIVE[name]
     model = two_bodies(element, 3, **fields)
@@ -294,7 +305,7 @@ def _elastic_moments(seed, stiffness):
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-3, 0.4, 1.0, 2.5, 3.6])
-@pytest.mark.parametrize("free", [None, 0, 1, 2])
+@pytest.mark.parametrize("free", [None, 0, *(pytest.param(k, marks=pytest.mark.long) for k in (1, 2))])
 def test_derivatives_of_a_coupled_bushing_at_small_and_large_rotations(angle, free):
     """On both sides of where the series of the rotation vector gives way to its closed form; whole, and free about an axis."""
     kept = [k for k in range(6) if free is None or k != 3 + free]
@@ -419,7 +430,9 @@ def test_what_is_wrong_with_a_beam_is_said():
         spatial.Beam(i="a", j="b", **SECTION | {"area": 0})
 
 
-@pytest.mark.parametrize("surface", CLOSED)
+@pytest.mark.parametrize(
+    "surface", [pytest.param(name, marks=() if name == "plane" else pytest.mark.long) for name in CLOSED]
+)
 def test_derivatives_of_a_closed_contact_that_slides(surface):
     fields = CLOSED[surface] | {"dissipation": 0.1, "friction": 0.3, "static_friction": 0.5, "smooth_velocity": 0.5}
     state = State(stiffmbs.compile_model(two_bodies(spatial.SphereContact, 4, **fields).data()))

@@ -33,7 +33,7 @@ def sled(**how):
 
 
 @pytest.mark.parametrize("law", ENDS)
-@pytest.mark.parametrize("field", ["force", "position", "velocity"])
+@pytest.mark.parametrize("field", ["force", "position", pytest.param("velocity", marks=pytest.mark.long)])
 def test_every_solver_says_where_an_input_ends(field, law):
     messages = set()
     for how in [*SOLVERS, *([{"solver": "kinematic"}] if field == "position" else [])]:

@@ -78,6 +78,7 @@ DURATIONS = {
     "half_car": 0.3, "stick_slip": 0.8, "bouncing_ball": 0.6, "cam_follower": 0.05, "dead_centres": 0.3,
     "elastic_bearing": 0.01,
 }  # fmt: skip
+LONG = ("half_car", "stick_slip")
 STIFF = ("elastic_bearing", "half_car", "cam_follower", "stick_slip")
 WITHOUT_POTENTIAL = ("andrews",)
 """A constant torque has a potential in the plane, and none in space."""
@@ -86,7 +87,10 @@ WITHOUT_POTENTIAL = ("andrews",)
 def runs():
     for path in PLANAR:
         kinematic = stiffmbs.load_scene(path).run.solver == "kinematic"
-        yield pytest.param(path, {} if kinematic else BDF, id=f"{path.stem}-{'kinematic' if kinematic else 'bdf'}")
+        long = pytest.mark.long if path.stem in LONG else ()
+        yield pytest.param(
+            path, {} if kinematic else BDF, id=f"{path.stem}-{'kinematic' if kinematic else 'bdf'}", marks=long
+        )
         if not kinematic and path.stem not in STIFF:
             yield pytest.param(path, DOP853, id=f"{path.stem}-dop853")
 

@@ -103,13 +103,20 @@ def chain_links(count, L=0.1, mass=0.1, width=0.02):
     return [Link(axis, (L if k else 0, 0, 0), center, mass, inertia, k - 1) for k, axis in enumerate(axes)]
 
 
+@pytest.fixture(scope="module")
+def four_rods():
+    """Times, and the poses of four rods then by their four hinge angles."""
+    links, times = chain_links(4), np.linspace(0, 1, 21)
+    q, _ = motion(links, times, [0, 0, 0, 0], [5, 0, 0, 0])
+    return times, [poses(links, angles) for angles in q.T]
+
+
 @SOLVERS
-def test_a_chain_of_hinges_in_space(solved, settings):
+def test_a_chain_of_hinges_in_space(solved, four_rods, settings):
     """Four rods against four hinge angles."""
+    times, at = four_rods
     solution = solved("spatial_chain", ("N", "4"), duration=1.0, points=21, **settings)
-    links = chain_links(4)
-    q, _ = motion(links, solution.time, [0, 0, 0, 0], [5, 0, 0, 0])
-    at = [poses(links, angles) for angles in q.T]
+    np.testing.assert_allclose(solution.time, times, atol=1e-14)
     for k in range(4):
         np.testing.assert_allclose(vector(solution, f"link{k + 1}"), [pose[k].center for pose in at], atol=1e-8)
         np.testing.assert_allclose(axes(solution, f"link{k + 1}"), [pose[k].turn for pose in at], atol=1e-7)

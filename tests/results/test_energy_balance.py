@@ -97,8 +97,8 @@ def test_a_power_that_one_step_does_not_see_is_told():
     """Work between instants inside one step is certain; where steps end in between it may be anything."""
     steps = np.array([0.0, 1.0, 4.0])
     t = np.array([0.5, 1.0, 1.5, 2.0, 5.0])
-    assert within_steps(t, steps).tolist() == [False, False, True, False]
-    assert not within_steps(t, np.empty(0)).any()
+    assert within_steps(t[:-1], t[1:], steps).tolist() == [False, False, True, False]
+    assert not within_steps(t[:-1], t[1:], np.empty(0)).any()
 
 
 def test_intervals_of_many_steps_do_not_count_as_open():

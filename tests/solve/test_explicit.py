@@ -1,6 +1,7 @@
 """Explicit schemes with projection: their orders, dense output, constraints, and what they say of stiff scenes."""
 
 import itertools
+import json
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from stiffmbs.compile.machine.routines import Routine
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.explicit import SCHEMES
 from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.stress.parallelogram import parallelogram, swing_error
 from stiffmbs.stress.random_tree import random_tree
 
 ADAPTIVE = ["dopri5", "dop853"]
@@ -236,3 +238,36 @@ def test_one_plate_with_many_pendulums_is_left_to_the_whole_system():
     job = prepare(model, duration=0.1, points=3, solver="projected", scheme="dop853")
     assert not job.mechanics.eliminated.serves
     assert job.integrate().outcome is Outcome.DONE
+
+
+@pytest.mark.parametrize("scheme", ADAPTIVE)
+def test_between_long_steps_at_rest_nothing_moves(scheme):
+    """A load of 1e-15 N on a damped spring: steps at rest are far longer than stability allows, and amplify rounding."""
+    law = "-1e4*mass.x - 70*mass.vx + 1e-15*(1 + sin(t))"
+    given = {
+        "gravity": [0, 0],
+        "bodies": {"mass": {"mass": 1, "inertia": 1}},
+        "forces": {"load": {"type": "force", "i": "mass", "force": [law, 0]}},
+    }
+    how = {"duration": 20.0, "points": 2001, "rtol": 1e-6}
+    solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(given)), solver="projected", scheme=scheme, **how)
+    assert np.max(np.abs(solution["mass.vx"])) < 1e-2
+
+
+@pytest.mark.parametrize("scheme", ADAPTIVE)
+def test_flat_poses_are_passed_wherever_steps_end(scheme):
+    """Some step in every run ends beside a flat pose: one in eight runs stopped there, depending on rounding (dop853)."""
+    how = {"duration": 3.0, "points": 31, "rtol": 1e-8, "solver": "projected", "scheme": scheme}
+    solutions = [stiffmbs.run(parallelogram(omega=float(omega)), **how) for omega in np.linspace(8.5, 45, 60)]
+    done = [solution for solution in solutions if solution.outcome is Outcome.DONE]
+    assert len(done) >= 58
+    assert max(swing_error(solution) for solution in done) < 1e-5
+
+
+def test_a_tighter_tolerance_is_better_where_friction_rises_within_a_step(examples):
+    """Slip ends within 0.2 mm/s: orders 3 and 5 told an error 300 times too small of a step, and rtol 1e-10 was worse than 1e-8."""
+    scene = stiffmbs.load_scene(examples / "stick_slip.yaml")
+    how = {"duration": 1.0, "points": 401, "solver": "projected", "scheme": "dop853"}
+    best, *others = (stiffmbs.run(scene, rtol=rtol, **how)["block.x"] for rtol in (1e-13, 1e-8, 1e-10))
+    loose, tight = (np.abs(x - best).max() for x in others)
+    assert tight < min(loose, 1e-9)

@@ -53,6 +53,7 @@ def test_results_in_files_are_those_in_memory(examples, monkeypatch, tmp_path):
             np.testing.assert_array_equal(table[column[name]], found[name])
 
 
+@pytest.mark.long
 def test_two_million_points_take_less_memory_than_their_rows():
     """The rows of one pinned bar would be 30 numbers each: 480 MB."""
     program = (

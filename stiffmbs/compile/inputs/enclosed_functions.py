@@ -26,7 +26,10 @@ def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
     """cosh or sinh; their derivatives are each other."""
 
     def of(x: Enclosure) -> Enclosure:
+        """The function of an enclosure."""
+
         def outer(k: int) -> Range:
+            """The range of the k-th Taylor coefficient."""
             return (between_turns(np.cosh, x.value, (0.0,)) if even == (k % 2 == 0) else np.sinh(x.value)) / FACTORIALS[
                 k
             ]
@@ -42,6 +45,7 @@ def tanh(x: Enclosure) -> Enclosure:
     rate = between_turns(lambda z: 1 / np.cosh(z) ** 2, x.value, (0.0,))
 
     def outer(k: int) -> Range:
+        """The range of the k-th Taylor coefficient."""
         third = scaled(1 / 3, 3 * power_range(T, 2) - 1)
         return (T, rate, -product(T, rate)[::-1], product(rate, third))[k]
 
@@ -52,6 +56,7 @@ def atan(x: Enclosure) -> Enclosure:
     """With D = 1/(1 + x^2): D, -x D^2, (4 x^2 D - 1) D^2 / 3 ... of a circle's angle."""
 
     def outer(k: int) -> Range:
+        """The range of the k-th Taylor coefficient."""
         if k == 0:
             return np.arctan(x.value)
         # x = tan(a): the derivatives are cos^2 a, -sin a cos^3 a, -(1 - 4 sin^2 a) cos^4 a / 3, which turn at fixed angles
@@ -74,6 +79,7 @@ def asin(x: Enclosure) -> Enclosure:
     P = 1.0 - squared[::-1]
 
     def outer(k: int) -> Range:
+        """The range of the k-th Taylor coefficient."""
         if k == 0:
             return np.where((x.value[1] < -1) | (x.value[0] > 1), np.nan, np.arcsin(inside))
         if k == 1:
@@ -102,6 +108,7 @@ def _cubic_ramp(z: Enclosure) -> Enclosure:
     inside, crosses, beyond = _within(z.value)
 
     def outer(k: int) -> Range:
+        """The range of the k-th Taylor coefficient."""
         if k == 0:
             return inside**2 * (3 - 2 * inside)
         if k == 1:
@@ -118,6 +125,7 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
     turn = np.sqrt(3) / 6
 
     def outer(k: int) -> Range:
+        """The range of the k-th Taylor coefficient."""
         if k == 0:
             return inside**3 * (10 - 15 * inside + 6 * inside**2)
         if k == 1:
@@ -131,10 +139,22 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
 
 
 def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic with flat ends.
+
+    Parameters
+    ----------
+    x, x0, h0, x1, h1 : Enclosure or float
+
+    Returns
+    -------
+    Enclosure or float
+        A number where x, x0 and x1, h0 and h1 are numbers.
+    """
     return _step(x, x0, h0, x1, h1, step_value, _cubic_ramp)
 
 
 def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    """Adams' STEP5: as `step`, by a quintic without curvature at its ends."""
     return _step(x, x0, h0, x1, h1, step5_value, _quintic_ramp)
 
 

@@ -182,12 +182,16 @@ def either(parts: list[Enclosure], jumps: bool) -> Enclosure:
 
 
 def exp(x: Enclosure) -> Enclosure:
+    """The exponential; all its Taylor coefficients are it over a factorial."""
     values = np.exp(x.value)
     return x.composed(lambda k: values / (1.0, 1.0, 2.0, 6.0)[k])
 
 
 def log(x: Enclosure) -> Enclosure:
+    """The natural logarithm; NaN where the whole range is below zero."""
+
     def outer(k: int) -> Range:
+        """The range of the k-th Taylor coefficient."""
         if k == 0:
             return np.log(np.where(x.value[1] < 0, np.nan, np.maximum(x.value, 0.0)))
         return scaled((-1.0) ** (k + 1) / k, real_power_range(x.value, -k))
@@ -196,6 +200,7 @@ def log(x: Enclosure) -> Enclosure:
 
 
 def absolute(x: Enclosure) -> Enclosure:
+    """The absolute value; where the range of x holds zero inside, its slope has the range of both signs."""
     straddles = (x.value[0] < 0) & (x.value[1] > 0)
     one_sided = x.where(x.value[0] >= 0, -x)
     both = unbounded(power_range(x.value, 2) ** 0.5, x.order, hull(x.slope, -x.slope[::-1]))
@@ -203,6 +208,7 @@ def absolute(x: Enclosure) -> Enclosure:
 
 
 def sign(x: Enclosure) -> Enclosure:
+    """-1, 0 or 1; without bounds of its derivatives where x may be zero."""
     return unbounded(np.sign(x.value), x.order).where(around_zero(x.value), Enclosure((np.sign(x.value),), x.order))
 
 
@@ -210,6 +216,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
     """min or max: one of them where its range is beyond the other's, else whichever."""
 
     def pair(a: Enclosure, b: Enclosure) -> Enclosure:
+        """The choice between two."""
         low, high = (a, b) if greatest else (b, a)
         value = np.maximum(a.value, b.value) if greatest else np.minimum(a.value, b.value)
         open_one = unbounded(value, a.order, hull(a.slope, b.slope))
@@ -217,6 +224,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
         return settled.where((a.value[1] <= b.value[0]) | (b.value[1] <= a.value[0]), open_one)
 
     def of(*parts: Any) -> Enclosure:
+        """The choice between any number of enclosures and numbers, one enclosure at the least."""
         known = next(part for part in parts if isinstance(part, Enclosure))
         chosen, *others = (known.constant(part) for part in parts)
         for other in others:

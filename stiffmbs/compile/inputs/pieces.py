@@ -47,12 +47,15 @@ class _Pieces:
 
     @property
     def length(self) -> np.ndarray:
+        """The length of each, s."""
         return self.high - self.low
 
     def where(self, which: np.ndarray) -> _Pieces:
+        """Those that are chosen."""
         return _Pieces(self.low[which], self.high[which], self.change[which])
 
     def halved(self) -> _Pieces:
+        """Twice as many of half the length: the first halves, then the second ones."""
         middle = (self.low + self.high) / 2
         return _Pieces(
             np.concatenate([self.low, middle]), np.concatenate([middle, self.high]), np.tile(self.change / 2, 2)

@@ -90,7 +90,7 @@ ELIMINATED: Layout = {
     "product_end": INDICES, "product_first": INDICES, "product_second": INDICES,
     "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
     "scale": FLOATS, "j_scale": FLOATS, "j": FLOATS,
-    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS, "most_kept": FLOATS,
+    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS, "kept": FLOATS, "most_kept": FLOATS,
 }  # fmt: skip
 """J M^-1 J^T and its factors by flat lists (`stiffmbs.solve.linear.eliminated`)."""
 
@@ -106,10 +106,10 @@ STEP_BOUND: Layout = {"n": INT, "place": INTS, "starts": FLOATS, "longest": FLOA
 """The longest steps that see what the inputs do (`stiffmbs.solve.events.step_bound`); n is 0 where nothing bounds a step."""
 
 EXPLICIT: Layout = {
-    "mechanics": INTS, "eliminated": INTS, "eliminates": INT, "scheme": INTS, "n": INT, "project": INT, "tolerance": FLOATS,
-    "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS, "step_bound": INTS,
+    "mechanics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
+    "tolerance": FLOATS, "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS, "step_bound": INTS,
     "t": FLOATS, "t_before": FLOATS, "span": FLOATS, "h": FLOATS, "last_error": FLOATS,
-    "n_switches": INT, "n_events": INT, "sides": FLOATS, "at_event": INTS, "watch": INTS,
+    "n_switches": INT, "n_events": INT, "sides": FLOATS, "at_event": INTS, "uncertain": INTS, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INTS,

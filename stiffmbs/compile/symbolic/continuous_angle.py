@@ -36,6 +36,9 @@ def counter(k: int) -> sp.Symbol:
 def counting_rate(angle: CountedAngle, e: Any) -> sp.Expr:
     """The rate of a counter: that of its angle, (c s' - s c')/(s^2 + c^2), bounded where s and c both vanish.
 
+    The eighth power leaves the rate as it is outside of the pole: half a turn too much or too little, gathered over any number
+    of turns, would put the angle in a wrong one.
+
     Parameters
     ----------
     angle : CountedAngle
@@ -43,4 +46,4 @@ def counting_rate(angle: CountedAngle, e: Any) -> sp.Expr:
     """
     sine, cosine, _ = angle.args
     squares = e.named(sine**2 + cosine**2)
-    return (cosine * e.rate(sine) - sine * e.rate(cosine)) * squares / (squares**2 + POLE**2)
+    return (cosine * e.rate(sine) - sine * e.rate(cosine)) * squares**7 / (squares**8 + POLE**8)

@@ -81,34 +81,44 @@ class Magnitude(CorneredBase):
         return Sign(x) * partial(x)
 
 
-class Greater(CorneredBase):
-    """The greater of two, the first where they are equal, with the derivative of that one."""
+class Extreme(CorneredBase):
+    """One of two, the first where they are equal, with the derivative of that one.
+
+    Attributes
+    ----------
+    of_numbers : callable
+        SymPy's function of the same name.
+    direction : int
+        1 where the greater is chosen, -1 where the less.
+    """
+
+    nargs = 2
+    of_numbers: ClassVar[Callable[..., sp.Expr]]
+    direction: ClassVar[int]
+
+    @classmethod
+    def eval(cls, a: sp.Expr, b: sp.Expr) -> sp.Expr | None:
+        return a if a == b else cls.of_numbers(a, b) if a.is_Number and b.is_Number else None
+
+    def by_parts(self, partial: Partial) -> sp.Expr:
+        a, b = self.args
+        return Chosen(self.direction * (a - b), partial(b), partial(a), partial(a))
+
+
+class Greater(Extreme):
+    """The greater of two."""
 
     native = "greater"
-    nargs = 2
-
-    @classmethod
-    def eval(cls, a: sp.Expr, b: sp.Expr) -> sp.Expr | None:
-        return a if a == b else sp.Max(a, b) if a.is_Number and b.is_Number else None
-
-    def by_parts(self, partial: Partial) -> sp.Expr:
-        a, b = self.args
-        return Chosen(a - b, partial(b), partial(a), partial(a))
+    of_numbers = sp.Max
+    direction = 1
 
 
-class Less(CorneredBase):
-    """The less of two, the first where they are equal, with the derivative of that one."""
+class Less(Extreme):
+    """The less of two."""
 
     native = "less"
-    nargs = 2
-
-    @classmethod
-    def eval(cls, a: sp.Expr, b: sp.Expr) -> sp.Expr | None:
-        return a if a == b else sp.Min(a, b) if a.is_Number and b.is_Number else None
-
-    def by_parts(self, partial: Partial) -> sp.Expr:
-        a, b = self.args
-        return Chosen(a - b, partial(a), partial(a), partial(b))
+    of_numbers = sp.Min
+    direction = -1
 
 
 class Inside(CorneredBase):

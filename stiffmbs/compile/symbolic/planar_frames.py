@@ -20,14 +20,17 @@ class BodyFrame:
 
     @cached_property
     def q(self) -> tuple[sp.Symbol, ...]:
+        """Its coordinates."""
         return sp.symbols(f"x{self.slot} y{self.slot} phi{self.slot}", real=True)
 
     @cached_property
     def u(self) -> tuple[sp.Symbol, ...]:
+        """Its velocities."""
         return sp.symbols(f"vx{self.slot} vy{self.slot} omega{self.slot}", real=True)
 
     @cached_property
     def a(self) -> tuple[sp.Symbol, ...]:
+        """Its accelerations."""
         return sp.symbols(f"ax{self.slot} ay{self.slot} alpha{self.slot}", real=True)
 
     @cached_property
@@ -82,10 +85,12 @@ class BodyFrame:
 
     @property
     def origin(self) -> sp.Matrix:
+        """The centre of mass in ground axes, m."""
         return sp.Matrix(self.q[:2])
 
     @property
     def angle(self) -> sp.Symbol:
+        """The angle phi, rad."""
         return self.q[2]
 
     def coordinate(self, name: str) -> sp.Symbol:
@@ -122,10 +127,12 @@ class Frame:
 
     @property
     def angle(self) -> sp.Expr:
+        """Its angle in ground axes, rad."""
         return self.body.angle + self.numbers[2]
 
     @property
     def axes(self) -> list[sp.Matrix]:
+        """Its direction and the one at right angles to it, in ground axes."""
         return [self.axis, self.normal]
 
     def angle_about(self, axis: str, other: Frame, e: Any) -> sp.Expr:

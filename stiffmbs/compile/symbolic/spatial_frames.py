@@ -67,14 +67,17 @@ class SpatialBodyFrame:
 
     @cached_property
     def q(self) -> tuple[sp.Symbol, ...]:
+        """Its coordinates: centre of mass and quaternion."""
         return tuple(sp.Symbol(f"{name}_{self.slot}", real=True) for name in SPACE.positions)
 
     @cached_property
     def u(self) -> tuple[sp.Symbol, ...]:
+        """Its velocities: of the centre of mass, and angular along its own axes."""
         return tuple(sp.Symbol(f"{name}_{self.slot}", real=True) for name in SPACE.velocities)
 
     @cached_property
     def a(self) -> tuple[sp.Symbol, ...]:
+        """The rates of its velocities."""
         return tuple(sp.Symbol(f"{name}_{self.slot}", real=True) for name in SPACE.accelerations)
 
     @cached_property
@@ -112,10 +115,12 @@ class SpatialBodyFrame:
 
     @property
     def turn_stride(self) -> int:
+        """Numbers in kernels' array `turn` for each body."""
         return SPACE.turn_stride
 
     @property
     def turned(self) -> dict[sp.Expr, sp.Symbol]:
+        """Functions of the coordinates whose value kernels read: none."""
         return {}
 
     @cached_property
@@ -216,18 +221,22 @@ class SpatialFrame:
 
     @property
     def x(self) -> sp.Matrix:
+        """Its x axis in ground axes."""
         return self._axis(0)
 
     @property
     def y(self) -> sp.Matrix:
+        """Its y axis in ground axes."""
         return self._axis(1)
 
     @property
     def z(self) -> sp.Matrix:
+        """Its z axis in ground axes."""
         return self._axis(2)
 
     @property
     def axes(self) -> list[sp.Matrix]:
+        """Its three axes in ground axes."""
         return [self.x, self.y, self.z]
 
     def angle_about(self, axis: str, other: SpatialFrame, e: Any) -> sp.Expr:

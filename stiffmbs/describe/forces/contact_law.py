@@ -56,4 +56,8 @@ class ContactLaw(Friction):
 
     @classmethod
     def switches(cls, e: Symbolic) -> Any:
-        return (cls.gap(e),)
+        """Above zero where the surfaces push: dissipation may end the push while they still overlap."""
+        from sympy import Min
+
+        gap = e.named(cls.gap(e))
+        return (Min(-gap, 1 - e.dissipation * e.rate(gap)),)

@@ -67,11 +67,8 @@ def parse(text: str) -> ast.expr:
 def _python_spelling(text: str) -> str:
     """Rewrite ``5 N m/rad`` as ``(5*unit.N*unit.m)/rad`` and ``^`` as ``**``."""
     spaced = _NUMBER_AND_NAME.sub(r"\1 ", text.strip().replace("^", "**"))
-    tokens = [
-        t.string
-        for t in tokenize.generate_tokens(io.StringIO(spaced).readline)
-        if t.type not in (tokenize.NEWLINE, tokenize.NL, tokenize.ENDMARKER)
-    ]
+    read = tokenize.generate_tokens(io.StringIO(spaced).readline)
+    tokens = [token.string for token in read if token.string.strip()]  # a formula may go over lines, indented or not
     words: list[str] = []
     k = 0
     while k < len(tokens):

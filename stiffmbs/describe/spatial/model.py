@@ -52,6 +52,7 @@ class SpatialData(ModelData):
     )
 
     def check_requests(self) -> None:
+        """Refuse requests that name what the model does not have."""
         for channel, output in self.outputs():
             check_output(f"requests.{channel}", output, self)
 
@@ -79,6 +80,7 @@ class SpatialData(ModelData):
         yield from turnings(bodies)
 
     def drawn_marker(self, marker: MarkerReference) -> DrawnMarker:
+        """A marker with numbers, in ground axes, as the bodies are drawn."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return DrawnMarker(np.array(placed.point), matrix(placed.orientation))

@@ -38,7 +38,7 @@ def solve_up_to_the_inputs_end(mechanics: Mechanics, grid: Grid, solve: Callable
 def _up_to(grid: Grid, end: InputEnd) -> Grid:
     """The grid up to where the input's values still have their digits."""
     last = max(end.t - end.near, 0.5 * (grid.start + end.t))
-    return Grid(grid.start, last, None if grid.times is None else grid.times[grid.times <= last])
+    return replace(grid, end=last, times=None if grid.times is None else grid.times[grid.times <= last])
 
 
 def _reached(found: Trajectory) -> float:

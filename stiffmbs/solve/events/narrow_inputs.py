@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from ...compile.inputs.features import InputFeatures
+from ...compile.inputs.of_time import Input
+
+HIDDEN = 0.05
+"""Part of an input's change by which a peak must exceed what output points show before it is told."""
+LOOKS, MOST_LOOKS = 8, 5000
+"""Instants between two output points at which an input is looked at, and within all of its narrow features."""
+STANDS = 1e-9
+"""Change of an input, in parts of its values, that may be rounding."""
 
 
 def narrower_than_output(features: InputFeatures, spacing: float) -> str:
@@ -14,6 +26,28 @@ def narrower_than_output(features: InputFeatures, spacing: float) -> str:
         f"a prescribed motion or force has a feature of {length:.2g} s at t = {t:.6g} s, shorter than the {spacing:.2g} s "
         "between output points: peaks there may be missing; shorter output spacing or --verify shows them"
     )
+
+
+def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndarray) -> str:
+    """A sentence on an input that goes beyond what output points show of it; empty for nothing."""
+    parts = times[:-1, None] + np.diff(times)[:, None] * np.arange(LOOKS) / LOOKS
+    narrow = features.instants(times[0], times[-1], float(np.max(np.diff(times), initial=0.0)), MOST_LOOKS)
+    between = np.concatenate([parts.ravel(), narrow, features.corners])
+    for given in inputs:
+        with np.errstate(all="ignore"):
+            shown, values = given.at(times), given.at(between)
+        if not (np.isfinite(shown).all() and np.isfinite(values).all()):
+            continue
+        low, high = np.min(shown), np.max(shown)
+        change, size = max(high, np.max(values)) - min(low, np.min(values)), np.max(np.abs(values))
+        beyond = np.maximum(values - high, low - values)
+        k = int(np.argmax(beyond))
+        if beyond[k] > HIDDEN * change and change > STANDS * size:
+            return (
+                f"'{given.text}' has a peak of {values[k]:.3g} at t = {between[k]:.6g} s, between output points, which show "
+                f"it from {low:.3g} to {high:.3g}: shorter output spacing or --verify shows it"
+            )
+    return ""
 
 
 def narrower_than_steps(features: InputFeatures, step: float, scheme: str) -> str:

@@ -10,6 +10,19 @@ from ..failures import FAILURES
 from ..initial import InitialValues
 from ..mechanics import Mechanics
 
+INDISTINCT = 4 * float(np.finfo(float).eps)
+"""Part of a time within which another one is taken for the same, by IDA and for corners, which rounding moves by as much."""
+
+
+def just_before(t: float) -> float:
+    """The first instant that counts as t."""
+    return t - INDISTINCT * abs(t)
+
+
+def just_after(t: float) -> float:
+    """The last instant that counts as t: IDA refuses to start towards one that is nearer than two roundings."""
+    return t + INDISTINCT * abs(t)
+
 
 def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
     """Consistent values near given ones: projected onto the constraints, with new accelerations and multipliers.

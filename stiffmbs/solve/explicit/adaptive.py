@@ -15,7 +15,8 @@ from ..error_control.tolerances import absolute_tolerances
 from ..events.chattering import Chattering
 from ..events.divergence import refuse_beyond_sense
 from ..events.limits import refuse_beyond_limits
-from ..events.restart import restarted
+from ..events.restart import just_after, just_before, restarted
+from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
 from ..mechanics import Mechanics
 from ..suspect import suspect
@@ -70,8 +71,9 @@ class AdaptiveRun:
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
         features = mechanics.input_features(grid.start, grid.end)
-        self._corners, self._note = features.corners, features.note
+        self._corners, self._note = grid.with_stops(features.corners), features.note
         work.step_bound.follow(features)
+        self._jumps = VelocityJumps(mechanics)
         self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg
 
@@ -81,12 +83,13 @@ class AdaptiveRun:
         outcome, message = Outcome.DONE, Outcome.DONE.value
         begun = time.perf_counter()
         try:
-            for stop in (*self._corners, self._grid.end):
-                status = AT_EVENT
+            for corner in (*self._corners.tolist(), self._grid.end):
+                stop, status = just_before(corner) if corner < self._grid.end else corner, AT_EVENT
                 while status == AT_EVENT and not self.left:
-                    status = self._leg(float(stop), leaving)
-                if status < 0 or self.left:
+                    status = self._leg(stop, leaving)
+                if status < 0 or self.left or corner == self._grid.end:
                     break
+                self._go_past(corner)
         except SolverError as error:
             self._store_rows()
             outcome, message = Outcome.STOPPED, str(error)
@@ -100,7 +103,8 @@ class AdaptiveRun:
             message = f"{message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": time.perf_counter() - begun}
-        return Trajectory(*self._rows.stored, outcome, message, statistics, history, self._note)
+        note = "; ".join(filter(None, (self._note, self._jumps.sentence())))
+        return Trajectory(*self._rows.stored, outcome, message, statistics, history, note)
 
     def _leg(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
@@ -124,14 +128,27 @@ class AdaptiveRun:
                 self.left = True
                 self._store_rows()
                 return status
-        if status >= 0 and work.t < self._grid.end:
-            self._start = restarted(self._mechanics, work.t, work.q, work.u, self._settings.projection)
-            refuse_beyond_limits(self._mechanics, work.t, self._start.q, self._start.u)
-            switch = work.begin(self._start)
-            if status == AT_EVENT:
-                self._events += 1
-                self._chattering.note_event(work.t, self._start.q, self._start.u, switch)
+        if status == AT_EVENT and work.t < self._grid.end:
+            switch = self._start_anew()
+            self._events += 1
+            self._chattering.note_event(work.t, self._start.q, self._start.u, switch)
         return status
+
+    def _go_past(self, corner: float) -> None:
+        """Start anew behind a corner, where min(2*t, 1) has its new slope; what is asked for at it is the state before."""
+        self.work.t = corner
+        self._store_rows()
+        self.work.t = min(just_after(corner), self._grid.end)
+        before = self.work.u.copy()
+        self._start_anew()
+        self._jumps.note(corner, self._start.u - before)
+
+    def _start_anew(self) -> int:
+        """Go on from consistent values at the time reached; the first switch of the event met there, or -1."""
+        work = self.work
+        self._start = restarted(self._mechanics, work.t, work.q, work.u, self._settings.projection)
+        refuse_beyond_limits(self._mechanics, work.t, self._start.q, self._start.u)
+        return work.begin(self._start)
 
     def _store_rows(self) -> None:
         """Store what is asked for up to the time reached."""

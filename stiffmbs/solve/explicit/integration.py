@@ -52,10 +52,12 @@ class Integration:
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         n_switches = mechanics.system.n_switches
         self._watch = EventWatch(mechanics.state)
-        counters = ("at_event", "dense_ready", "steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
+        marks = ("at_event", "uncertain", "dense_ready")
+        counters = ("steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
         self._arrays: dict[str, Any] = {
             "mechanics": mechanics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
-            "scheme": scheme.table, "n": n,
+            "pivots_tell": self._eliminated.pivots_tell,
+            "scheme": scheme.table, "n": n, "n_q": self._n_q,
             "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
             "rtol": np.array([settings.rtol]), "atol": atol,
             "longest": np.array([settings.max_step or np.inf]), "step_bound": self.step_bound.table,
@@ -66,7 +68,7 @@ class Integration:
             "h": np.array([settings.step]), "last_error": np.array([SMALLEST_ERROR]),
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
-            **{name: np.zeros(1, dtype=np.int64) for name in counters},
+            **{name: np.zeros(1, dtype=np.int64) for name in (*marks, *counters)},
             "n_times": len(times), "times": times,
             "room": self.room, "row_t": np.empty(self.room), "row_y": np.empty((self.room, n)),
             "ends": np.empty(self.room),
@@ -83,6 +85,10 @@ class Integration:
     def t(self) -> float:
         """The time reached."""
         return float(self._arrays["t"][0])
+
+    @t.setter
+    def t(self, value: float) -> None:
+        self._arrays["t"][0] = value
 
     @property
     def h(self) -> float:

@@ -59,9 +59,11 @@ class FixedOrder:
     order: EliminationOrder
 
     def libraries(self) -> Libraries:
+        """Those of IDA alone."""
         return ida_libraries()
 
     def sentence(self) -> str:
+        """What the summary says of it."""
         return f"fixed order, {self.n} unknowns, {len(self.rows)} entries"
 
     def assembled(self, session: Session, y: int) -> Assembled:

@@ -25,6 +25,7 @@ class PairedColumns(FixedOrder):
     layout: ClassVar[Layout] = PAIRED_COLUMNS
 
     def sentence(self) -> str:
+        """What the summary says of it."""
         return f"fixed order, columns in pairs, {self.n} unknowns, {len(self.rows)} entries"
 
     def _lists(self) -> dict[str, np.ndarray]:

@@ -15,6 +15,8 @@ from .saddle_point import ACCELERATIONS
 
 MOST_UPDATES_PER_ENTRY = 20
 """Multiplications of the factors for each entry of J up to which they are cheaper than the LU of the whole."""
+EVEN = 100.0
+"""Times the square root of the smallest inertia, in the measure of masses, up to which pivots are those of the geometry."""
 
 
 class Eliminated:
@@ -26,6 +28,8 @@ class Eliminated:
     ----------
     serves : bool
         Whether the system is of the kind: no force depends on multipliers, and the factors stay sparse.
+    pivots_tell : bool
+        Whether pivots tell how near to singular a pose is: it serves, and no inertia is so small that it decides about them.
     table : ndarray of int
         Addresses (`stiffmbs.compile.machine.layout.ELIMINATED`), zeros where it does not serve.
     """
@@ -48,6 +52,8 @@ class Eliminated:
         self._most_kept = np.zeros(1)
         hanging = len(system.term("acceleration", "f_lam").source)
         self.serves = not hanging and updates <= MOST_UPDATES_PER_ENTRY * max(len(self._j[0]), 1)
+        resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
+        self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))
         self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
         if self.serves:
             self._arrays = self._packable(state, products, columns)
@@ -97,7 +103,7 @@ class Eliminated:
             "n_gamma": len(lists["gamma_source"]), "n_j": len(self._j[0]),
             "n_slots": int(starts[-1]), "scale": scale, "j_scale": scale[self._j[2]], "j": np.zeros(len(self._j[0])),
             "s": np.zeros(int(starts[-1])), "l": np.zeros(int(starts[-1])), "diagonal": np.zeros(n),
-            "a": np.zeros(system.n_u), "b": np.zeros(n), "most_kept": self._most_kept,
+            "a": np.zeros(system.n_u), "b": np.zeros(n), "kept": np.ones(1), "most_kept": self._most_kept,
         }  # fmt: skip
 
 

@@ -52,12 +52,14 @@ def _factored(r):
     """
     at = 0
     kept = 1.0
+    r.kept[0] = kept
     for k in range(r.n):
         first = r.column_start[k]
         end = r.column_start[k + 1]
         pivot = r.s[first]
         if not pivot > SMALL * r.diagonal[k]:
             kept *= pivot / r.diagonal[k]
+            r.kept[0] = kept
             if not pivot > LOST * r.diagonal[k] or not kept > max(TOGETHER, BESIDE * r.most_kept[0]):
                 return False
         inverse = 1.0 / pivot

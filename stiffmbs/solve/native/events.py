@@ -22,6 +22,8 @@ from stiffmbs.solve.native.within_step import (
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: in parts of the step, and of the time."""
 MOST_RETAKEN, BISECTIONS = 8, 40
+BEFORE_END, ALL = 1.0, 2.0
+"""Which stages must not have seen another law: those at the end of a step that has been cut to a change may be just behind it."""
 MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT = 1.0, 0.2, 1, 2
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
 
@@ -80,9 +82,14 @@ def _look_between(x, c, s):
 
 
 @compiled
-def _stages_have_changed(x, c, s):
-    """Whether a stage has seen another law than the start and the end of the step; its weights may hide that from the error."""
+def _stages_have_changed(x, c, s, until):
+    """Whether a stage before a part of the step has seen another law than the start and the end of the step.
+
+    The weights of such a stage may hide from the error what it has seen.
+    """
     for row in range(1, c.stages):
+        if c.c[row] >= until:
+            continue
         weighted(x, c, x.y_stage, row, x.span[0])
         if _changed(x, _values(x, s, x.y_stage, x.t_before[0] + c.c[row] * x.span[0])):
             return True
@@ -90,9 +97,9 @@ def _stages_have_changed(x, c, s):
 
 
 @compiled
-def _event_within(x, c, s, m):
+def _event_within(x, c, s, m, until):
     """The time from the step's start to an event that begins and ends within it; 0 for none, a negative status, or the whole
-    length where stages show that there is one but not where."""
+    length where stages before the part `until` of the step show that there is one but not where."""
     w = watch_view(x.watch)
     h = x.span[0]
     if not h > ROUNDINGS * abs(x.t[0]):
@@ -103,7 +110,7 @@ def _event_within(x, c, s, m):
     _look_between(x, c, s)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
-    if _stages_have_changed(x, c, s):
+    if _stages_have_changed(x, c, s, until):
         return h
     status = prepare(x, c, s, m)
     if status < 0:
@@ -180,12 +187,16 @@ def _taken_to_change(x, c, s, m, high, behind):
 def _taken_to_event(x, c, s, m, h, behind):
     """Take the step again up to the first event in it; 0, a negative status, `RETRIED`, or `NO_EVENT`."""
     values = _values(x, s, x.y, x.t[0])
-    if _changed(x, values):
+    changed = _changed(x, values)
+    if changed:
         _note_changed(x, values)
-        return _taken_to_change(x, c, s, m, h, behind)
-    within = _event_within(x, c, s, m)
+        status = _taken_to_change(x, c, s, m, h, behind)
+        if status != 0:
+            return status
+        h = x.span[0]
+    within = _event_within(x, c, s, m, BEFORE_END if changed else ALL)
     if within == 0.0:
-        return NO_EVENT
+        return 0 if changed else NO_EVENT
     if within < 0.0:
         return int(within)
     return RETRIED if within == h else _retaken(x, c, s, m, max(within - behind, 0.5 * within))

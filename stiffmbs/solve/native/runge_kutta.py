@@ -19,6 +19,7 @@ from stiffmbs.solve.native.interpolant import store_rows, store_step
 from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import NOT_FINITE
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
+from stiffmbs.solve.native.uncertain_end import MOST_MOVED, SHORTER, uncertain_end
 
 STEP_TOO_SMALL, STIFF = -4, -5
 PAUSED, AT_END, AT_EVENT = 0, 1, 2
@@ -80,6 +81,7 @@ def _step(x, c, s, m, end):
     if bound.n > 0:
         h = min(h, longest_step(bound, t))
     most = LARGEST_FACTOR
+    moved = 0
     while True:
         if t + STRETCHED * h >= end:
             h = end - t
@@ -93,7 +95,13 @@ def _step(x, c, s, m, end):
         if status == 0 and error <= 1.0:
             t_new = end if h == end - t else t + h
             status = arrive(x, c, s, m, t_new)
+            uncertain = status == 0 and uncertain_end(x, c, h)
+            if uncertain and not x.uncertain[0] and t_new < end and moved <= MOST_MOVED:
+                moved += 1
+                h = h * SHORTER if moved <= MOST_MOVED else h / SHORTER**MOST_MOVED
+                continue
             if status == 0:
+                x.uncertain[0] = 1 if uncertain or moved else 0  # two in a row would creep up to a pose that locks
                 x.t[0] = t_new
                 x.span[0] = t_new - t
                 x.h[0] = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))

@@ -89,12 +89,10 @@ def noted_rates(rate, value, nearby, ahead, count):
 
 @compiled
 def _left_out(w, k):
-    """Whether a function is not looked at: it waits, has no number, or has changed at the end, which is seen without a search."""
+    """Whether a function is not looked at: it waits, or has no number."""
     if not isfinite(w.value_before[k] - w.value_after[k]):
         return True
-    if k >= w.n_switches:
-        return False
-    return w.waits[k] > 0 or w.value_before[k] == 0.0 or zone(w, k, w.value_before[k]) != zone(w, k, w.value_after[k])
+    return k < w.n_switches and (w.waits[k] > 0 or w.value_before[k] == 0.0)
 
 
 @compiled
@@ -121,7 +119,7 @@ def _bound(start, start_rate, end, end_rate, missed, side):
 
 @compiled
 def _reaches(w, k, start, start_rate, end, end_rate, missed):
-    """Whether a function may come into a zone that is none of those at the ends of the step."""
+    """Whether a switch may leave its side, or another function come into a zone that is none of those at the ends of the step."""
     one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
     if abs(one - other) > 1:
         return True
@@ -129,6 +127,8 @@ def _reaches(w, k, start, start_rate, end, end_rate, missed):
         _bound(start, start_rate, end, end_rate, missed, -1),
         _bound(start, start_rate, end, end_rate, missed, 1),
     )
+    if k < w.n_switches:
+        return zone(w, k, low) != one or zone(w, k, high) != one
     return zone(w, k, low) < min(one, other) or zone(w, k, high) > max(one, other)
 
 
@@ -295,6 +295,12 @@ def _visits_extremum(w, s, begun, h, k, low, place, part):
 
 
 @compiled
+def _seen_at_end(w, k):
+    """Whether a switch has changed at the end of the step, which is seen without a search: it may have changed before, too."""
+    return k < w.n_switches and zone(w, k, w.value_before[k]) != zone(w, k, w.value_after[k])
+
+
+@compiled
 def _first_within(w, s, begun, h, low, part):
     """The first event of all functions within a part of the step, as a place in the step; 2 for none."""
     first = 2.0
@@ -308,7 +314,7 @@ def _first_within(w, s, begun, h, low, part):
                 place = _extremum(start, start_rate, end, end_rate, which)
                 if place < 1.0 and not there:
                     there = _visits_extremum(w, s, begun, h, k, low, low + place * part, part)
-        if not there:
+        if not there and not (low + part > 1.0 - BEHIND and _seen_at_end(w, k)):
             there = _visits(w, k, end, low, low + part)
         if there:
             place = _change(w, s, begun, h, k)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import re
-import time
 import warnings
 from random import Random
 
@@ -23,9 +22,9 @@ from ...jobs.run import run
 from ...results.solution import Solution
 from ...show.summary import as_json, check_as_json, print_summary
 from ...solve.trajectory import Outcome as Ending
-from ...solve.trajectory import Watch
 from ..case import Outcome, Verdict
 from ..file_bases import DATASETS, SCENES
+from ..simulation import patience
 
 WHAT = (
     "a scene or dataset with bytes, numbers, words or lines changed: refused in a sentence, or run with finite results"
@@ -75,7 +74,7 @@ def _tried(content: bytes, dataset: bool) -> Verdict:
     report = check(scene)
     check_as_json("scene", report)
     str(report)
-    solution = run(scene, watch=_patience(), duration=min(MOMENT, scene.run.duration), points=5)
+    solution = run(scene, watch=patience(PATIENCE), duration=min(MOMENT, scene.run.duration), points=5)
     _shown(solution)
     if solution.outcome is not Ending.DONE:
         return _of_message(solution.message)
@@ -99,16 +98,6 @@ def _shown(solution: Solution) -> None:
 
     as_json("scene", solution)
     print_summary("scene", solution, "nowhere", Console(file=io.StringIO()))
-
-
-def _patience() -> Watch:
-    begun = time.perf_counter()
-
-    def watch(t: float) -> None:
-        if time.perf_counter() - begun > PATIENCE:
-            raise KeyboardInterrupt
-
-    return watch
 
 
 def _number_changed(content: bytes, random: Random) -> bytes:

@@ -65,11 +65,11 @@ def _geared(solution: Solution, law: Any) -> float:
     return float(np.max(np.abs(solution["turned"] - 2 * law(solution.time))))
 
 
-def _spring(points: int, **how: Any):
+def _spring(points: int, quick: bool = True, **how: Any):
     return simulation(
         f"az at 3000 rad/s, {points} points, {', '.join(map(str, how.values()))}", "closed form, to half a turn",
         partial(wheel, 3000.0, 1e-3), partial(_sprung, speed=3000.0, stiffness=1e-3), HALF_A_TURN,
-        duration=1.0, points=points, **how,
+        duration=1.0, points=points, quick=quick, **how,
     )  # fmt: skip
 
 
@@ -81,25 +81,25 @@ def _swing(points: int, **how: Any):
     )  # fmt: skip
 
 
-def _law(law: str, value: Any, points: int):
+def _law(law: str, value: Any, points: int, quick: bool = True):
     return simulation(
         f"az of a geared wheel, drive {law}, {points} points, kinematic", "the law", partial(driven, law),
-        partial(_geared, law=value), 1e-8, duration=1.0, points=points, solver="kinematic",
+        partial(_geared, law=value), 1e-8, duration=1.0, points=points, solver="kinematic", quick=quick,
     )  # fmt: skip
 
 
 CASES = (
-    _spring(1001, solver="projected", scheme="rk4", step=1e-3),
+    _spring(1001, solver="projected", scheme="rk4", step=1e-3, quick=False),
     _spring(1001, rtol=1e-2),
     _spring(2, rtol=1e-2),
     _spring(11, rtol=1e-6),
-    _spring(1001, solver="auto"),
-    _spring(11, solver="projected", step=1e-4),
+    _spring(1001, solver="auto", quick=False),
+    _spring(11, solver="projected", step=1e-4, quick=False),
     _swing(2, rtol=1e-2),
     _swing(7, solver="auto"),
     _swing(1001, solver="projected", scheme="rk4", step=1e-3),
     _swing(7, solver="projected", scheme="dopri5", rtol=1e-2),
-    _law("3000*t", lambda t: 3000 * t, 2),
+    _law("3000*t", lambda t: 3000 * t, 2, quick=False),
     _law("300*t + 3*sin(40*t)", lambda t: 300 * t + 3 * np.sin(40 * t), 3),
     _law("100*sin(6*pi*t)", lambda t: 100 * np.sin(6 * np.pi * t), 2),
     simulation(

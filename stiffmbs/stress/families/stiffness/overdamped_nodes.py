@@ -46,11 +46,11 @@ def _beside_scipy(solution: Solution, network: Network, rtol: float) -> float:
     return float(np.max(np.abs(np.array(found) - expected)))
 
 
-def _case(name: str, network: Network, rtol: float = 1e-6):
+def _case(name: str, network: Network, rtol: float = 1e-6, quick: bool = True):
     return simulation(
         f"{name}, rtol {rtol:.0e}", f"positions against SciPy's Radau, at most {MORE_STEPS} times the steps of SciPy's BDF",
         network.model, partial(_beside_scipy, network=network, rtol=rtol), 10 * rtol,
-        solver="bdf", duration=DURATION, points=101, rtol=rtol,
+        solver="bdf", duration=DURATION, points=101, rtol=rtol, quick=quick,
     )  # fmt: skip
 
 
@@ -108,11 +108,14 @@ def _as_a_spring(solution: Solution) -> float:
 
 
 CASES = (
-    *(_case(f"node of {mass:.0e} kg", node(mass), rtol) for mass in (1e-6, 1e-7, 1e-8, 1e-9, 1e-10) for rtol in (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
-    *(_case(f"node of {mass:.0e} kg in space", node(mass, 3)) for mass in (1e-6, 1e-8, 1e-10)),
-    *(_case(f"two nodes of {mass:.0e} kg and ten times that", two_nodes(mass)) for mass in (1e-6, 1e-9)),
-    *(_case(f"node of {mass:.0e} kg, quadratic drag", node(mass, quadratic=True, drag=1.0)) for mass in (1e-6, 1e-9)),
-    *(_case(f"node of 1e-08 kg, drag {drag:g}", node(1e-8, drag=drag)) for drag in (1e-3, 0.1)),
+    *(
+        _case(f"node of {mass:.0e} kg", node(mass), rtol, quick=mass in (1e-6, 1e-9) and rtol in (1e-4, 1e-6, 1e-8))
+        for mass in (1e-6, 1e-7, 1e-8, 1e-9, 1e-10) for rtol in (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+    ),
+    *(_case(f"node of {mass:.0e} kg in space", node(mass, 3), quick=mass == 1e-8) for mass in (1e-6, 1e-8, 1e-10)),
+    *(_case(f"two nodes of {mass:.0e} kg and ten times that", two_nodes(mass), quick=mass == 1e-9) for mass in (1e-6, 1e-9)),
+    *(_case(f"node of {mass:.0e} kg, quadratic drag", node(mass, quadratic=True, drag=1.0), quick=mass == 1e-9) for mass in (1e-6, 1e-9)),
+    *(_case(f"node of 1e-08 kg, drag {drag:g}", node(1e-8, drag=drag), quick=drag == 0.1) for drag in (1e-3, 0.1)),
     *(
         simulation(
             f"light disc of {inertia:.0e} kg m^2", "angles against the matrix exponential, at most 2000 steps",

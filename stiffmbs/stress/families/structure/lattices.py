@@ -120,7 +120,7 @@ EXPLICIT: dict[str, Any] = {"solver": "projected", "scheme": "dop853"}
 CASES = (
     _falls("lattice of 4 x 4 cells", "bdf", lattice(4, 4)),
     _falls("lattice of 14 x 14 cells", "bdf", lattice(14, 14)),
-    _falls("lattice of 15 x 15 cells, dop853", "explicit", lattice(15, 15), **EXPLICIT),
+    _falls("lattice of 15 x 15 cells, dop853", "explicit", lattice(15, 15), quick=False, **EXPLICIT),
     _falls("lattice of 20 x 20 cells", "bdf", lattice(20, 20), quick=False),
     _falls("lattice of 20 x 20 cells, dop853", "explicit", lattice(20, 20), quick=False, **EXPLICIT),
     _falls("lattice of 30 x 30 cells", "bdf", lattice(30, 30), quick=False),

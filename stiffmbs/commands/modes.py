@@ -1,0 +1,34 @@
+"""The command ``stiffmbs modes``."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import click
+
+from ..errors import StiffmbsError
+from ..jobs.load_scene import load_scene
+from .scene import changes_of, in_file, refuse, solving_options
+
+
+@click.command(short_help="Natural frequencies and damping.")
+@click.argument("scene")
+@click.option("--at", type=float, help="The instant of the run whose state is taken, s; its start by default.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@solving_options
+def modes(scene: str, at: float | None, as_json: bool, **options: Any) -> None:
+    """Linearise SCENE about a state: frequency, damping and participation of each mode, as many as degrees of freedom.
+
+    Exit status: 0 done, 2 the input is wrong, or there is no such state.
+    """
+    from ..jobs.modes import modes as found_modes
+    from ..show.modes import modes_text
+
+    try:
+        loaded = load_scene(scene, changes_of(options))
+        with in_file(scene):
+            found = found_modes(loaded, at=at)
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    click.echo(json.dumps(found.as_dict(scene)) if as_json else modes_text(found))

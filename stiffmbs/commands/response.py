@@ -1,0 +1,72 @@
+"""The command ``stiffmbs response``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..errors import InputError, StiffmbsError
+from ..jobs.load_scene import load_scene
+from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options
+
+
+@click.command(short_help="Frequency response.")
+@click.argument("scene")
+@click.option(
+    "--input", "inputs", multiple=True, required=True, help="BODY.fx, BODY.MARKER.fy, ..., or a parameter of SCENE."
+)
+@click.option("--output", "outputs", multiple=True, required=True, help="A channel or request.")
+@click.option("--from", "lowest", type=click.FloatRange(0, min_open=True), default=0.1, show_default=True, help="Hz.")
+@click.option("--to", "highest", type=click.FloatRange(0, min_open=True), default=100.0, show_default=True, help="Hz.")
+@click.option(
+    "--points",
+    type=click.IntRange(2),
+    default=400,
+    show_default=True,
+    help="Frequencies, evenly on a logarithmic scale.",
+)
+@click.option("--at", type=float, help="The instant of the run whose state is taken, s; its start by default.")
+@click.option(
+    "-o", "--to-file", "path", type=click.Path(path_type=Path), help="Write gain and phase at every frequency: .csv."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@solving_options
+def response(
+    scene: str, inputs: tuple[str, ...], outputs: tuple[str, ...], lowest: float, highest: float, points: int,
+    at: float | None, path: Path | None, as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Linearise SCENE about a state, and show how outputs answer to harmonic inputs: gain and phase.
+
+    An input is a force or torque on a body in ground axes, or a parameter of SCENE, such as the height of a road in its formulas.
+    Exit status: 0 done, 1 the file could not be written, 2 the input is wrong, or there is no such state.
+    """
+    import numpy as np
+
+    from ..jobs.inputs import force_on, parameter_of
+    from ..jobs.transfer import transfer
+    from ..show.response import response_as_json, response_csv, response_text
+
+    changes = changes_of(options)
+    try:
+        if not lowest < highest:
+            raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
+        loaded = load_scene(scene, changes)
+        with in_file(scene):
+            given = {
+                name: force_on(loaded, name) if "." in name else parameter_of(scene, name, changes) for name in inputs
+            }
+            found = transfer(loaded, given, outputs, at=at)
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    frequencies = np.geomspace(lowest, highest, points)
+    values = found.response(frequencies)
+    if path is not None:
+        try:
+            path.write_text(response_csv(found, frequencies, values), encoding="utf-8")
+        except OSError as error:
+            click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
+            sys.exit(STOPPED_EARLY)
+    click.echo((response_as_json if as_json else response_text)(scene, found, frequencies, values))

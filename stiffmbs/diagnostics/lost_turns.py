@@ -1,0 +1,46 @@
+"""A note on angles over whole turns whose turn is not certain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..solve.mechanics import Mechanics, OutputRows
+
+APART = 1.0
+"""Angle between an orientation and the integral of its rate, rad, from which on the turn is not certain: half a turn changes it."""
+MOST = 2000
+"""Instants that are looked at."""
+
+
+def lost_turns_sentence(mechanics: Mechanics, rows: OutputRows) -> Iterator[str]:
+    """The angle that is furthest from the counter of its turns, in a sentence; nothing where all are near.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+        Of the whole; its state is changed.
+    rows : OutputRows
+        Of the run.
+    """
+    system, state = mechanics.system, mechanics.state
+    counted = system.term("position", "counted")
+    solved = np.flatnonzero(~np.isnan(rows.position_violation))
+    if not system.n_counters or not len(solved):
+        return
+    instants = solved[np.linspace(0, len(solved) - 1, min(len(solved), MOST)).astype(int)]
+    apart = np.empty((len(instants), len(counted.row)))
+    for of_row, t, q in zip(apart, rows.t[instants], rows.q[instants], strict=True):
+        state.q[:] = q
+        state.evaluate("position", t)
+        of_row[:] = np.abs(state.values["position"][counted.source] - state.q[counted.row])
+    if not np.nanmax(apart) > APART:
+        return
+    k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
+    name = system.writer("position", int(counted.source[worst]))
+    yield (
+        f"whole turns of the angle of '{name}' are not certain: at t = {rows.t[instants[k]]:.6g} s the orientations and the integral of "
+        f"the angular velocity differ by {apart[k, worst]:.2g} rad; the steps are too long for the speed (tighten rtol, or shorten step), "
+        "or the axis that the angle is measured by comes to lie along the axis that it turns about"
+    )

@@ -1,0 +1,106 @@
+"""What no step has seen, found where the forces at output instants contradict the step that leads over them.
+
+Within a step an integrator has a polynomial, and at every output instant the block system gives accelerations anyway.
+Between two instants of one step their mean, times the time between, is the change of the velocities.  Along smooth motions
+it is so but for a small part, as a step is short beside what it has seen; what stiff forces make of errors within the
+tolerance stays within some ten thousand tolerances over a step (measured).  A force that has begun and ended within the
+step, and is met by an output instant, is beyond both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.reactions import reactions
+from ..compile.system import System
+from ..describe.settings import RunSettings
+from ..results.energy_balance_notes import within_steps
+from ..solve.error_control.tolerances import absolute_tolerances
+from ..solve.mechanics import OutputRows
+from .laws import has_law, has_laws
+
+TOLERANCES = 3e5
+"""Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
+PART = 0.3
+"""Part of what the larger of two accelerations, weighted with masses, makes in the time between, by which the change differs."""
+
+
+@dataclass(frozen=True)
+class Overlooked:
+    """What the steps of a run passed over.
+
+    Attributes
+    ----------
+    times : ndarray
+        In each step that passed over something, the output instant with the largest accelerations of the first pair that
+        shows it, s.
+    step : float
+        Length of the first of these steps, s.
+    velocity : str
+        The velocity that would have changed most there.
+    element : str
+        The law with the largest force there; empty for none.
+    """
+
+    times: np.ndarray
+    step: float
+    velocity: str
+    element: str
+
+    def sentence(self) -> str:
+        """Where it was."""
+        more = f" and in {len(self.times) - 1} more steps" if len(self.times) > 1 else ""
+        law = f"'{self.element}'" if self.element else "a law"
+        return (
+            f"a step of {self.step:.2g} s passed over {law} at t = {self.times[0]:.6g} s{more}: "
+            f"forces there accelerate {self.velocity} otherwise than the step has followed"
+        )
+
+
+def overlooked(system: System, rows: OutputRows, steps: np.ndarray, settings: RunSettings) -> Overlooked | None:
+    """What the steps of a run passed over; None for nothing, and where no law could be.
+
+    Parameters
+    ----------
+    system : System
+        Of the whole.
+    rows : OutputRows
+    steps : ndarray
+        Ends of the solver's own steps, s; empty where it does not tell them.
+    settings : RunSettings
+    """
+    if len(steps) < 2 or not has_laws(system):
+        return None
+    off, size = _contradictions(rows), rows.acceleration**2 @ system.mass
+    pairs = np.flatnonzero(off**2 @ system.mass > PART**2 * np.fmax(size[1:], size[:-1]))  # few: the rest costs nothing
+    pairs = pairs[within_steps(rows.t[pairs], rows.t[pairs + 1], steps)]
+    number = np.searchsorted(steps, rows.t[pairs])
+    step = steps[number] - steps[number - 1]
+    tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u[pairs])
+    over_step = np.abs(off[pairs]) * step[:, None] / (TOLERANCES * tolerance)
+    found = np.flatnonzero((over_step > 1).any(axis=1))
+    if not len(found):
+        return None
+    _, first = np.unique(number[found], return_index=True)
+    at, k = (pairs + (size[pairs + 1] > size[pairs]))[found], found[0]
+    velocity = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities)
+    return Overlooked(rows.t[at[first]], float(step[k]), velocity, _acting(system, rows, int(at[0])))
+
+
+def _contradictions(rows: OutputRows) -> np.ndarray:
+    """By how much the change of velocities between instants, in a second, differs from the mean of their accelerations."""
+    off = np.diff(rows.u, axis=0)
+    off /= np.diff(rows.t)[:, None]
+    off -= 0.5 * rows.acceleration[1:]
+    off -= 0.5 * rows.acceleration[:-1]
+    return off
+
+
+def _acting(system: System, rows: OutputRows, k: int) -> str:
+    """The law with the largest force or torque at an instant."""
+    laws = {name for group in system.groups if has_law(group) for name in group.names}
+    found = reactions(system, rows.values[k : k + 1])
+    of_laws = {name: abs(float(value[0])) for name, value in found.items() if name.rpartition(".")[0] in laws}
+    return max(of_laws, key=lambda name: of_laws[name], default="").rpartition(".")[0]

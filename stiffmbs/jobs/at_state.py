@@ -1,0 +1,79 @@
+"""A model at a state: its start, or where a run comes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.settings import RunSettings
+from ..errors import SolverError
+from ..solve.failures import FAILURES
+from ..solve.mechanics import Mechanics
+from ..structure.redundancy import Redundancy
+from .run import prepare
+
+
+@dataclass(frozen=True)
+class AtState:
+    """A model whose state satisfies the constraints, with accelerations and multipliers.
+
+    Attributes
+    ----------
+    data : ModelData
+    redundancy : Redundancy
+    mechanics : Mechanics
+        Its state has q, u and lam.
+    t : float
+        s.
+    acceleration : ndarray, shape (n_u,)
+    """
+
+    data: ModelData
+    redundancy: Redundancy
+    mechanics: Mechanics
+    t: float
+    acceleration: np.ndarray
+
+
+def at_state(
+    model: ModelBuilder | ModelData, settings: RunSettings | None = None, at: float | None = None, **changes: Any
+) -> AtState:
+    """A model at its start, or at an instant of its motion.
+
+    Parameters
+    ----------
+    model : Model or Scene
+    settings : RunSettings, optional
+    at : float, optional
+        The instant, s; the start of the run by default.
+    **changes
+        Fields of the settings to change.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    SolverError
+        Where no motion leads to that instant.
+    """
+    job = prepare(model, settings, **changes)
+    t = job.grid.start
+    state = job.mechanics.state
+    state.q[:], state.u[:] = job.start.q, job.start.u
+    if at is not None and at != t:
+        job = prepare(model, settings, **{**changes, "duration": at - t, "points": 2})
+        trajectory = job.integrate()
+        if not np.isclose(trajectory.t[-1], at):
+            raise SolverError(f"no state was found at t = {at:g} s: {trajectory.message}")
+        t, state = at, job.mechanics.state
+        state.q[:], state.u[:] = trajectory.q[-1], trajectory.u[-1]
+        job.mechanics.assemble(t)
+        job.mechanics.correct_velocities(t)
+    status, acceleration = job.mechanics.accelerate(t)
+    if status < 0:
+        raise SolverError(f"no accelerations were found at t = {t:g} s: {FAILURES[status]}")
+    return AtState(job.data, job.redundancy, job.mechanics, t, acceleration)

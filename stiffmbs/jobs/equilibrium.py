@@ -1,0 +1,100 @@
+"""Static equilibrium of a model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.scene import Scene
+from ..describe.settings import RunSettings
+from ..results.channels import channels_of
+from ..solve.initial import InitialValues
+from .run import prepare
+from .settled import settled
+
+
+@dataclass(frozen=True)
+class EquilibriumFound:
+    """A static equilibrium.
+
+    Attributes
+    ----------
+    name : str
+        Of the model.
+    t : float
+        At which forces and drives are taken, s.
+    channels : dict of str to float
+        Poses of bodies, forces and torques of elements, energies, requests.
+    moves : int
+        That led there.
+    imbalance : float
+        Largest generalised force that is left, relative to the largest that acts.
+    free : tuple of str
+        Bodies that take part in motions that nothing holds; the first one each, with its coordinate.
+    notes : tuple of str
+    start : InitialValues
+        For a run from there.
+    """
+
+    name: str
+    t: float
+    channels: dict[str, float]
+    moves: int
+    imbalance: float
+    free: tuple[str, ...]
+    notes: tuple[str, ...]
+    start: InitialValues
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs equilibrium --json``.
+
+        Parameters
+        ----------
+        scene : str
+            The file, or what else the scene is called.
+        """
+        return {
+            "scene": scene, "t": self.t, "moves": self.moves, "imbalance": self.imbalance, "free": list(self.free),
+            "channels": self.channels, "notes": list(self.notes),
+        }  # fmt: skip
+
+
+def equilibrium(
+    model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any
+) -> EquilibriumFound:
+    """The pose at rest in which all forces balance, sought from the described one.
+
+    Parameters
+    ----------
+    model : Model or Scene
+    settings : RunSettings, optional
+        Its start is the instant at which forces and drives are taken.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    EquilibriumFound
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    SolverError
+        Where there is none, or none is found; names the body with the largest imbalance.
+    """
+    data = model.data() if isinstance(model, ModelBuilder) else model
+    if isinstance(data, Scene):
+        data = data.model_copy(update={"start": "described"})
+    job = prepare(data, settings, **changes)
+    found = settled(job.mechanics, job.start, job.grid.start)
+    rows = job.mechanics.report(np.array([job.grid.start]), found.start.q[None], found.start.u[None], project=False)
+    channels = channels_of(job.data, job.mechanics.system, rows)
+    kept = {name: float(values[0]) for name, values in channels.items()}
+    return EquilibriumFound(
+        job.data.name, job.grid.start, kept, found.moves, found.imbalance, found.free, found.notes, found.start
+    )

@@ -1,0 +1,132 @@
+"""A stable equilibrium of a system, with what is said of unstable ones on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import SolverError
+from ..linear_analysis.state_space import null_space
+from ..linear_analysis.tangent_space import linearised
+from ..solve.equilibrium import Equilibrium, find_equilibrium
+from ..solve.initial import InitialValues
+from ..solve.mechanics import Mechanics
+
+MOST_FOR_STABILITY = 1500
+"""Velocities up to which the stability of an equilibrium is looked at (dense matrices)."""
+BRANCH = 1e-3
+"""Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
+FREE, UNSTABLE = 1e-9, 1e-9
+"""Stiffness over mass, relative to the largest, below which a direction is free, or with the other sign unstable."""
+MOST_BRANCHES = 3
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A system at rest in an equilibrium.
+
+    Attributes
+    ----------
+    start : InitialValues
+        For a run from there.
+    moves : int
+        That led there.
+    imbalance : float
+        Largest generalised force that is left, relative to the largest that acts.
+    free : tuple of str
+        For each motion that nothing holds the velocity that is largest in it.
+    notes : tuple of str
+    """
+
+    start: InitialValues
+    moves: int
+    imbalance: float
+    free: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def settled(mechanics: Mechanics, start: InitialValues, t: float) -> Settled:
+    """A stable equilibrium, with notes on unstable ones on the way, and what is free to move in it.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+    start : InitialValues
+        The pose from which it is sought.
+    t : float
+        s.
+    """
+    system, state = mechanics.system, mechanics.state
+    state.q[:] = start.q
+    found = find_equilibrium(mechanics, t)
+    if system.n_u > MOST_FOR_STABILITY:
+        return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
+    notes: list[str] = []
+    for _ in range(MOST_BRANCHES):
+        unstable, free = _directions(mechanics, t)
+        if unstable is None:
+            held = f"nothing holds {', '.join(free)}: the pose along it is the one nearest to the described one"
+            return _settled(found, start, [*notes, *([held] if free else [])], free)
+        poses = [_branch(mechanics, found, sign * unstable, t) for sign in (1.0, -1.0)]
+        notes.append(_branch_sentence(mechanics, unstable, poses))
+        if not any(poses):
+            return _settled(found, start, notes)
+        found = next(pose for pose in poses if pose is not None)
+        state.q[:] = found.q
+    return _settled(found, start, [*notes, "the pose found is unstable too: no stable equilibrium was found beside it"])
+
+
+def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
+    rest = np.zeros_like(start.u)
+    resting = replace(start, q=found.q, u=rest, acceleration=rest, lam=found.lam, moved=(), notes=tuple(notes))
+    return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
+
+
+def _directions(mechanics: Mechanics, t: float) -> tuple[np.ndarray | None, list[str]]:
+    """The most unstable direction at an equilibrium (as velocities), and the names of what is free."""
+    system, state = mechanics.system, mechanics.state
+    state.u[:] = 0.0
+    _, acceleration = mechanics.accelerate(t)
+    linear = linearised(mechanics, t, acceleration)
+    scale = system.per_velocity(system.size, 1.0)
+    free = null_space(linear.velocity * scale) * scale[:, None]
+    if not free.shape[1]:
+        return None, []
+    matrix = np.linalg.solve(free.T @ (linear.mass @ free), free.T @ linear.stiffness @ free)
+    values, vectors = np.linalg.eig(matrix)
+    largest = float(np.max(np.abs(values)))
+    worst = int(np.argmax(values.real))
+    shapes = (free @ vectors).real
+    if values[worst].real > UNSTABLE * largest and abs(values[worst].imag) < 1e-6 * abs(values[worst]):
+        shape = shapes[:, worst] / np.max(np.abs(shapes[:, worst] / scale))
+        return linear.own_axes @ shape, []
+    loose = np.flatnonzero(np.abs(values) <= FREE * largest) if largest else range(len(values))
+    return None, list(dict.fromkeys(_name(mechanics, shapes[:, k] / scale) for k in loose))
+
+
+def _name(mechanics: Mechanics, shape: np.ndarray) -> str:
+    return mechanics.system.name_of(int(np.argmax(np.abs(shape))), mechanics.system.of_body.velocities)
+
+
+def _branch(mechanics: Mechanics, found: Equilibrium, direction: np.ndarray, t: float) -> Equilibrium | None:
+    """The equilibrium that a small move along a direction leads to; None where there is none."""
+    mechanics.state.q[:] = mechanics.system.of_body.moved(found.q, BRANCH * direction)
+    mechanics.assemble(t)
+    try:
+        return find_equilibrium(mechanics, t)
+    except SolverError:
+        return None
+
+
+def _branch_sentence(mechanics: Mechanics, direction: np.ndarray, poses: list[Equilibrium | None]) -> str:
+    scale = mechanics.system.per_velocity(mechanics.system.size, 1.0)
+    label = _name(mechanics, direction / scale)
+    count = sum(pose is not None for pose in poses)
+    if not count:
+        return f"the equilibrium is unstable in {label}, and no stable one was found beside it"
+    return (
+        f"an equilibrium on the way is unstable in {label}: {count} lead{'s' if count == 1 else ''} away from it, "
+        f"this is the one towards {'positive' if poses[0] is not None else 'negative'} {label}"
+    )

@@ -1,0 +1,169 @@
+"""A model about a state with named inputs and outputs: state space and frequency response."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..describe.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.settings import RunSettings
+from ..errors import InputError, SolverError
+from ..linear_analysis.state_space import StateMatrix, state_matrix
+from ..linear_analysis.tangent_space import Linearised, linearised
+from ..linear_analysis.transfer import Input, Transfer, effect
+from ..results.channels import channels_of
+from ..solve.mechanics import Mechanics
+from .at_state import AtState, at_state
+from .inputs import Parameterised, force_on
+from .run import prepare
+
+SHIFT = 1e-6
+"""Variation of states by which outputs are differentiated: relative to the mechanism's size, or rad."""
+
+
+@dataclass(frozen=True)
+class _About:
+    """A model linearised about a state, with what outputs are differentiated by."""
+
+    found: AtState
+    linear: Linearised
+    state: StateMatrix
+    scale: np.ndarray
+
+
+def transfer(
+    model: ModelBuilder | ModelData,
+    inputs: Sequence[str] | Mapping[str, Parameterised],
+    outputs: Sequence[str],
+    settings: RunSettings | None = None,
+    at: float | None = None,
+    **changes: Any,
+) -> Transfer:
+    """Linearise a model about a state, from inputs to channels.
+
+    Parameters
+    ----------
+    model : Model or Scene
+    inputs : sequence of str, or mapping of str to callable
+        Forces and torques on bodies in ground axes, such as ``"chassis.fy"`` or ``"bar.end.fx"``; or any names, each with
+        the model as a function of the input, zero at the state: the height of a road, a steering angle.
+    outputs : sequence of str
+        Channels and requests.
+    settings, at, **changes
+        As for `stiffmbs.jobs.modes.modes`.
+
+    Raises
+    ------
+    InputError
+        When an input or output is unknown, or an output needs the rate of an input that moves a constraint.
+    SolverError, AssemblyError
+        As for `stiffmbs.jobs.modes.modes`.
+    """
+    found = at_state(model, settings, at, **changes)
+    system = found.mechanics.system
+    scale = system.per_velocity(system.size, 1.0)
+    linear = linearised(found.mechanics, found.t, found.acceleration)
+    about = _About(found, linear, state_matrix(linear, scale), scale)
+    nothing = np.zeros((1, system.n_u))
+    at_zero = _channels(about, found.mechanics, nothing, nothing, outputs)[0]
+    given = inputs if isinstance(inputs, Mapping) else {name: force_on(found.data, name) for name in inputs}
+    columns = [_column(about, name, of_input, outputs, changes) for name, of_input in given.items()]
+    n = len(about.state.matrix)
+    return Transfer(
+        a=about.state.matrix,
+        b=np.array([rates for rates, _ in columns]).reshape(-1, n).T,
+        c=_differentiated(about, outputs),
+        d=np.array([through for _, through in columns]).reshape(-1, len(outputs)).T,
+        inputs=tuple(inputs),
+        outputs=tuple(outputs),
+        at=at_zero,
+    )
+
+
+def _column(
+    about: _About, name: str, given: Parameterised, outputs: Sequence[str], changes: dict[str, Any]
+) -> tuple[np.ndarray, np.ndarray]:
+    """What an input does to z' and to the outputs, by the models on both sides of the state."""
+    system = about.found.mechanics.system
+    step = SHIFT * max(1.0, system.size)
+    sides = [_with_value(about, given, value, changes) for value in (-step, step)]
+    (force, gap), (more, wider) = (_acting(about, side) for side in sides)
+    own = about.linear.own_axes
+    change = Input(name, own.T @ (more - force) / (2 * step), (wider - gap) / (2 * step))
+    acts = effect(about.linear, about.state, change, about.scale)
+    moved = np.outer((-step, step), acts.pose), np.outer((-step, step), acts.velocity)
+    values = [_channels(about, side, x[None], v[None], outputs)[0] for side, x, v in zip(sides, *moved, strict=True)]
+    if np.any(acts.velocity_of_rate):
+        _refuse_rates(about, name, outputs)
+    return acts.rates, (values[1] - values[0]) / (2 * step)
+
+
+def _with_value(about: _About, given: Parameterised, value: float, changes: dict[str, Any]) -> Mechanics:
+    """The model for a value of an input, at the state about which it is linearised."""
+    job = prepare(given(value), **changes)
+    system, state = job.mechanics.system, about.found.mechanics.state
+    if (system.bodies, system.equations) != (
+        about.found.mechanics.system.bodies,
+        about.found.mechanics.system.equations,
+    ):
+        raise InputError("found another mechanism for another value of an input, expected the same bodies and joints")
+    job.mechanics.state.q[:], job.mechanics.state.u[:] = state.q, state.u
+    job.mechanics.state.lam[:] = state.lam
+    return job.mechanics
+
+
+def _acting(about: _About, mechanics: Mechanics) -> tuple[np.ndarray, np.ndarray]:
+    """Applied forces, and the constraints of positions, at the state."""
+    state, rows = mechanics.state, about.found.mechanics.system.active & mechanics.system.holonomic
+    state.evaluate("motion", about.found.t)
+    return state.vector("motion", "f"), state.vector("motion", "C")[rows]
+
+
+def _channels(about: _About, mechanics: Mechanics, x: np.ndarray, v: np.ndarray, outputs: Sequence[str]) -> np.ndarray:
+    """Outputs at states that differ from that of the model, a row each; brought to the constraints."""
+    system, at = about.found.mechanics.system, about.found.mechanics.state
+    own = about.linear.own_axes
+    q = np.array([system.of_body.moved(at.q, own @ row) for row in x])
+    u = np.array([at.u + own @ row for row in v])
+    with mechanics.state.unchanged():
+        rows = mechanics.report(np.full(len(x), about.found.t), q, u, project=True)
+    if len(rows.t) < len(x):
+        raise SolverError("no accelerations were found beside the state, expected one about which motions exist")
+    channels = channels_of(about.found.data, mechanics.system, rows)
+    for name in outputs:
+        if name not in channels:
+            raise InputError(
+                f"output '{name}': found no such channel, expected one such as {', '.join(list(channels)[:6])}"
+            )
+    return np.column_stack([channels[name] for name in outputs]).reshape(len(x), len(outputs))
+
+
+def _differentiated(about: _About, outputs: Sequence[str]) -> np.ndarray:
+    """C: the outputs' derivatives by the state, central differences of what a run would report."""
+    state = about.state
+    sizes = np.abs(np.vstack([state.poses, state.velocities]) / np.tile(about.scale, 2)[:, None]).max(axis=0)
+    steps = SHIFT / np.maximum(sizes, np.finfo(float).tiny)
+    x, v = (part * steps for part in (state.poses, state.velocities))
+    values = _channels(about, about.found.mechanics, np.hstack([-x, x]).T, np.hstack([-v, v]).T, outputs)
+    found: np.ndarray = ((values[len(steps) :] - values[: len(steps)]) / (2 * steps[:, None])).T
+    return found
+
+
+def _refuse_rates(about: _About, name: str, outputs: Sequence[str]) -> None:
+    """Refuse outputs that feel at once how fast an input moves a constraint: no proper transfer function leads to them.
+
+    Displacements do not; velocities are i w times these, accelerations and reactions feel the input's own acceleration.
+    """
+    system, data = about.found.mechanics.system, about.found.data
+    rates = (*system.of_body.velocities, *system.of_body.accelerations)
+    felt = {f"{body}.{label}" for body in system.bodies for label in rates}
+    felt |= {f"{joint}.{label}" for joint in data.joints for label in system.of_body.reactions}
+    for output in felt & set(outputs):
+        raise InputError(
+            f"output '{output}': found a velocity, acceleration or reaction, expected a displacement for the input '{name}', "
+            "which moves a constraint; ask for the response of the displacement"
+        )

@@ -1,0 +1,67 @@
+"""Eigenvalues of a state matrix, with those that are zero told from small ones by the rank of the matrix.
+
+Rigid body motions have double zeros, which rounding would spread to the root of its size.  A basis of the null space
+splits them off (deflation): with V = (V_1, V_2) and A V_1 = 0 all other eigenvalues are those of V_2^T A V_2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eig, svd
+
+ROUNDING = 10 * np.finfo(float).eps
+"""Singular value, relative to rows of length 1 and times their number, that counts as zero."""
+
+
+@dataclass(frozen=True)
+class Zeros:
+    """The zero eigenvalues of a matrix.
+
+    Attributes
+    ----------
+    eigenvectors : ndarray, shape (n, k)
+        A basis of its null space.
+    generalised : ndarray, shape (n, l)
+        Generalised eigenvectors, which the matrix takes there.
+    """
+
+    eigenvectors: np.ndarray
+    generalised: np.ndarray
+
+
+def eigen(matrix: np.ndarray, n_poses: int) -> tuple[np.ndarray, np.ndarray, Zeros]:
+    """Eigenvalues that are not zero, their eigenvectors as columns, and the zeros.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (n, n)
+    n_poses : int
+        Rows of poses, which velocities follow; those are measured over the fastest rate, so that all rows are alike.
+    """
+    rate = np.sqrt(np.linalg.norm(matrix[n_poses:, :n_poses], 2)) if n_poses < len(matrix) else 0.0
+    scale = np.where(np.arange(len(matrix)) < n_poses, 1.0, rate or 1.0)
+    values, vectors, levels = _deflated(matrix * scale / scale[:, None])
+    at_zero = [scale[:, None] * level for level in levels]
+    nothing = np.zeros((len(matrix), 0))
+    generalised = np.hstack([nothing, *at_zero[1:]])
+    return values, scale[:, None] * vectors, Zeros(at_zero[0] if at_zero else nothing, generalised)
+
+
+def _deflated(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """Eigenvalues other than zero, eigenvectors, and for each order of generalised eigenvectors at zero a basis."""
+    n = len(matrix)
+    if not np.any(matrix):
+        return np.zeros(0), np.zeros((n, 0)), [np.eye(n)] if n else []
+    sizes = np.linalg.norm(matrix, axis=1)
+    noise = ROUNDING * n * sizes.max()
+    _, singular, basis = svd(matrix * np.where(sizes > noise, 1 / np.maximum(sizes, noise), 0.0)[:, None])
+    rank = int(np.sum(singular > ROUNDING * n))
+    if rank == n:
+        values, vectors = eig(matrix)
+        return values, vectors, []
+    null, rest = basis[rank:].T, basis[:rank].T
+    values, inner, levels = _deflated(rest.T @ matrix @ rest)
+    vectors = rest @ inner + null @ (null.T @ matrix @ rest @ inner) / values
+    return values, vectors, [null, *(rest @ level for level in levels)]

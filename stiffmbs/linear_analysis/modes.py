@@ -1,0 +1,154 @@
+"""Natural modes: eigenvalues of the state matrix as frequency and damping, shapes, and which bodies take part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from .eigenvalues import Zeros, eigen
+from .state_space import StateMatrix
+
+
+class Motion(Enum):
+    """How a mode moves by itself."""
+
+    OSCILLATING = "oscillating"
+    APERIODIC = "aperiodic"
+    RIGID = "rigid body"
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One mode: a pair of eigenvalues.
+
+    Attributes
+    ----------
+    motion : Motion
+        Oscillating with a conjugate pair, aperiodic with two real eigenvalues (overdamped, or falling over), or a rigid
+        body motion without stiffness, whose eigenvalues are zero; one of the two may differ from zero by damping.
+    eigenvalues : tuple of complex
+        1/s; the one with positive imaginary part first.
+    shape : ndarray, shape (n_u,), complex
+        Displacements and rotations of all bodies in ground axes; the largest displacement, or rotation times the size of
+        the mechanism, is 1.
+    participation : dict of str to float
+        The part of each body in the kinetic energy, largest first; their sum is 1.
+    """
+
+    motion: Motion
+    eigenvalues: tuple[complex, complex]
+    shape: np.ndarray
+    participation: dict[str, float]
+
+    @property
+    def frequency(self) -> float:
+        """Damped natural frequency, Hz: |Im s| / 2 pi."""
+        return float(abs(self.eigenvalues[0].imag) / (2 * np.pi))
+
+    @property
+    def natural_frequency(self) -> float:
+        """Undamped natural frequency, Hz: the root of |s_1 s_2|, over 2 pi."""
+        return float(np.sqrt(abs(self.eigenvalues[0] * self.eigenvalues[1])) / (2 * np.pi))
+
+    @property
+    def damping_ratio(self) -> float:
+        """Of the critical damping: -(s_1 + s_2)/2 over the undamped natural frequency; nan for a rigid body motion."""
+        natural = 2 * np.pi * self.natural_frequency
+        return float(-sum(self.eigenvalues).real / 2 / natural) if natural else float("nan")
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether nothing in it grows exponentially."""
+        return max(value.real for value in self.eigenvalues) <= 0
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "motion": self.motion.value,
+            "eigenvalues": [[value.real, value.imag] for value in self.eigenvalues],
+            "frequency": self.frequency,
+            "natural_frequency": self.natural_frequency,
+            "damping_ratio": None if np.isnan(self.damping_ratio) else self.damping_ratio,
+            "participation": self.participation,
+        }
+
+
+def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray) -> list[Mode]:
+    """The modes of a state matrix, as many as there are degrees of freedom, by undamped natural frequency.
+
+    Parameters
+    ----------
+    state : StateMatrix
+    mass : sparse array, shape (n_u, n_u)
+        In ground axes.
+    bodies : tuple of str
+    scale : ndarray, shape (n_u,)
+        Lengths for displacements, 1 for rotations.
+    """
+    if not state.degrees_of_freedom:
+        return []
+    values, vectors, zeros = eigen(state.matrix, state.n_poses)
+    shapes = state.poses @ vectors
+    pairs = [
+        *_oscillations(values, shapes),
+        *_without_oscillation(values, shapes, state, zeros, scale),
+    ]
+    found = [_mode(both, shape, mass, bodies, scale) for both, shape in pairs]
+    return sorted(found, key=lambda mode: (mode.natural_frequency, mode.frequency))
+
+
+Pair = tuple[tuple[complex, complex], np.ndarray]
+
+
+def _oscillations(values: np.ndarray, shapes: np.ndarray) -> Iterator[Pair]:
+    for k in np.flatnonzero(values.imag > 0):
+        yield (complex(values[k]), complex(values[k].conjugate())), shapes[:, k]
+
+
+def _without_oscillation(
+    values: np.ndarray, shapes: np.ndarray, state: StateMatrix, zeros: Zeros, scale: np.ndarray
+) -> Iterator[Pair]:
+    """Real eigenvalues two by two: zeros of one rigid body motion, and real ones whose shapes are most alike.
+
+    A zero without a generalised eigenvector belongs to a free motion that a damper ends, or to a pose that no free
+    velocity leads to (rolling constraints); the latter are no modes.
+    """
+    for k in range(zeros.generalised.shape[1]):
+        yield (0j, 0j), state.velocities @ zeros.generalised[:, k]
+    rolling = state.n_poses - state.degrees_of_freedom
+    single = zeros.eigenvectors.shape[1] - zeros.generalised.shape[1] - rolling
+    reals = np.flatnonzero(values.imag == 0)
+    found, known = [*values[reals].real, *[0.0] * single], [*shapes[:, reals].real.T]
+    if single:
+        known += list((state.poses @ zeros.eigenvectors).T[:single])
+    likeness = np.array(known).reshape(len(found), len(scale)) / scale
+    for one, other in _alike(likeness):
+        first, second = sorted((one, other), key=lambda k: -abs(found[k]))
+        yield (complex(found[first]), complex(found[second])), known[first].astype(complex)
+
+
+def _alike(shapes: np.ndarray) -> Iterator[tuple[int, int]]:
+    """Shapes in pairs, those most similar first (modal assurance criterion)."""
+    unit = shapes / np.maximum(np.linalg.norm(shapes, axis=1, keepdims=True), np.finfo(float).tiny)
+    likeness = np.triu(np.abs(unit @ unit.T), 1) - np.tril(np.ones((len(shapes), len(shapes))))
+    for _ in range(len(shapes) // 2):
+        one, other = np.unravel_index(np.argmax(likeness), likeness.shape)
+        yield int(one), int(other)
+        for taken in (one, other):
+            likeness[taken, :] = likeness[:, taken] = -2.0
+
+
+def _mode(
+    both: tuple[complex, complex], shape: np.ndarray, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray
+) -> Mode:
+    motion = Motion.OSCILLATING if both[0].imag else Motion.APERIODIC if all(both) else Motion.RIGID
+    sizes = shape / scale * scale.max()
+    shape = shape / sizes[np.argmax(np.abs(sizes))]
+    energy = (shape.conj() * (mass @ shape)).real.reshape(len(bodies), -1).sum(axis=1)
+    shares = dict(zip(bodies, (energy / energy.sum()).tolist(), strict=True))
+    return Mode(motion, both, shape, dict(sorted(shares.items(), key=lambda part: -part[1])))

@@ -1,0 +1,128 @@
+"""The linearised equations in as many variations as there are degrees of freedom.
+
+Poses vary by x = W a with G W = 0, velocities by v = N b + P a with J N = 0 and J P = -H W: the constraints hold, and
+with L^T B = 0 multipliers drop out (null space method; Negrut and Ortiz, J. Comput. Nonlinear Dyn. 1, 2006).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import qr
+
+from ..errors import SolverError
+from .tangent_space import Linearised
+
+DEPENDENT = 1e-9
+"""Pivot, relative to the largest, below which an equation depends on others at a pose."""
+SINGULAR = 1e15
+"""Condition number of the inertia of the free motions from which on one of them has none."""
+
+
+@dataclass(frozen=True)
+class StateMatrix:
+    """z' = A z with z = (a, b), and what z stands for.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (n, n)
+        A; n is twice the degrees of freedom, and more by one for each rolling constraint.
+    poses : ndarray, shape (n_u, n)
+        x from z: displacements and rotations of all bodies, ground axes.
+    velocities : ndarray, shape (n_u, n)
+        v from z.
+    accelerations : ndarray, shape (n_u, n)
+        v' from z.
+    forced : ndarray, shape (n, n_u)
+        z' from generalised forces on the bodies, ground axes.
+    n_poses : int
+        Length of a.
+    """
+
+    matrix: np.ndarray
+    poses: np.ndarray
+    velocities: np.ndarray
+    accelerations: np.ndarray
+    forced: np.ndarray
+    n_poses: int
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Length of b: the velocities that constraints leave free."""
+        return len(self.matrix) - self.n_poses
+
+
+def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
+    """Eliminate the constraints from linearised equations.
+
+    Parameters
+    ----------
+    linear : Linearised
+    scale : ndarray, shape (n_u,)
+        What a variation of each velocity is measured by: lengths for displacements, 1 for rotations.
+
+    Raises
+    ------
+    SolverError
+        Where a motion that the constraints leave free has no mass.
+    """
+    poses = null_space(linear.position * scale) * scale[:, None]
+    free = null_space(linear.velocity * scale) * scale[:, None]
+    left = null_space(linear.reactions.T * scale) * scale[:, None]
+    n_a, n_b = poses.shape[1], free.shape[1]
+    x = np.hstack([poses, np.zeros((len(scale), n_b))])
+    v = np.hstack([_following(linear, linear.velocity_at_position @ poses, scale), free])
+    carried = _following(linear, linear.acceleration_at_position @ x + linear.acceleration_at_velocity @ v, scale)
+    force = left.T @ (linear.stiffness @ x + linear.damping @ v - linear.mass @ carried)
+    accelerations = _solved(left.T @ linear.mass @ free, np.hstack([force, left.T]))
+    rates = np.linalg.lstsq(poses / scale[:, None], v / scale[:, None], rcond=None)[0]
+    return StateMatrix(
+        matrix=np.vstack([rates, accelerations[:, : n_a + n_b]]),
+        poses=x,
+        velocities=v,
+        accelerations=carried + free @ accelerations[:, : n_a + n_b],
+        forced=np.vstack([np.zeros((n_a, len(scale))), accelerations[:, n_a + n_b :]]),
+        n_poses=n_a,
+    )
+
+
+def _following(linear: Linearised, missing: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """The smallest velocities, or accelerations, with J times them and what is missing zero; none where nothing is."""
+    if not np.any(missing):
+        return np.zeros((len(scale), missing.shape[1]))
+    found: np.ndarray = np.linalg.lstsq(linear.velocity * scale, -missing, rcond=DEPENDENT)[0]
+    return scale[:, None] * found
+
+
+def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Accelerations of the free motions from what acts on them."""
+    if not len(inertia):
+        return np.zeros(forces.shape)
+    sizes = np.linalg.norm(inertia, axis=1)
+    if not np.all(sizes > 0) or np.linalg.cond(inertia / sizes[:, None]) > SINGULAR:
+        raise SolverError(
+            "a motion that the joints leave free has no mass, expected mass or inertia in every free motion"
+        )
+    found: np.ndarray = np.linalg.solve(inertia, forces)
+    return found
+
+
+def null_space(matrix: np.ndarray) -> np.ndarray:
+    """An orthonormal basis of what a matrix takes to zero, by QR with column pivoting of its transpose.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (m, n)
+
+    Returns
+    -------
+    ndarray, shape (n, n - rank)
+    """
+    if not matrix.size:
+        return np.eye(matrix.shape[1])
+    norms = np.linalg.norm(matrix, axis=1)
+    q, r, _ = qr((matrix[norms > 0] / norms[norms > 0, None]).T, pivoting=True)
+    pivots = np.abs(np.diag(r))
+    rank = int(np.sum(pivots > DEPENDENT * pivots[0])) if len(pivots) else 0
+    return np.ascontiguousarray(q[:, rank:])

@@ -1,0 +1,134 @@
+"""The linearised equations of motion of all bodies at a state, in variations of poses and velocities in ground axes.
+
+A variation of a pose is a vector x of displacements and small rotations in ground axes, shape (n_u,); its rate is
+x' = v.  In these axes the equations of a symmetric rotor have constant coefficients, whatever its spin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array
+
+from ..compile.quaternions import rotated
+from ..compile.system import System
+from ..solve.mechanics import Mechanics
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """M v' = K x + D v - B dlam, with G x = 0, H x + J v = 0 and J v' + H_x x + H_v v = 0.
+
+    Attributes
+    ----------
+    mass : sparse array, shape (n_u, n_u)
+        M.
+    stiffness, damping : ndarrays, shape (n_u, n_u)
+        K and D; K and D are derivatives of forces, so that a spring has a negative K.
+    reactions : ndarray, shape (n_u, n_c)
+        B: J^T less the derivative of forces that depend on multipliers.
+    position : ndarray, shape (holonomic, n_u)
+        G, the derivative of the constraints of positions.
+    velocity, velocity_at_position : ndarrays, shape (n_c, n_u)
+        J and H, the derivatives of the constraints of velocities by v and by x.
+    acceleration_at_position, acceleration_at_velocity : ndarrays, shape (n_c, n_u)
+        H_x and H_v, of the constraints of accelerations.
+    own_axes, spin : sparse arrays, shape (n_u, n_u)
+        From ground axes to those that u has, and w x of every body in ground axes: the variation of u' is
+        own_axes (v' - w x v).
+    """
+
+    mass: csr_array
+    stiffness: np.ndarray
+    damping: np.ndarray
+    reactions: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    velocity_at_position: np.ndarray
+    acceleration_at_position: np.ndarray
+    acceleration_at_velocity: np.ndarray
+    own_axes: csr_array
+    spin: csr_array
+
+
+def linearised(mechanics: Mechanics, t: float, acceleration: np.ndarray) -> Linearised:
+    """The linearised equations at the state of a system.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+        At a state that satisfies the constraints, with the multipliers of that state.
+    t : float
+        s.
+    acceleration : ndarray, shape (n_u,)
+        u' of that state.
+
+    Returns
+    -------
+    Linearised
+        Of the equations that are not redundant.
+    """
+    system, state = mechanics.system, mechanics.state
+    state.a[:] = acceleration
+    state.evaluate("all_levels_tangent", t)
+
+    def term(name: str) -> np.ndarray:
+        return state.matrix("all_levels_tangent", name)
+
+    rates = term("Z")
+    q, u = system.of_body.straight(len(system.bodies))
+    rates[q, u] += 1.0
+    axes, spin = _axes(system, state.q), _spin(system, state.q, state.u)
+    back = axes.T
+    rows = system.active
+    to_coordinates = rates @ back
+    mass = axes @ diags_array(system.mass) @ back
+    return Linearised(
+        mass=mass,
+        stiffness=axes @ (term("f_q") - term("G_lam")) @ to_coordinates,
+        damping=axes @ term("f_u") @ back + mass @ spin,
+        reactions=axes @ (term("J").T - term("f_lam"))[:, rows],
+        position=(term("C_q") @ to_coordinates)[rows & system.holonomic],
+        velocity=(term("J") @ back)[rows],
+        velocity_at_position=(term("V_q") @ to_coordinates)[rows],
+        acceleration_at_position=(term("A_q") @ to_coordinates)[rows],
+        acceleration_at_velocity=-(term("gamma_u") @ back + term("J") @ back @ spin)[rows],
+        own_axes=back,
+        spin=spin,
+    )
+
+
+def _axes(system: System, q: np.ndarray) -> csr_array:
+    """From the axes that u has to those of the ground, shape (n_u, n_u): rotations of the bodies' principal axes."""
+    blocks = {own.start: rotated(orientation, np.eye(3)).T for own, orientation in _orientations(system, q)}
+    return _block_diagonal(system, blocks, 1.0)
+
+
+def _spin(system: System, q: np.ndarray, u: np.ndarray) -> csr_array:
+    """w x for the angular velocity of every body in ground axes: with v = A du, A du' = v' - w x v."""
+    blocks = {}
+    for own, orientation in _orientations(system, q):
+        x, y, z = rotated(orientation, u[own])
+        blocks[own.start] = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return _block_diagonal(system, blocks, 0.0)
+
+
+def _block_diagonal(system: System, blocks: dict[int, np.ndarray], elsewhere: float) -> csr_array:
+    """Blocks of angular velocities by the first of them; one number on the diagonal elsewhere."""
+    at = np.array(list(blocks), dtype=int).reshape(-1, 1, 1)
+    row, column = np.broadcast_arrays(at + np.arange(3)[:, None], at + np.arange(3))
+    straight = np.setdiff1d(np.arange(system.n_u), row)
+    values = np.concatenate([np.array([*blocks.values()]).ravel(), np.full(len(straight), elsewhere)])
+    places = np.concatenate([row.ravel(), straight]), np.concatenate([column.ravel(), straight])
+    return csr_array((values, places), shape=(system.n_u, system.n_u))
+
+
+def _orientations(system: System, q: np.ndarray) -> Iterator[tuple[slice, np.ndarray]]:
+    """The places of the angular velocity, and the quaternion, of every body in space."""
+    of_body = system.of_body
+    for body in range(len(system.bodies) if of_body.dimensions == 3 else 0):
+        orientation = q[of_body.n_q * body + of_body.linear : of_body.n_q * (body + 1)]
+        first = of_body.n_u * body + of_body.linear
+        yield slice(first, first + 3), orientation / np.linalg.norm(orientation)

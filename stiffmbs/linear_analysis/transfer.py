@@ -1,0 +1,119 @@
+"""Inputs and outputs about a state: z' = A z + B p, y = C z + D p, and the frequency response.
+
+An input p that moves a constraint, such as the travel of a drive, shifts the poses by X p with G X + C_p = 0; X is chosen
+so that L^T M X = 0, and b stands for v - X p' - N B_1 p, so that neither p' nor p'' is left in the equations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .state_space import StateMatrix
+from .tangent_space import Linearised
+
+if TYPE_CHECKING:
+    from scipy.signal import StateSpace
+
+
+@dataclass(frozen=True)
+class Input:
+    """What one input does to the equations, for each unit of it.
+
+    Attributes
+    ----------
+    name : str
+    force : ndarray, shape (n_u,)
+        Generalised forces, ground axes.
+    position : ndarray, shape (holonomic,)
+        C_p, the change of the constraints of positions.
+    """
+
+    name: str
+    force: np.ndarray
+    position: np.ndarray
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An input in the equations of the free variations.
+
+    Attributes
+    ----------
+    rates : ndarray, shape (n,)
+        B: z' for a unit of the input.
+    pose, velocity : ndarrays, shape (n_u,)
+        x and v for a unit of the input, at z = 0.
+    velocity_of_rate : ndarray, shape (n_u,)
+        v for a unit of the input's rate.
+    """
+
+    rates: np.ndarray
+    pose: np.ndarray
+    velocity: np.ndarray
+    velocity_of_rate: np.ndarray
+
+
+def effect(linear: Linearised, state: StateMatrix, given: Input, scale: np.ndarray) -> Effect:
+    """What an input does to the free variations, and to poses and velocities."""
+    n_a = state.n_poses
+    free = state.velocities[:, n_a:]
+    poses = state.poses[:, :n_a]
+    nothing = np.zeros(len(scale))
+    if not np.any(given.position):
+        return Effect(state.forced @ given.force, nothing, nothing, nothing)
+    shift = scale * np.linalg.lstsq(linear.position * scale, -given.position, rcond=1e-9)[0]
+    shift = shift - free @ (state.forced[n_a:] @ (linear.mass @ shift))
+    damped = state.forced[n_a:] @ (linear.damping @ shift)
+    acting = state.forced[n_a:] @ (given.force + linear.stiffness @ shift)
+    carried = np.linalg.lstsq(poses / scale[:, None], free @ damped / scale, rcond=None)[0]
+    moved = state.matrix[n_a:, n_a:] @ damped
+    return Effect(np.concatenate([carried, acting + moved]), shift, free @ damped, shift)
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """A, B, C, D about a state, with names.
+
+    Attributes
+    ----------
+    a, b, c, d : ndarrays
+    inputs, outputs : tuples of str
+    at : ndarray, shape (outputs,)
+        The outputs at the state itself.
+    """
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    at: np.ndarray
+
+    def state_space(self) -> StateSpace:
+        """As `scipy.signal.StateSpace`."""
+        from scipy.signal import StateSpace
+
+        return StateSpace(self.a, self.b, self.c, self.d)
+
+    def response(self, frequencies: np.ndarray) -> np.ndarray:
+        """H = C (i w - A)^-1 B + D, shape (frequencies, outputs, inputs).
+
+        Parameters
+        ----------
+        frequencies : ndarray
+            Hz.
+        """
+        values, vectors = np.linalg.eig(self.a)
+        if not len(values):
+            return np.broadcast_to(self.d, (len(frequencies), *self.d.shape)).astype(complex)
+        rates = 2j * np.pi * np.asarray(frequencies)
+        if np.linalg.cond(vectors) > 1e8:  # double eigenvalues, as of rigid body motions
+            unit = np.eye(len(values))
+            solved = np.array([np.linalg.solve(rate * unit - self.a, self.b) for rate in rates])
+            return np.asarray(self.c @ solved + self.d)
+        into = np.linalg.solve(vectors, self.b.astype(complex))
+        return np.asarray(np.einsum("ok,fk,ki->foi", self.c @ vectors, 1 / (rates[:, None] - values), into) + self.d)

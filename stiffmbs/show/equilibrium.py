@@ -1,0 +1,26 @@
+"""A static equilibrium as a table for a person."""
+
+from __future__ import annotations
+
+from ..compile.bodies import BODY_KINDS
+from ..describe.model_data import ModelData
+from ..jobs.equilibrium import EquilibriumFound
+
+
+def equilibrium_text(found: EquilibriumFound, model: ModelData) -> str:
+    """Poses of bodies, then the force and torque of each element on its first body."""
+    kind = BODY_KINDS[model.dimensions]
+    head = f"{found.name or 'model'}: equilibrium at t = {found.t:g} s after {found.moves} moves, imbalance {found.imbalance:.1e}"
+    tables = (
+        ("pose (m, rad)", model.bodies, kind.positions),
+        ("force, torque (N, N m)", {**model.joints, **model.forces}, kind.reactions),
+    )
+    lines = [head]
+    for title, names, labels in tables:
+        width = max((len(name) for name in names), default=0)
+        lines.append(f"{title}: {', '.join(labels)}")
+        for name in names:
+            values = [found.channels.get(f"{name}.{label}") for label in labels]
+            if None not in values:
+                lines.append(f"  {name:<{width}}  " + "  ".join(f"{value:>14.8g}" for value in values))
+    return "\n".join([*lines, *(f"note: {note}" for note in found.notes)])

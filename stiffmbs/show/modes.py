@@ -1,0 +1,47 @@
+"""Natural modes as a table for a person."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..jobs.modes import Modes
+from ..linear_analysis.modes import Mode, Motion
+
+MOST_BODIES = 4
+LEAST_SHARE = 0.01
+"""Part in the kinetic energy from which on a body is named."""
+
+
+def modes_text(found: Modes) -> str:
+    """A table of modes: frequency, damping, eigenvalues, and the bodies that take part."""
+    count = found.degrees_of_freedom
+    head = f"{found.name or 'model'} at t = {found.t:g} s: {count} degree{'s' if count != 1 else ''} of freedom"
+    columns = f"{'':>4}  {'Hz':>12}  {'damping':>10}  {'eigenvalues, 1/s':<28}  kinetic energy"
+    rows = [_row(k, mode) for k, mode in enumerate(found.modes, start=1)]
+    notes = [f"note: {note}" for note in found.notes]
+    return "\n".join([head, *([columns, *rows] if rows else []), *notes])
+
+
+def _row(number: int, mode: Mode) -> str:
+    return f"{number:>4}  {mode.natural_frequency:>12.6g}  {_damping(mode):>10}  {_values(mode):<28}  {', '.join(_bodies(mode))}"
+
+
+def _damping(mode: Mode) -> str:
+    return "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}"
+
+
+def _values(mode: Mode) -> str:
+    one, other = mode.eigenvalues
+    if mode.motion is Motion.OSCILLATING:
+        return f"{one.real:.6g} +- {abs(one.imag):.6g}i"
+    return f"{one.real:.6g}, {other.real:.6g}"
+
+
+def _bodies(mode: Mode) -> Iterator[str]:
+    shares = [(name, share) for name, share in mode.participation.items() if share >= LEAST_SHARE]
+    for name, share in shares[:MOST_BODIES]:
+        yield f"{name} {np.round(100 * share):.0f} %"
+    if len(shares) > MOST_BODIES:
+        yield f"and {len(shares) - MOST_BODIES} more"

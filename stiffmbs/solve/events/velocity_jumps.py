@@ -1,0 +1,46 @@
+"""Jumps of velocities that drives ask for at corners: no equation holds their impulses, so that they are told."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..mechanics import Mechanics
+
+MOST_TOLD = 3
+"""Jumps that are told one by one."""
+WORTH_TELLING = 1e-2
+"""Change of a velocity at a corner, in parts of the largest, that no error of an integrator explains."""
+
+
+class VelocityJumps:
+    """The jumps of one run.
+
+    Parameters
+    ----------
+    mechanics : Mechanics
+    """
+
+    def __init__(self, mechanics: Mechanics) -> None:
+        self._mechanics = mechanics
+        self._told: list[str] = []
+
+    def note(self, t: float, change: np.ndarray) -> None:
+        """Note a change of velocities at a corner; the mechanics' state is the one behind it."""
+        if not change.any():
+            return
+        k = int(np.argmax(np.abs(change)))
+        if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self._mechanics.state.u)))):
+            system = self._mechanics.system
+            name = system.name_of(k, system.of_body.velocities)
+            self._told.append(
+                f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); no force shows that blow"
+            )
+
+    def clear(self) -> None:
+        """Forget them, for another run."""
+        self._told.clear()
+
+    def sentence(self) -> str:
+        """What the user should know; empty for nothing."""
+        more = len(self._told) - MOST_TOLD
+        return "; ".join([*self._told[:MOST_TOLD], *([f"and {more} more such jumps"] if more > 0 else [])])

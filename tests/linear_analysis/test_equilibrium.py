@@ -1,0 +1,113 @@
+"""Static equilibrium against closed forms, from poses far away, and what is said where there is none."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import stiffmbs
+from stiffmbs.commands.main import main
+from stiffmbs.errors import SolverError
+from stiffmbs.jobs.equilibrium import equilibrium
+from stiffmbs.stress.random_tree import random_tree
+
+from ..conftest import EXAMPLES
+
+
+@pytest.mark.parametrize("height", [-0.05, 0.0, 0.1, 0.2])
+def test_the_half_car_settles_from_any_height(height):
+    scene = stiffmbs.load_scene(EXAMPLES / "half_car.yaml")
+    bodies = {
+        name: body.model_copy(update={"position": (body.position[0], body.position[1] + height)})
+        for name, body in scene.bodies.items()
+    }
+    found = equilibrium(scene.model_copy(update={"bodies": bodies}))
+    weight = 9.81 * sum(body.mass for body in scene.bodies.values())
+    loads = found.channels["front_tyre.fy"] + found.channels["rear_tyre.fy"]
+    assert abs(loads - weight) < 1e-9 * weight
+    assert found.channels["chassis.y"] == pytest.approx(0.6, abs=1e-6)
+
+
+def test_a_run_from_equilibrium_stays_at_rest():
+    scene = stiffmbs.load_scene(EXAMPLES / "half_car.yaml", [("V", "1e-9")])
+    lifted = scene.bodies["chassis"].model_copy(update={"position": (0, 0.7)})
+    raised = scene.model_copy(update={"bodies": {**scene.bodies, "chassis": lifted}, "start": "equilibrium"})
+    found = stiffmbs.run(raised, duration=10.0, rtol=1e-9)
+    for name in ("chassis.y", "front.y", "rear.angle"):
+        assert np.ptp(found[name]) < 1e-8
+
+
+def test_a_ball_falls_onto_the_floor_and_sinks_in():
+    found = equilibrium(stiffmbs.load_scene(EXAMPLES / "bouncing_ball.yaml"))
+    assert found.channels["floor.fy"] == pytest.approx(0.5 * 9.81, rel=1e-9)
+
+
+@pytest.mark.parametrize("name, channel, value", [("bar_pendulum", "bar.y", -0.3), ("heavy_top", "top.z", None)])
+def test_pendulums_hang_down(name, channel, value):
+    found = equilibrium(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"))
+    hanging = -np.hypot(
+        np.hypot(found.channels.get("top.x", 0), found.channels.get("top.y", 0)), found.channels.get("top.z", 0)
+    )
+    assert found.channels[channel] == pytest.approx(hanging if value is None else value, abs=1e-9)
+
+
+STRUT = """
+bodies:
+  bar: {mass: 1, inertia: 0.1, position: [0, 0.5], angle: 90 deg, markers: {top: {point: [0.5, 0]}}}
+joints:
+  hinge: {type: revolute, i: {body: bar, point: [-0.5, 0]}, j: ground}
+forces:
+  spring: {type: torsion_spring, i: bar, j: ground, stiffness: 10, free_angle: 90 deg}
+  load: {type: force, i: bar.top, force: [0, -20]}
+"""
+
+
+def test_a_buckled_strut_finds_a_stable_branch_and_says_that_there_are_two():
+    """k a = F L sin a for the angle a from upright; upright itself is unstable for F L > k."""
+    from scipy.optimize import brentq
+
+    found = equilibrium(stiffmbs.read_scene(STRUT))
+    angle = brentq(lambda a: 10 * a - 20 * np.sin(a), 0.5, 3)
+    assert abs(found.channels["bar.angle"] - np.pi / 2) == pytest.approx(angle, abs=1e-9)
+    assert any("unstable in bar.omega: 2 lead away" in note for note in found.notes)
+
+
+def test_free_directions_are_named_and_left_alone():
+    text = """
+gravity: [0, -9.81]
+bodies: {cart: {mass: 2, inertia: 1, position: [3, 0.5]}, bob: {mass: 1, inertia: 0.1, position: [3.4, 0.5]}}
+joints:
+  rail: {type: prismatic, i: cart, j: {body: ground, point: [0, 0.5]}}
+  hinge: {type: revolute, i: {body: bob, point: [-0.4, 0]}, j: cart}
+"""
+    found = equilibrium(stiffmbs.read_scene(text))
+    assert found.free == ("cart.vx",) or found.free == ("bob.vx",)
+    assert found.channels["bob.y"] == pytest.approx(0.1, abs=1e-9)
+    assert 2.5 < found.channels["cart.x"] < 3.5
+
+
+def test_what_falls_for_ever_has_no_equilibrium():
+    with pytest.raises(SolverError, match=r"no equilibrium was found: the largest imbalance is left in stone.fy"):
+        equilibrium(stiffmbs.read_scene("gravity: [0, -9.81]\nbodies: {stone: {mass: 2, inertia: 1}}"))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_random_trees_with_springs_settle_or_say_why(seed):
+    """At rest with the found pose as described: accelerations are zero."""
+    model = random_tree(np.random.default_rng(seed), 4, True, True, 5)
+    try:
+        found = equilibrium(model)
+    except SolverError as error:
+        assert "the largest imbalance is left in" in str(error)
+        return
+    labels = [name for name in found.channels if name.endswith((".ax", ".ay", ".alpha"))]
+    assert max(abs(found.channels[name]) for name in labels) < 1e-7
+
+
+def test_the_command_prints_poses_and_json():
+    scene = str(EXAMPLES / "bar_pendulum.yaml")
+    shown = CliRunner().invoke(main, ["equilibrium", scene])
+    assert shown.exit_code == 0 and "bar" in shown.output and "hinge" in shown.output
+    told = json.loads(CliRunner().invoke(main, ["equilibrium", scene, "--json"]).output)
+    assert told["channels"]["hinge.fy"] == pytest.approx(1.2 * 9.81)

@@ -1,0 +1,149 @@
+"""Transfer functions against closed forms and against runs of small amplitude."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import stiffmbs
+from stiffmbs.commands.main import main
+from stiffmbs.errors import InputError
+from stiffmbs.jobs.transfer import transfer
+
+from ..conftest import EXAMPLES
+
+OSCILLATOR = """
+parameters: {road: 0, push: 0}
+bodies: {a: {mass: 2, inertia: 1, position: [0, 1], markers: {end: {point: [0.5, 0]}}}}
+joints:
+  rail: {type: prismatic, i: a, j: {body: ground, point: [0, 1]}}
+forces:
+  spring: {type: force, i: a, force: ["-50*(a.x - road) - 4*a.vx + push", 0]}
+"""
+DRIVEN = """
+parameters: {travel: 0}
+gravity: [0, -9.81]
+bodies:
+  cart: {mass: 3, inertia: 1}
+  bob: {mass: 1, inertia: 0.02, position: [0, -0.5]}
+joints:
+  rail: {type: prismatic, i: cart, j: ground}
+  hinge: {type: revolute, i: {body: bob, point: [0, 0.5]}, j: cart}
+  drive: {type: drive, joint: rail, position: travel}
+forces:
+  air: {type: force, i: bob, force: ["-0.3*bob.vx", 0]}
+"""
+
+
+def test_a_force_and_a_road_on_an_oscillator():
+    """x = F/(k + d s + m s^2), and the road acts as the force k times its height."""
+    made = lambda **values: stiffmbs.read_scene(  # noqa: E731
+        OSCILLATOR, [(f"parameters.{name}", repr(value)) for name, value in values.items()]
+    )
+    found = transfer(
+        made(),
+        {"road": lambda value: made(road=value), "push": lambda value: made(push=value)},
+        ["a.x", "a.vx", "a.ax"],
+    )
+    frequencies = np.array([0.05, 0.7, 5.0])
+    s = 2j * np.pi * frequencies
+    x = 1 / (50 + 4 * s + 2 * s**2)
+    expected = np.stack(
+        [np.stack([50 * x, x], -1), np.stack([50 * x * s, x * s], -1), np.stack([50 * x * s**2, x * s**2], -1)], 1
+    )
+    np.testing.assert_allclose(found.response(frequencies), expected, rtol=1e-7)
+    space = found.state_space()
+    direct = [space.C @ np.linalg.solve(value * np.eye(len(space.A)) - space.A, space.B) + space.D for value in s]
+    np.testing.assert_allclose(direct, expected, rtol=1e-7)
+
+
+def test_a_force_at_a_marker_turns_its_body_too():
+    text = "bodies: {a: {mass: 2, inertia: 4, markers: {end: {point: [0.5, 0]}}}}"
+    found = transfer(stiffmbs.read_scene(text), ["a.end.fy", "a.torque"], ["a.ay", "a.alpha"])
+    np.testing.assert_allclose(found.d, [[0.5, 0], [0.125, 0.25]], atol=1e-9)
+
+
+def test_an_input_may_move_a_constraint():
+    """A pendulum of which the pivot is driven: J angle'' + d L^2 angle' + m g L angle = -(m L s^2 + d L s) travel."""
+    made = lambda value: stiffmbs.read_scene(DRIVEN, [("parameters.travel", repr(value))])  # noqa: E731
+    found = transfer(made(0.0), {"travel": made}, ["cart.x", "bob.x", "bob.angle"])
+    s = 2j * np.pi * np.array([0.1, 0.66, 3.0])
+    inertia, drag = 0.02 + 0.5**2, 0.3
+    angle = -(0.5 * s**2 + drag * 0.5 * s) / (inertia * s**2 + drag * 0.25 * s + 9.81 * 0.5)
+    expected = np.stack([np.ones(3), 1 + 0.5 * angle, angle], -1)[:, :, None]
+    np.testing.assert_allclose(found.response(s.imag / (2 * np.pi)), expected, rtol=1e-6, atol=1e-8)
+    with pytest.raises(
+        InputError, match=r"output 'bob.vx': found a velocity, acceleration or reaction, expected a displ"
+    ):
+        transfer(made(0.0), {"travel": made}, ["bob.vx"])
+
+
+def test_small_runs_follow_the_response():
+    """The half car under a small harmonic force, after 12 s of settling: amplitude and phase within 1e-4."""
+    scene = stiffmbs.load_scene(EXAMPLES / "half_car.yaml", [("V", "1e-9"), ("parameters.k_b", "1e5")])
+    frequency, size = 2.0, 1.0
+    outputs = ["chassis.y", "front_bushing.fy"]
+    expected = transfer(scene, ["chassis.front_seat.fy"], outputs).response(np.array([frequency]))[0, :, 0]
+    shaken = scene.model_copy(
+        update={
+            "forces": {
+                **scene.forces,
+                "shaker": stiffmbs.AppliedForce(
+                    i="chassis.front_seat", force=(0, f"{size}*sin({2 * np.pi * frequency!r}*t)")
+                ),
+            }
+        }
+    )
+    found = stiffmbs.run(shaken, duration=20.0, output=0.01, rtol=1e-10)
+    last = found.t >= 10 - 1e-9
+    basis = np.column_stack(
+        [np.sin(2 * np.pi * frequency * found.t), np.cos(2 * np.pi * frequency * found.t), np.ones(len(found.t))]
+    )
+    for k, name in enumerate(outputs):
+        sine, cosine, _ = np.linalg.lstsq(basis[last], found[name][last], rcond=None)[0]
+        assert abs(sine + 1j * cosine - expected[k] * size) < 1e-4 * abs(expected[k]) * size
+
+
+def test_the_command_prints_peaks_and_writes_columns(tmp_path):
+    scene = tmp_path / "oscillator.yaml"
+    scene.write_text(OSCILLATOR)
+    told = CliRunner().invoke(
+        main,
+        [
+            "response",
+            str(scene),
+            "--input",
+            "road",
+            "--input",
+            "a.fx",
+            "--output",
+            "a.x",
+            "-o",
+            str(tmp_path / "r.csv"),
+        ],
+    )
+    assert told.exit_code == 0, told.output
+    assert "road -> a.x" in told.output and "peak" in told.output
+    table = np.loadtxt(tmp_path / "r.csv", delimiter=",", skiprows=1)
+    np.testing.assert_allclose(table[0, 1], 1.0147, rtol=1e-4)
+    shown = CliRunner().invoke(
+        main, ["response", str(scene), "--input", "a.fx", "--output", "a.x", "--points", "3", "--json"]
+    )
+    assert len(json.loads(shown.output)["response"]["a.fx"]["a.x"]) == 3
+
+
+@pytest.mark.parametrize(
+    "options, told",
+    [
+        (["--input", "nothing", "--output", "a.x"], "found no such parameter, expected one of road, push"),
+        (["--input", "a.fz", "--output", "a.x"], "input 'a.fz': found no such force"),
+        (["--input", "a.fx", "--output", "a.z"], "output 'a.z': found no such channel"),
+        (["--input", "a.fx", "--output", "a.x", "--from", "3", "--to", "2"], "found no range"),
+    ],
+)
+def test_wrong_requests_are_told(tmp_path, options, told):
+    scene = tmp_path / "oscillator.yaml"
+    scene.write_text(OSCILLATOR)
+    found = CliRunner().invoke(main, ["response", str(scene), *options])
+    assert found.exit_code == 2 and told in found.output
