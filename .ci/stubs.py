@@ -45,8 +45,11 @@ from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
 from .jobs.check import Report as Report
 from .jobs.check import check as check
+from .jobs.equilibrium import equilibrium as equilibrium
 from .jobs.load_scene import load_scene as load_scene
+from .jobs.modes import modes as modes
 from .jobs.run import run as run
+from .jobs.transfer import transfer as transfer
 from .results.solution import Solution as Solution
 from .verification.verify import verify as verify
 """

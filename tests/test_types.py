@@ -40,6 +40,9 @@ assert_type(stiffmbs.run(Path("scene.yaml"), duration="3 s"), Solution)
 assert_type(stiffmbs.verify("scene.yaml"), Solution)
 assert_type(stiffmbs.check("scene.yaml"), Report)
 assert_type(model.check(), Report)
+stiffmbs.equilibrium("scene.yaml", start=1)
+stiffmbs.modes(model, at=0.5, duration=1)
+stiffmbs.transfer(model, ["bar.fy"], ["bar.y"])
 assert_type(stiffmbs.load_scene("scene.yaml"), Scene)
 assert_type(model.to_scene(), str)
 model.replace(bar, Body(mass=1, inertia=1))
@@ -55,6 +58,8 @@ WRONG = {
     "stiffmbs.run(model, duraton=3)": 'Unexpected keyword argument "duraton"',
     "stiffmbs.run(model, solver='bfd')": "incompatible type \"Literal['bfd']\"",
     "stiffmbs.verify(model, rtoll=3)": 'Unexpected keyword argument "rtoll"',
+    "stiffmbs.equilibrium(model, rtoll=3)": 'Unexpected keyword argument "rtoll"',
+    "stiffmbs.modes(model, rtoll=3)": 'Unexpected keyword argument "rtoll"',
     "stiffmbs.check(3)": 'incompatible type "int"',
     "model.run(duraton=3)": 'Unexpected keyword argument "duraton"',
     "model.check(duraton=3)": 'Unexpected keyword argument "duraton"',

@@ -97,6 +97,10 @@ def test_files_are_solved_by_their_names(examples, kind):
     for found in (stiffmbs.run(file, duration=0.1), stiffmbs.verify(file, duration=0.1)):
         np.testing.assert_array_equal(found["bar.x"], expected["bar.x"])
     assert stiffmbs.check(file) == stiffmbs.check(scene)
+    assert stiffmbs.equilibrium(file).channels == stiffmbs.equilibrium(scene).channels
+    assert [mode.frequency for mode in stiffmbs.modes(file).modes] == [
+        mode.frequency for mode in stiffmbs.modes(scene).modes
+    ]
     for use in (stiffmbs.run, stiffmbs.check, stiffmbs.verify):
         with pytest.raises(InputError, match=r"nowhere\.yaml: .*no such file"):
             use(kind("nowhere.yaml"))
