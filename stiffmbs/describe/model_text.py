@@ -48,9 +48,13 @@ def _written(value: Any) -> Any:
             return {name: _written(part) for name, part in value.items()}
         case tuple():
             return [_written(part) for part in value]
-    text = getattr(value, "text", value)  # of a formula
+    return _formula(value.text) if hasattr(value, "text") else value
+
+
+def _formula(text: str) -> str | float:
+    """A formula's text, or the number that it was given as."""
     try:
-        return float(text) if isinstance(text, str) and text is not value else text
+        return float(text) if repr(float(text)) == text else text
     except ValueError:
         return text
 
