@@ -18,61 +18,38 @@ from typing import Any
 from .describe.body import Body
 from .describe.marker import GROUND as ground
 from .describe.marker import Marker
-from .describe.model import FORCES, JOINTS
-from .describe.model import Model as DescribedModel
-from .describe.scene import read_scene
+from .describe.model import FORCES, JOINTS, Model
+from .describe.scene import Scene, read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings
+from .describe.table import Table
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
 from .jobs.load_scene import load_scene
+from .loaded_later import loaded
 
 __version__ = "0.1.0"
 
 _ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES.values())}
+_LATER = {
+    "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check",
+    "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
+    "transfer": ".jobs.transfer", "verify": ".verification.verify",
+}  # fmt: skip
+"""The modules of what is loaded when it is used."""
 
 __all__ = [
-    "AssemblyError", "Body", "InputError", "Marker", "Model", "RunSettings", "SolverError", "StiffmbsError",
-    "check", "compile_model", "ground", "load_scene", "read_scene", "run", "scene_schema", "verify", *_ELEMENTS,
+    "AssemblyError", "Body", "InputError", "Marker", "Model", "RunSettings", "Scene", "SolverError", "StiffmbsError",
+    "Table", "ground", "load_scene", "read_scene", "scene_schema", *_LATER, *_ELEMENTS,
 ]  # fmt: skip
 
 
-class Model(DescribedModel):
-    __doc__ = DescribedModel.__doc__
-
-    def check(self, **changes: Any) -> Any:
-        """Examine the model: degrees of freedom, redundancy.
-
-        Parameters
-        ----------
-        **changes
-            Fields of the settings to change; returns and raises what `stiffmbs.check` does.
-        """
-        from .jobs.check import check
-
-        return check(self, **changes)
-
-
 def __getattr__(name: str) -> Any:
-    if name in _ELEMENTS:
-        return _ELEMENTS[name]
-    if name == "run":
-        from .jobs.run import run
-
-        return run
-    if name == "verify":
-        from .verification.verify import verify
-
-        return verify
-    if name == "check":
-        from .jobs.check import check
-
-        return check
-    if name == "compile_model":
-        from .compile.compile_model import compile_model
-
-        return compile_model
     if name == "spatial":
         from importlib import import_module
 
         return import_module(".spatial", __name__)
-    raise AttributeError(f"module 'stiffmbs' has no attribute '{name}'")
+    return loaded(name, __name__, _ELEMENTS, _LATER)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, "spatial"})

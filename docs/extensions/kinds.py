@@ -83,7 +83,7 @@ def documented(module: str, name: str) -> Iterator[str]:
     if inspect.isclass(thing):
         yield f".. autoclass:: {module}.{name}"
         if not issubclass(thing, Described | Exception):
-            yield from ("   :members:", "   :inherited-members:", f"   :exclude-members: {INNER}")
+            yield from ("   :members:", "   :inherited-members: Mapping", f"   :exclude-members: {INNER}")
         yield ""
     elif callable(thing):
         yield from (f".. autofunction:: {module}.{name}", "")

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from ..errors import InputError, needs
+
 if TYPE_CHECKING:
     from ..bench.benchmark import Benchmark
 
@@ -37,6 +39,14 @@ def bench(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solve
         raise click.UsageError("found both --peers and --solvers, expected one of them")
     if plot is not None and find_spec("matplotlib") is None:
         raise click.UsageError("--plot: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+    try:
+        with needs("numba", "bench"):
+            _measure(names, as_json, quick, peers, solvers, plot)
+    except InputError as error:
+        _refuse(str(error))
+
+
+def _measure(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solvers: bool, plot: Path | None) -> None:
     from ..bench.report import as_json as object_of
     from ..bench.report import machine_sentence, table
 

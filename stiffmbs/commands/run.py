@@ -26,10 +26,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-UNBROKEN = 10_000
-"""Characters of a line in files and pipes."""
-
-
 @click.command(short_help="Solve a scene.")
 @click.argument("scene")
 @click.option(
@@ -120,6 +116,8 @@ def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
 def _console() -> Console:
     """Standard output; lines are broken to the width of a terminal, or of COLUMNS, and nowhere else."""
     from rich.console import Console
+
+    from ..show.summary import UNBROKEN
 
     to_a_width = sys.stdout.isatty() or "COLUMNS" in os.environ
     return Console(width=None if to_a_width else UNBROKEN, markup=False, emoji=False)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING
 
 from pydantic import Field, field_validator
 
+from . import given
 from .fields import NAME_PATTERN, Described
 from .files.quoted import written
+from .formula.names import PLANE
+from .handle import Handle
 from .marker import Marker, Placement
 from .units import si
 
@@ -41,6 +44,20 @@ class Body(Described):
     omega: si.AngularVelocity = Field(0.0, description="angular velocity at the start, rad/s")
     markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            mass: given.Number,
+            inertia: given.Number,
+            position: given.Numbers = (0.0, 0.0),
+            angle: given.Number = 0.0,
+            velocity: given.Numbers = (0.0, 0.0),
+            omega: given.Number = 0.0,
+            markers: given.Markers = {},  # noqa: B006 is never called
+        ) -> None: ...
+
     @field_validator("markers")
     @classmethod
     def _named(cls, markers: dict[str, Placement]) -> dict[str, Placement]:
@@ -64,23 +81,15 @@ class Body(Described):
         return self.mass, self.mass, self.inertia
 
 
-class BodyHandle:
-    """A body of a model, as `Model.add` returns it: a shorthand for its markers and coordinates."""
+class BodyHandle(Handle):
+    __doc__ = Handle.__doc__
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    names = PLANE
+    fields = Body.model_fields
 
-    def at(self, xi: float | str, eta: float | str, angle: float | str = 0.0) -> Marker:
+    def at(self, xi: given.Number, eta: given.Number, angle: given.Number = 0.0) -> Marker:
         """The marker at a point of the body's own axes, m, turned by `angle`, rad."""
         return Marker(body=self.name, point=(xi, eta), angle=angle)
-
-    def __getattr__(self, coordinate: str) -> Any:
-        """The SymPy symbol of a coordinate (``x``, ``y``, ``angle``), for `ConstraintEquation`."""
-        if coordinate not in ("x", "y", "angle"):
-            raise AttributeError(f"a body has the coordinates x, y and angle, not '{coordinate}'")
-        import sympy
-
-        return sympy.Symbol(f"{self.name}.{coordinate}", real=True)
 
 
 def check_names(names: Iterable[object], what: str) -> None:

@@ -7,6 +7,7 @@ messages all come from the one place where an element names its fields.
 from __future__ import annotations
 
 import operator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -62,6 +63,13 @@ class Described(_Base):
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    def __repr_args__(self) -> Iterator[tuple[str, Any]]:
+        """The fields that do not have their defaults, for ``repr``."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if name != "type" and value != field.get_default(call_default_factory=True):
+                yield field.alias or name, value
 
     @model_validator(mode="before")
     @classmethod

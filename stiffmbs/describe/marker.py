@@ -6,13 +6,17 @@ What a marker of the plane and one of space have in common is that they name a b
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field, GetJsonSchemaHandler, model_validator
 
 from .fields import NAME_PATTERN, Described
 from .files.quoted import written
+from .handle import Handle
 from .units import si
+
+if TYPE_CHECKING:
+    from . import given
 
 GROUND = "ground"
 
@@ -26,6 +30,10 @@ class Placement(Described):
         (0.0, 0.0), description="position in the body's own axes, from its centre of mass, m"
     )
     angle: si.Angle = Field(0.0, description="direction of the marker's axis against the body's, rad")
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, point: given.Numbers = (0.0, 0.0), angle: given.Number = 0.0) -> None: ...
 
     def numbers(self) -> tuple[float, ...]:
         """What a kernel takes: the point, the angle, its cosine and its sine."""
@@ -49,6 +57,10 @@ class MarkerReference(Described):
     @model_validator(mode="before")
     @classmethod
     def _from_reference(cls, found: Any) -> Any:
+        if isinstance(found, Handle):
+            return {"body": found.name}
+        if isinstance(found, dict) and isinstance(found.get("body"), Handle):
+            found = {**found, "body": found["body"].name}
         if isinstance(found, str):
             body, _, marker = found.partition(".")
             return {"body": body, "marker": marker or None}
@@ -96,6 +108,17 @@ class Marker(MarkerReference):
 
     point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
     angle: si.Angle = Field(0.0, description="direction of the axis against the body's, rad")
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            body: str | Handle,
+            marker: str | None = None,
+            point: given.Numbers = (0.0, 0.0),
+            angle: given.Number = 0.0,
+        ) -> None: ...
 
     def placement(self) -> Placement:
         """Where it sits on its body, as given on the spot."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal, overload
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -14,6 +14,7 @@ from .body import Body, BodyHandle
 from .element import Force, Joint, any_of, kinds
 from .forces.weight import weights
 from .formula.field import OfMotion
+from .given import Numbers
 from .initial_pose import DrawnMarker
 from .marker import GROUND, MarkerReference, Placement
 from .model_builder import ModelBuilder
@@ -61,7 +62,7 @@ class PlanarData(ModelData):
         return marker.body, self.place(marker)
 
 
-class Model(ModelBuilder):
+class Model(ModelBuilder[PlanarData, Body, BodyHandle]):
     """A model built in Python, piece by piece.
 
     Examples
@@ -79,36 +80,5 @@ class Model(ModelBuilder):
     handle_type = BodyHandle
     kinds = JOINTS | FORCES
 
-    def __init__(self, name: str = "", gravity: tuple[float | str, float | str] = (0.0, 0.0)) -> None:
+    def __init__(self, name: str = "", gravity: Numbers = (0.0, 0.0)) -> None:
         super().__init__(name, gravity)
-
-    @overload
-    def add(self, name: str, part: Body) -> BodyHandle: ...
-
-    @overload
-    def add(self, name: str, part: Joint | Force) -> None: ...
-
-    def add(self, name: str, part: Body | Joint | Force) -> BodyHandle | None:
-        """Add a body, a joint or a force.
-
-        Parameters
-        ----------
-        name : str
-            Letters, digits and ``_``; no other part has it.
-        part : Body, Joint or Force
-
-        Returns
-        -------
-        BodyHandle or None
-            For a body a shorthand for its markers and coordinates.
-
-        Raises
-        ------
-        InputError
-            When the name is taken, reserved or no identifier, or the part names an unknown body.
-        """
-        return super().add(name, part)
-
-    def data(self) -> PlanarData:
-        """The model as it would stand in a scene, checked."""
-        return super().data()

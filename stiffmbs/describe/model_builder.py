@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack, overload
 
 from ..errors import InputError
 from .body import check_names
 from .element import Element, Force, Joint
 from .fields import Described
 from .formula.names import NAMES
+from .given import Law
+from .handle import Handle
 from .marker import GROUND, MarkerReference
-from .model_data import RESERVED, check_element
+from .model_data import RESERVED, ModelData, check_element, contents
 from .request import Request
+from .settings import RunSettings, Settings, takes_settings
+
+if TYPE_CHECKING:
+    from ..jobs.check import Report
+    from ..results.solution import Solution
+
+Data = TypeVar("Data", bound=ModelData)
+Body = TypeVar("Body", bound=Described)
+BodyHandle = TypeVar("BodyHandle", bound=Handle)
 
 
-class ModelBuilder:
+class ModelBuilder(Generic[Data, Body, BodyHandle]):
     """Base of the models built in Python.
 
     Attributes
@@ -26,43 +37,139 @@ class ModelBuilder:
         The joints and forces of the family, by kind.
     """
 
-    data_type: ClassVar[type[Any]]
-    body_type: ClassVar[type[Described]]
-    handle_type: ClassVar[type[Any]]
+    data_type: type[Data]
+    body_type: type[Body]
+    handle_type: type[BodyHandle]
     kinds: ClassVar[Mapping[str, type[Element]]]
 
-    def __init__(self, name: str, gravity: tuple[float | str, ...]) -> None:
+    def __init__(self, name: str, gravity: Any) -> None:
         self.name = name
         self.gravity = gravity
         self.markers: dict[str, Any] = {}
-        self.bodies: dict[str, Any] = {}
+        self.bodies: dict[str, Body] = {}
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
         self.requests: dict[str, Any] = {}
 
-    def add(self, name: str, part: Any) -> Any:
-        """Add a body (its handle is returned), a joint or a force under a name.
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {contents(self)}>"
+
+    @overload
+    def add(self, name: str, part: Body) -> BodyHandle: ...
+
+    @overload
+    def add(self, name: str, part: Joint | Force) -> None: ...
+
+    def add(self, name: str, part: Any) -> BodyHandle | None:
+        """Add a body, a joint or a force.
+
+        Parameters
+        ----------
+        name : str
+            Letters, digits and ``_``; no other part has it.
+        part : Body, Joint or Force
+
+        Returns
+        -------
+        BodyHandle or None
+            For a body what stands for it in markers and formulas, and changes it.
 
         Raises
         ------
         InputError
             When the name is taken, reserved or no identifier, or the part names an unknown body.
         """
-        section: dict[str, Any]
-        match part:
-            case self.body_type():
-                section = self.bodies
-            case Joint():
-                section = self.joints
-            case Force():
-                section = self.forces
-            case _:
-                raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
-        if isinstance(part, Element) and type(part) not in self.kinds.values():
-            raise InputError(f"{name}: found {part!r}, expected a joint or a force{self._of_the_family()}")
+        section = self._section_for(name, part)
+        self._check_name(name)
         self._check(name, part)
         section[name] = part
-        return self.handle_type(name) if isinstance(part, self.body_type) else None
+        return self._handle(name)
+
+    @overload
+    def replace(self, name: str | BodyHandle, part: Body) -> BodyHandle: ...
+
+    @overload
+    def replace(self, name: str | BodyHandle, part: Joint | Force) -> None: ...
+
+    def replace(self, name: str | BodyHandle, part: Any) -> BodyHandle | None:
+        """Put another body, joint or force in the place of one, under its name.
+
+        Parameters
+        ----------
+        name : str or BodyHandle
+            Of the part that goes.
+        part : Body, Joint or Force
+            A body for a body, a joint for a joint, a force for a force.
+
+        Returns
+        -------
+        BodyHandle or None
+            As `add` does; handles that there are already stand for the new body too.
+
+        Raises
+        ------
+        InputError
+            When there is no such part, the new one names an unknown body, or others name what the new one does not have.
+        """
+        name = str(name)
+        section = self._found(name)
+        if section is not self._section_for(name, part):
+            raise InputError(
+                f"{name}: found {part!r} in place of {section[name]!r}, expected a body for a body, a joint for a joint, a force for a force"
+            )
+        self._check(name, part)
+        if isinstance(part, Joint) or (section is self.bodies and section[name].markers.keys() - part.markers.keys()):
+            self._changed(name, section, lambda: section.update({name: part}))
+        section[name] = part
+        return self._handle(name)
+
+    def remove(self, name: str | BodyHandle) -> None:
+        """Take a body, a joint, a force, a request, or a marker of ground (``"ground.pivot"``) out of the model.
+
+        Raises
+        ------
+        InputError
+            When there is no such part, or others name it.
+        """
+        name = str(name)
+        section = self._found(name)
+        self._changed(name, section, lambda: section.pop(_key(name)))
+
+    def _handle(self, name: str) -> BodyHandle | None:
+        return self.handle_type(name, self) if name in self.bodies else None
+
+    def _sections(self) -> tuple[dict[str, Any], ...]:
+        return self.bodies, self.joints, self.forces, self.requests
+
+    def _found(self, name: str) -> dict[str, Any]:
+        """The section that holds a part."""
+        for section in (self.markers,) if name.startswith(f"{GROUND}.") else self._sections():
+            if _key(name) in section:
+                return section
+        raise InputError(f"{name}: found no part of that name, expected one of {self!r}")
+
+    def _section_for(self, name: str, part: Any) -> dict[str, Any]:
+        """The section that a part belongs to."""
+        if isinstance(part, self.body_type):
+            return self.bodies
+        if not isinstance(part, Joint | Force):
+            raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
+        if type(part) not in self.kinds.values():
+            raise InputError(f"{name}: found {part!r}, expected a joint or a force{self._of_the_family()}")
+        return self.joints if isinstance(part, Joint) else self.forces
+
+    def _changed(self, name: str, section: dict[str, Any], change: Callable[[], object]) -> None:
+        """Change a section, unless other parts then name what is no longer there."""
+        before = dict(section)
+        change()
+        try:
+            for other, element in (*self.joints.items(), *self.forces.items()):
+                self._check_element(other, element)
+            self.data_type.model_construct(**self._content()).check_requests()
+        except ValueError as error:
+            section.clear()
+            section.update(before)
+            raise InputError(f"{name}: found it in use ({error}), expected what names it changed first") from None
 
     def _of_the_family(self) -> str:
         return " of stiffmbs.spatial" if self._dimensions() == 3 else " of the plane (stiffmbs)"
@@ -93,7 +200,7 @@ class ModelBuilder:
             raise InputError(f"{name}: found {marker!r}, expected a marker with a point on ground")
         self.markers[name] = placement
 
-    def request(self, name: str, formula: Any) -> None:
+    def request(self, name: str, formula: Law) -> None:
         """Report a formula of coordinates, velocities, measures and time as a channel of the given name.
 
         Parameters
@@ -108,7 +215,8 @@ class ModelBuilder:
         InputError
             As for `add`, and for a formula that cannot be read.
         """
-        request = Request(formula=formula)  # type: ignore[arg-type]
+        self._check_name(name)
+        request = Request(formula=formula)
         self._check(name, request)
         self.requests[name] = request.formula
 
@@ -121,19 +229,24 @@ class ModelBuilder:
 
     def _check_name(self, name: str) -> None:
         self._check_spelling(name, "part")
-        taken = {*self.bodies, *self.joints, *self.forces, *self.requests, *RESERVED}
-        if name in taken:
+        if name in RESERVED or any(name in section for section in self._sections()):
             raise InputError(f"{name}: found a name that is taken or reserved, expected another")
 
     def _check(self, name: str, part: Described) -> None:
-        self._check_name(name)
         try:
             if isinstance(part, Element):
-                check_element(name, part, self.bodies, self.joints, self.markers, NAMES[self._dimensions()])
+                self._check_element(name, part)
         except ValueError as error:
             raise InputError(str(error)) from None
 
-    def data(self) -> Any:
+    def _check_element(self, name: str, part: Element) -> None:
+        check_element(name, part, self.bodies, self.joints, self.markers, NAMES[self._dimensions()])
+
+    def _content(self) -> dict[str, Any]:
+        sections = ("name", "gravity", "markers", "bodies", "joints", "forces", "requests")
+        return {section: getattr(self, section) for section in sections}
+
+    def data(self) -> Data:
         """The model as it would stand in a scene.
 
         Raises
@@ -141,7 +254,52 @@ class ModelBuilder:
         InputError
             When the model has no body.
         """
-        return self.data_type(
-            name=self.name, gravity=self.gravity, markers=self.markers, bodies=self.bodies, joints=self.joints,
-            forces=self.forces, requests=self.requests,
-        )  # fmt: skip
+        return self.data_type(**self._content())
+
+    def to_scene(self) -> str:
+        """The text of a scene file that holds the model: `stiffmbs.read_scene` makes the same model of it.
+
+        Raises
+        ------
+        InputError
+            As for `data`.
+        """
+        from .model_text import model_text
+
+        return model_text(self.data())
+
+    @takes_settings
+    def run(
+        self,
+        settings: RunSettings | None = None,
+        watch: Callable[[float], None] | None = None,
+        **changes: Unpack[Settings],
+    ) -> Solution:
+        """Solve the model; parameters, result and errors are those of `stiffmbs.run`."""
+        from ..jobs.run import run
+
+        return run(self, settings, watch, **changes)
+
+    @takes_settings
+    def verify(
+        self,
+        settings: RunSettings | None = None,
+        watch: Callable[[float], None] | None = None,
+        **changes: Unpack[Settings],
+    ) -> Solution:
+        """Solve the model, and again to see what its results are worth; parameters, result and errors are those of `stiffmbs.verify`."""
+        from ..verification.verify import verify
+
+        return verify(self, settings, watch, **changes)
+
+    @takes_settings
+    def check(self, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
+        """Examine the model: degrees of freedom, redundancy; parameters, result and errors are those of `stiffmbs.check`."""
+        from ..jobs.check import check
+
+        return check(self, settings, **changes)
+
+
+def _key(name: str) -> str:
+    """The name in its section: that of a marker of ground is without its owner."""
+    return name.removeprefix(f"{GROUND}.")

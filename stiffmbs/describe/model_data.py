@@ -55,6 +55,12 @@ class ModelData(Described):
     forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")
     requests: dict[str, Any] = Field(default_factory=dict, description="formulas to report, by channel name")
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {contents(self)}>"
+
+    def __str__(self) -> str:
+        return repr(self)
+
     @field_validator("markers", mode="before")
     @classmethod
     def _named_markers(cls, markers: Any) -> Any:
@@ -185,6 +191,15 @@ class ModelData(Described):
         return own[marker.marker]
 
 
+def contents(model: Any) -> str:
+    """What a model, a scene or what is built in Python holds, in a few words."""
+    parts = []
+    for section, one in (("bodies", "body"), ("joints", "joint"), ("forces", "force"), ("requests", "request")):
+        count = len(getattr(model, section))
+        parts += [f"{count} {one if count == 1 else section}"] if count or section == "bodies" else []
+    return f"'{model.name}': {', '.join(parts)}"
+
+
 def check_marker(where: str, marker: MarkerReference, bodies: Mapping[str, Any], on_ground: Mapping[str, Any]) -> None:
     """Refuse a marker on an unknown body, or of a name that its body does not know."""
     if marker.body != GROUND and marker.body not in bodies:
@@ -218,7 +233,7 @@ def check_element(
         raise ValueError(f"{where}.{field}: {reason}")
     for field, formula in element.parts(Formula):
         for body in formula.bodies():
-            if body not in (*bodies, GROUND):
+            if body not in bodies and body != GROUND:
                 raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {_listed(bodies)}")
         for reason in names.refused(formula):
             raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")

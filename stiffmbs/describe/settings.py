@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import inspect
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack
 
 from pydantic import Field, model_validator
 
 from .fields import Described, Measured
+from .given import Number
 from .units import si
 
 MOST_OUTPUTS = 10_000_000
@@ -15,6 +18,27 @@ FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Stretches of time that a run must be able to tell apart, and how long each must be, in parts of the times themselves."""
 
 MANY = 1e300
+
+
+class Settings(TypedDict, total=False):
+    """The fields of `RunSettings` for type checkers, as `run` takes them by keyword."""
+
+    duration: Number
+    start: Number
+    output: Number | None
+    points: int | Literal["steps"] | None
+    solver: Literal["bdf", "projected", "kinematic", "auto"]
+    formulation: Literal["SI2", "SI2_exact", "SI1", "I3", "index1"]
+    stabilisation: Number
+    scheme: Literal["euler_cromer", "rk4", "dopri5", "dop853"]
+    rtol: Number
+    atol: Number | None
+    step: Number
+    projection: bool
+    max_step: Number
+    max_order: int | None
+    presolve: bool
+    give_way: Sequence[str]
 
 
 class RunSettings(Described):
@@ -82,6 +106,10 @@ class RunSettings(Described):
     presolve: bool = Field(True, description="whether unknowns that others determine are left out of the solution")
     give_way: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
 
+    if TYPE_CHECKING:
+
+        def __init__(self, **fields: Unpack[Settings]) -> None: ...
+
     @model_validator(mode="after")
     def _one_grid(self) -> RunSettings:
         if self.output is not None and self.points is not None:
@@ -107,3 +135,25 @@ class RunSettings(Described):
                 "digits tell shorter times no longer apart there"
             )
         return self
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class _AsItIs:
+    """The default of a setting in a signature: what the scene, or the settings that are given, have."""
+
+    def __repr__(self) -> str:
+        return "..."
+
+
+def takes_settings(function: Function) -> Function:
+    """Let a function that takes the settings by keyword show them in its signature, for ``help`` and for completion."""
+    signature = inspect.signature(function)
+    own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
+    settings = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_AsItIs(), annotation=kind.__forward_arg__)
+        for name, kind in Settings.__annotations__.items()  # as text, like all annotations here
+    ]
+    function.__signature__ = signature.replace(parameters=[*own, *settings])  # type: ignore[attr-defined]
+    return function

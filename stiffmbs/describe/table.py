@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from .fields import Described
+from .given import Matrix
 from .units import si
 
 
@@ -34,6 +35,17 @@ class Table(Described):
     ends: Literal["natural", "clamped", "periodic", "not-a-knot"] = Field("natural", description="end condition")
     lines: bool = Field(False, description="straight lines in place of a spline")
     akima: bool = Field(False, description="Akima's local cubics in place of a spline")
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            table: Matrix,
+            ends: Literal["natural", "clamped", "periodic", "not-a-knot"] = "natural",
+            lines: bool = False,
+            akima: bool = False,
+        ) -> None: ...
 
     @field_validator("table")
     @classmethod

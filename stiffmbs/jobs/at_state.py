@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from ..solve.failures import FAILURES
 from ..solve.mechanics import Mechanics
 from ..structure.redundancy import Redundancy
-from .run import prepare
+from .run import Runnable, prepare
 
 
 @dataclass(frozen=True)
@@ -39,14 +38,12 @@ class AtState:
     acceleration: np.ndarray
 
 
-def at_state(
-    model: ModelBuilder | ModelData, settings: RunSettings | None = None, at: float | None = None, **changes: Any
-) -> AtState:
+def at_state(model: Runnable, settings: RunSettings | None = None, at: float | None = None, **changes: Any) -> AtState:
     """A model at its start, or at an instant of its motion.
 
     Parameters
     ----------
-    model : Model or Scene
+    model : Model, Scene, str or Path
     settings : RunSettings, optional
     at : float, optional
         The instant, s; the start of the run by default.

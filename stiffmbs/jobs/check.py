@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
 from ..compile.system import System
-from ..describe.model_builder import ModelBuilder
-from ..describe.model_data import ModelData
 from ..describe.scene import notes_of
-from ..describe.settings import RunSettings
+from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, SolverError
 from ..solve.initial import InitialValues, initial_values
 from ..solve.moves import Move
@@ -26,13 +24,13 @@ from ..structure.told.redundancy import (
 )
 from ..structure.told.unconnected import unconnected_sentence
 from .presolve_report import presolve_sentences, unknowns
-from .run import Examined, examined, presolved
+from .run import Examined, Runnable, examined, presolved
 
 MOST_MOVES = 50
 """Bodies that are named of those which assembly moves; `Report.moved` has all."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Report:
     """What `check` found.
 
@@ -100,6 +98,9 @@ class Report:
             "messages": [*self.messages, *(f"presolve: {sentence}" for sentence in self.presolve)],
         }
 
+    def __repr__(self) -> str:
+        return f"<Report {str(self).splitlines()[0]}; {'sound' if self.sound else 'problems'}>"
+
     def __str__(self) -> str:
         count = self.degrees_of_freedom
         freedoms = f"{count} degree{'s' if count != 1 else ''} of freedom"
@@ -111,12 +112,14 @@ class Report:
         return "\n".join([head, *presolve, *(f"- {message}" for message in self.messages or ("nothing to object to",))])
 
 
-def check(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Report:
+@takes_settings
+def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
     """Examine a model: degrees of freedom, redundancy, uniqueness of reactions, singular poses, contradictions.
 
     Parameters
     ----------
-    model : Model or Scene
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
     settings : RunSettings, optional
         Whose ``give_way``, ``start`` and ``duration`` are used; the scene's own by default.
     **changes

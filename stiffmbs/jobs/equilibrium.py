@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
-from ..describe.model_builder import ModelBuilder
-from ..describe.model_data import ModelData
 from ..describe.scene import Scene
-from ..describe.settings import RunSettings
+from ..describe.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of
 from ..solve.initial import InitialValues
-from .run import prepare
+from .run import Runnable, data_of, prepare
 from .settled import settled
 
 
@@ -63,14 +61,14 @@ class EquilibriumFound:
         }  # fmt: skip
 
 
-def equilibrium(
-    model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any
-) -> EquilibriumFound:
+@takes_settings
+def equilibrium(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> EquilibriumFound:
     """The pose at rest in which all forces balance, sought from the described one.
 
     Parameters
     ----------
-    model : Model or Scene
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
     settings : RunSettings, optional
         Its start is the instant at which forces and drives are taken.
     **changes
@@ -87,7 +85,7 @@ def equilibrium(
     SolverError
         Where there is none, or none is found; names the body with the largest imbalance.
     """
-    data = model.data() if isinstance(model, ModelBuilder) else model
+    data = data_of(model)
     if isinstance(data, Scene):
         data = data.model_copy(update={"start": "described"})
     job = prepare(data, settings, **changes)

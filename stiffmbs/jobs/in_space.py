@@ -5,11 +5,12 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from pathlib import Path
+from typing import overload
 
 from ..describe.files.scene_text import scene_text
 from ..describe.files.text_file import source_name
+from ..describe.model import Model as PlanarModel
 from ..describe.model import PlanarData
-from ..describe.model_builder import ModelBuilder
 from ..describe.scene import made_scene
 from ..describe.spatial.embedding.markers import Written
 from ..describe.spatial.embedding.scene import scene_in_space
@@ -19,8 +20,49 @@ from ..errors import InputError
 from .load_scene import load_scene
 
 
-def embedded(planar: PlanarData) -> SpatialScene:
-    """The scene in space of a planar model or scene; see `stiffmbs.spatial.in_space`."""
+@overload
+def in_space(planar: PlanarModel) -> Model: ...
+
+
+@overload
+def in_space(planar: PlanarData) -> SpatialScene: ...
+
+
+def in_space(planar: PlanarModel | PlanarData) -> Model | SpatialScene:
+    """A planar model or scene in space: in the x-y plane of the ground, element by element.
+
+    A model built in Python becomes a model of this module, to which more can be added; a scene becomes a scene.
+
+    Names stay, and so do numbers.  Revolute joints turn about z, prismatic joints slide along the axes of their markers,
+    circles in contact become spheres.  Moments of inertia about x and y are taken as large as that about z: they do
+    nothing in the plane.  Bodies that no revolute, prismatic or fixed joint keeps in the plane are kept there by a
+    `planar` joint, ``NAME_in_plane``.  The forces are those of the plane; of closed loops those across the plane are not
+    unique, as in any overconstrained mechanism.  In formulas ``bar.angle`` becomes ``az(bar, ground)`` and ``bar.omega``
+    ``wz(bar)``.
+
+    Parameters
+    ----------
+    planar : Model or Scene
+        Of the plane.
+
+    Returns
+    -------
+    Model or Scene
+        Of space.
+
+    Raises
+    ------
+    InputError
+        When it is no planar model, or holds an element that has no counterpart in space; names it.
+    """
+    if isinstance(planar, PlanarModel):
+        return _built(planar)
+    if isinstance(planar, PlanarData):
+        return _embedded(planar)
+    raise InputError(f"found {planar!r}, expected a planar Model or scene")
+
+
+def _embedded(planar: PlanarData) -> SpatialScene:
     return _checked(scene_in_space(planar), planar.name or "in space")
 
 
@@ -43,10 +85,10 @@ def _checked(found: Written, source: str) -> SpatialScene:
     return scene
 
 
-def built(planar: ModelBuilder, model: Model) -> Model:
-    """A model in space, at first empty, with all that a planar one built in Python has; errors as for `embedded`."""
-    scene = embedded(planar.data())
-    model.name, model.gravity = scene.name, scene.gravity
+def _built(planar: PlanarModel) -> Model:
+    """A model in space with all that a planar one built in Python has."""
+    scene = _embedded(planar.data())
+    model = Model(scene.name, scene.gravity)
     for section in ("markers", "bodies", "joints", "forces", "requests"):
         getattr(model, section).update(getattr(scene, section))
     return model

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from ..compile.bodies import BODY_KINDS
 from ..describe.element import Force
@@ -12,13 +13,13 @@ from ..describe.model_data import ModelData
 from ..errors import InputError
 from .load_scene import load_scene
 
-Parameterised = Callable[[float], ModelBuilder | ModelData]
+Parameterised = Callable[[float], ModelBuilder[Any, Any, Any] | ModelData]
 """The model for a value of an input, which is zero at the state."""
 FORCE = "input_"
 """Name of the force that stands for an input."""
 
 
-def force_on(model: ModelBuilder | ModelData, name: str) -> Parameterised:
+def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Parameterised:
     """A model with a force or torque of any size added to it.
 
     Parameters

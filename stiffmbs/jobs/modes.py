@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
-from ..describe.model_builder import ModelBuilder
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
+from ..describe.settings import RunSettings, Settings, takes_settings
 from ..linear_analysis.modes import Mode, natural_modes
 from ..linear_analysis.state_space import StateMatrix, state_matrix
 from ..linear_analysis.tangent_space import linearised
 from .at_state import AtState, at_state
+from .run import Runnable
 
 AT_REST = 1e-6
 """Acceleration relative to that of gravity (to 1 m/s^2 without), below which a state counts as an equilibrium."""
@@ -61,14 +60,16 @@ class Modes:
         }  # fmt: skip
 
 
+@takes_settings
 def modes(
-    model: ModelBuilder | ModelData, settings: RunSettings | None = None, at: float | None = None, **changes: Any
+    model: Runnable, settings: RunSettings | None = None, at: float | None = None, **changes: Unpack[Settings]
 ) -> Modes:
     """Natural frequencies, damping and shapes of a model, linearised about a state on its constraints.
 
     Parameters
     ----------
-    model : Model or Scene
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
     settings : RunSettings, optional
         How to come to the state; the scene's own by default.
     at : float, optional

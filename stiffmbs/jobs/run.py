@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from ..compile.compile_model import compile_model
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.scene import Scene, notes_of
-from ..describe.settings import RunSettings
+from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.far_away import refuse_far_away
 from ..diagnostics.growth import senseless
 from ..diagnostics.lost_turns import lost_turns_sentence
@@ -37,6 +38,7 @@ from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from ..structure.redundancy import Redundancy, examine
 from ..structure.told.unconnected import unconnected_sentence
+from .load_scene import load_scene
 from .presolve_report import presolve_sentences
 from .taken_again import Computed, seen_through
 
@@ -80,7 +82,30 @@ class Job:
         return solve_up_to_the_inputs_end(self.mechanics, self.grid, over)
 
 
-def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Job:
+Runnable: TypeAlias = ModelBuilder[Any, Any, Any] | ModelData | str | Path
+"""What can be solved: a model, a scene, or a scene's file."""
+
+
+def data_of(model: Runnable) -> ModelData:
+    """What a model or a file holds.
+
+    Raises
+    ------
+    InputError
+        When it is neither, or the file cannot be read.
+    """
+    match model:
+        case ModelBuilder():
+            data: ModelData = model.data()
+            return data
+        case ModelData():
+            return model
+        case str() | Path():
+            return load_scene(model)
+    raise InputError(f"found {model!r}, expected a Model, a Scene, or the name of a scene's file")
+
+
+def prepare(model: Runnable, settings: RunSettings | None = None, **changes: Any) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
     found = examined(model, settings, **changes)
     if found.redundancy.findings:
@@ -123,11 +148,9 @@ def presolved(
     return pieces
 
 
-def examined(model: ModelBuilder | ModelData, settings: RunSettings | None = None, **changes: Any) -> Examined:
+def examined(model: Runnable, settings: RunSettings | None = None, **changes: Any) -> Examined:
     """Compile a model and look for redundant equations; parameters and errors as for `run`."""
-    data = model.data() if isinstance(model, ModelBuilder) else model
-    if not isinstance(data, ModelData):
-        raise InputError(f"found {model!r}, expected a Model, or a Scene as stiffmbs.load_scene reads it from a file")
+    data = data_of(model)
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
     for name in chosen.give_way:
         if name not in data.joints:
@@ -139,15 +162,16 @@ def examined(model: ModelBuilder | ModelData, settings: RunSettings | None = Non
     return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
 
 
+@takes_settings
 def run(
-    model: ModelBuilder | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any
+    model: Runnable, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Unpack[Settings]
 ) -> Solution:
     """Solve a model.
 
     Parameters
     ----------
-    model : Model or Scene
-        What to solve.
+    model : Model, Scene, str or Path
+        What to solve: a model, a scene, or the file that a scene or an Adams/Solver dataset is read from.
     settings : RunSettings, optional
         How; the scene's own by default.
     watch : callable, optional
@@ -193,7 +217,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
-        requested=frozenset(job.data.requested_channels()),
+        requested=frozenset(job.data.requested_channels()), figure=job.data.figure if isinstance(job.data, Scene) else None,
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
 

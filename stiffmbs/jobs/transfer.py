@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 
-from ..describe.model_builder import ModelBuilder
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
+from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError, SolverError
 from ..linear_analysis.state_space import StateMatrix, state_matrix
 from ..linear_analysis.tangent_space import Linearised, linearised
@@ -19,7 +17,7 @@ from ..results.channels import channels_of
 from ..solve.mechanics import Mechanics
 from .at_state import AtState, at_state
 from .inputs import Parameterised, force_on
-from .run import prepare
+from .run import Runnable, prepare
 
 SHIFT = 1e-6
 """Variation of states by which outputs are differentiated: relative to the mechanism's size, or rad."""
@@ -35,19 +33,21 @@ class _About:
     scale: np.ndarray
 
 
+@takes_settings
 def transfer(
-    model: ModelBuilder | ModelData,
+    model: Runnable,
     inputs: Sequence[str] | Mapping[str, Parameterised],
     outputs: Sequence[str],
     settings: RunSettings | None = None,
     at: float | None = None,
-    **changes: Any,
+    **changes: Unpack[Settings],
 ) -> Transfer:
     """Linearise a model about a state, from inputs to channels.
 
     Parameters
     ----------
-    model : Model or Scene
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
     inputs : sequence of str, or mapping of str to callable
         Forces and torques on bodies in ground axes, such as ``"chassis.fy"`` or ``"bar.end.fx"``; or any names, each with
         the model as a function of the input, zero at the state: the height of a road, a steering angle.
@@ -85,7 +85,7 @@ def transfer(
 
 
 def _column(
-    about: _About, name: str, given: Parameterised, outputs: Sequence[str], changes: dict[str, Any]
+    about: _About, name: str, given: Parameterised, outputs: Sequence[str], changes: Settings
 ) -> tuple[np.ndarray, np.ndarray]:
     """What an input does to z' and to the outputs, by the models on both sides of the state."""
     system = about.found.mechanics.system
@@ -102,7 +102,7 @@ def _column(
     return acts.rates, (values[1] - values[0]) / (2 * step)
 
 
-def _with_value(about: _About, given: Parameterised, value: float, changes: dict[str, Any]) -> Mechanics:
+def _with_value(about: _About, given: Parameterised, value: float, changes: Settings) -> Mechanics:
     """The model for a value of an input, at the state about which it is linearised."""
     job = prepare(given(value), **changes)
     system, state = job.mechanics.system, about.found.mechanics.state

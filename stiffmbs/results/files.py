@@ -14,15 +14,17 @@ import numpy as np
 from ..describe.files.quoted import quoted
 from ..errors import InputError
 from ..solve.storage import blocks, release
+from .saved import record
 from .solution import Solution
 
 
 def _write_csv(path: Path, solution: Solution) -> None:
     # Columns of ones tell what is not unique, so that the names of channels stay as they are.
     marks = [f"{name}.not_unique" for name in solution.not_unique]
+    heads = [f"{name} ({unit})" if (unit := solution.unit(name)) else name for name in ("time", *solution.channels)]
     columns = (solution.time, *solution.channels.values())
     with path.open("w", encoding="utf-8") as file:
-        print(",".join(["time", *solution.channels, *marks]), file=file)
+        print(",".join([*heads, *marks]), file=file)
         for block in blocks(len(solution.time)):
             ones = np.ones((block.stop - block.start, len(marks)))
             np.savetxt(
@@ -35,26 +37,26 @@ def _write_npz(path: Path, solution: Solution) -> None:
     """As `numpy.savez` does, but for memory: one array after the other."""
     marked = {"not_unique": np.array(solution.not_unique)} if solution.not_unique else {}
     with ZipFile(path, "w") as archive:
-        for name, values in {"time": solution.time, **solution.channels, **marked}.items():
+        for name, values in {"time": solution.time, **solution.channels, **marked, **record(solution)}.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
                 np.lib.format.write_array(file, values, allow_pickle=False)
             release(values)
 
 
 def _write_netcdf(path: Path, solution: Solution) -> None:
-    import xarray
-
-    variables = {
-        name.replace(".", "_"): ("time", values, {"channel": name, "unique": int(name not in solution.not_unique)})
-        for name, values in solution.channels.items()
-    }
-    xarray.Dataset(variables, coords={"time": solution.time}).to_netcdf(path, engine="scipy")
+    names: dict[str, str] = {}
+    for channel in solution.channels:
+        name = channel.replace(".", "_")
+        while name in names.values():  # of a request that is called like a channel
+            name += "_"
+        names[channel] = name
+    solution.to_xarray().rename(names).to_netcdf(path, engine="scipy")
 
 
 WRITERS: dict[str, Callable[[Path, Solution], None]] = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_netcdf}
 
 
-def check_output(path: Path) -> None:
+def check_output(path: Path, option: str = "-o") -> None:
     """Refuse, before anything is solved, a file that could not be written.
 
     Raises
@@ -62,9 +64,9 @@ def check_output(path: Path) -> None:
     InputError
         For an unknown ending, a missing folder, or a missing package.
     """
-    refuse_path("-o", path, WRITERS)
+    refuse_path(option, path, WRITERS)
     if path.suffix == ".nc" and find_spec("xarray") is None:
-        raise InputError(f"-o {path}: found no xarray, expected it installed: pip install 'stiffmbs[netcdf]'")
+        raise InputError(f"{option} {path}: found no xarray, expected it installed: pip install 'stiffmbs[netcdf]'")
 
 
 def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
@@ -96,7 +98,8 @@ def write(path: Path, solution: Solution) -> None:
     Parameters
     ----------
     path : Path
-        Ends in .csv (a header line, time first), .npz (arrays by channel name, and ``time``) or .nc.  Channels without
+        Ends in .csv (a header line of names and units, time first), .npz (arrays by channel name, ``time``, and what
+        `Solution.load` needs besides, under names with a slash) or .nc.  Channels without
         a unique value are marked: by a column ``rail.fy.not_unique`` of ones, by an array ``not_unique`` of names, or
         by the attribute ``unique`` of each variable.
     """

@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from ..errors import InputError
+from ..describe.figure import Figure
+from ..errors import ChannelError, InputError
 from ..solve.storage import release
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
+from .scales import UNITS, kind_of
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from matplotlib.figure import Figure as Sheet
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,6 +56,8 @@ class Solution(Mapping[str, np.ndarray]):
         What the run was compared with, a sentence each.
     balance : Balance
         Of energy and work.
+    figure : Figure, optional
+        The plot that shows what the scene is about, where it has one.
     """
 
     name: str
@@ -64,6 +74,23 @@ class Solution(Mapping[str, np.ndarray]):
     presolve: tuple[str, ...] = ()
     errors: Mapping[str, ErrorBar] = field(default_factory=dict)
     verification: tuple[str, ...] = ()
+    figure: Figure | None = None
+
+    @property
+    def success(self) -> bool:
+        """Whether the whole time was solved."""
+        return self.outcome is Outcome.DONE
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each channel; empty for numbers without one, and where nobody knows it (requests)."""
+        return {channel: self.unit(channel) for channel in self.channels}
+
+    def unit(self, channel: str) -> str:
+        """The unit of one channel, or of ``"time"``; see `units`."""
+        if channel == "time":
+            return "s"
+        return "" if channel in self.requested else UNITS.get(kind_of(channel), "")
 
     @property
     def step_times(self) -> np.ndarray:
@@ -79,9 +106,9 @@ class Solution(Mapping[str, np.ndarray]):
         try:
             return self.channels[channel]
         except KeyError:
-            owner = channel.partition(".")[0]
+            owner = str(channel).partition(".")[0]
             near = [name for name in self.channels if name.partition(".")[0] == owner] or list(self.channels)[:12]
-            raise InputError(f"found no channel '{channel}', expected one such as {', '.join(near)}") from None
+            raise ChannelError(f"found no channel '{channel}', expected one such as {', '.join(near)}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.channels)
@@ -94,6 +121,102 @@ class Solution(Mapping[str, np.ndarray]):
 
     def __repr__(self) -> str:
         return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} instants, {self.message}>"
+
+    def __array__(self, *_: Any, **__: Any) -> NoReturn:
+        raise InputError(
+            "found a whole solution in place of an array, expected one channel, solution['energy.total'], or solution.to_pandas()"
+        )
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A table with a column for each channel, over time, s; its ``attrs`` hold the units (needs pandas).
+
+        Raises
+        ------
+        InputError
+            When pandas is not installed.
+        """
+        from .frames import data_frame
+
+        return data_frame(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """A variable for each channel, over time, s, with its unit (needs xarray, the extra ``netcdf``).
+
+        Raises
+        ------
+        InputError
+            When xarray is not installed.
+        """
+        from .frames import data_set
+
+        return data_set(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write every channel to a file, as ``stiffmbs run -o`` does; it appears whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            Ends in .npz (which `load` reads), .csv or .nc.
+
+        Raises
+        ------
+        InputError
+            For another ending, a missing folder, or a missing package.
+        """
+        from .files import check_output, write
+
+        check_output(Path(path), "save")
+        write(Path(path), self)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Solution:
+        """What `save` or ``stiffmbs run -o`` wrote to an .npz file.
+
+        Raises
+        ------
+        InputError
+            When the file cannot be read, or is none of these.
+        """
+        from .saved import loaded
+
+        return loaded(Path(path))
+
+    def summary(self) -> str:
+        """What ``stiffmbs run`` shows: the range of every joint force, energy balance, statistics of the solver, notes."""
+        from ..show.summary import summary
+
+        return summary(self)
+
+    def plot(self, *channels: str, x: str = "time", z: str = "", title: str = "", equal: bool = False) -> Sheet:
+        """Draw channels over time, or over another channel (needs matplotlib, the extra ``plot``).
+
+        Parameters
+        ----------
+        *channels : str
+            What to draw; without any the scene's own figure, or the total energy.
+        x : str
+            A channel, or ``"time"``.
+        z : str
+            A channel: the figure is then a path in space, of one channel over `x`.
+        title : str
+            Of the figure; the scene's name by default.
+        equal : bool
+            Whether all axes have one scale, as for paths.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            One of pyplot's, so that ``pyplot.show()`` shows it.
+
+        Raises
+        ------
+        InputError
+            When there is no such channel, or no matplotlib.
+        """
+        from ..show.figure import plotted
+
+        return plotted(self, Figure(y=channels, x=x, z=z, title=title, equal=equal) if channels else self.figure)
 
     def energy_drift(self) -> float:
         """Largest change of the total energy since the start, J."""

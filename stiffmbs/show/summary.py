@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from ..jobs.check import Report
 
+UNBROKEN = 10_000
+"""Characters of a line in files, pipes and texts."""
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
@@ -81,9 +83,25 @@ def _finite(content: Any) -> Any:
             return content
 
 
-@np.errstate(all="ignore")  # of a diverged run sums overflow
+def summary(solution: Solution) -> str:
+    """See `Solution.summary`."""
+    from io import StringIO
+
+    from rich.console import Console
+
+    text = StringIO()
+    _print(solution.name or "model", solution, Console(file=text, width=UNBROKEN, markup=False, emoji=False))
+    return text.getvalue().rstrip()
+
+
 def print_summary(scene: str, solution: Solution, results: str, console: Console) -> None:
     """What was solved, the range of every joint force, energy drift, solver statistics, where the results lie."""
+    _print(scene, solution, console)
+    console.print(f"results: {results}", highlight=False, markup=False, emoji=False, soft_wrap=True)
+
+
+@np.errstate(all="ignore")  # of a diverged run sums overflow
+def _print(scene: str, solution: Solution, console: Console) -> None:
     say = partial(console.print, highlight=False, markup=False, emoji=False)  # names may hold anything
     start, end = solution.time[0], solution.time[-1]
     say(f"{solution.name or scene}: {start:g} s to {end:g} s, {solution.message}")
@@ -106,4 +124,3 @@ def print_summary(scene: str, solution: Solution, results: str, console: Console
         f"{np.nanmax(solution.channels['constraint.velocity']):.2g} in velocity",
     )
     say(f"solver: {solver_words(solution.solver)}")
-    say(f"results: {results}", soft_wrap=True)

@@ -9,7 +9,7 @@ import pkgutil
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from ..errors import InputError
+from ..errors import InputError, needs
 from . import fuzzers as package
 from .case import Outcome, Verdict
 from .child import TIME_LIMIT, Child
@@ -47,13 +47,25 @@ def module_of(name: str) -> str:
     Raises
     ------
     InputError
-        When there is no such fuzzer; says which there are.
+        When there is no such fuzzer; says which there are.  Or when it needs a package that is missing.
     """
     known = fuzzers()
     if name in known:
+        with needs("numba", "bench"):
+            importlib.import_module(known[name])
         return known[name]
-    listed = "; ".join(f"{key} ({importlib.import_module(module).WHAT})" for key, module in sorted(known.items()))
+    listed = "; ".join(f"{key} ({_what(module)})" for key, module in sorted(known.items()))
     raise InputError(f"found the fuzzer '{name}', expected one of these: {listed}")
+
+
+def _what(module: str) -> str:
+    """What a fuzzer tries, or why it cannot."""
+    try:
+        with needs("numba", "bench"):
+            what: str = importlib.import_module(module).WHAT
+            return what
+    except InputError as error:
+        return str(error)
 
 
 def trials(module: str, seeds: Iterable[int], time_limit: float = TIME_LIMIT) -> Iterator[Trial]:

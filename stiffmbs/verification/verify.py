@@ -21,15 +21,13 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
-from ..describe.model_builder import ModelBuilder
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
+from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.laws import has_laws
-from ..jobs.run import Job, prepare, solved
+from ..jobs.run import Job, Runnable, prepare, solved
 from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution
@@ -51,8 +49,9 @@ ROUNDING = 1e-13
 """Part of a channel's scale that rounding takes."""
 
 
+@takes_settings
 def verify(
-    model: ModelBuilder | ModelData, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Any
+    model: Runnable, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Unpack[Settings]
 ) -> Solution:
     """Solve a model, and solve it again to see what its results are worth; parameters and errors as for `run`.
 

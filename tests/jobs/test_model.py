@@ -1,5 +1,7 @@
 """Models from Python and scenes from files say the same, and compiled systems do not depend on numbers."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -80,11 +82,40 @@ def test_wrong_fields_are_refused_when_made():
         stiffmbs.run(Model())
 
 
-@pytest.mark.parametrize("given", [None, "scene.yaml", {}])
+@pytest.mark.parametrize("given", [None, 3, {}])
 def test_only_models_and_scenes_are_run(given):
-    for use in (stiffmbs.run, stiffmbs.check):
-        with pytest.raises(InputError, match="expected a Model, or a Scene"):
+    for use in (stiffmbs.run, stiffmbs.check, stiffmbs.verify):
+        with pytest.raises(InputError, match="expected a Model, a Scene, or the name of a scene's file"):
             use(given)
+
+
+@pytest.mark.parametrize("kind", [str, Path])
+def test_files_are_solved_by_their_names(examples, kind):
+    file = kind(examples / "bar_pendulum.yaml")
+    scene = stiffmbs.load_scene(file)
+    expected = stiffmbs.run(scene, duration=0.1)
+    for found in (stiffmbs.run(file, duration=0.1), stiffmbs.verify(file, duration=0.1)):
+        np.testing.assert_array_equal(found["bar.x"], expected["bar.x"])
+    assert stiffmbs.check(file) == stiffmbs.check(scene)
+    assert stiffmbs.equilibrium(file).channels == stiffmbs.equilibrium(scene).channels
+    assert [mode.frequency for mode in stiffmbs.modes(file).modes] == [
+        mode.frequency for mode in stiffmbs.modes(scene).modes
+    ]
+    for use in (stiffmbs.run, stiffmbs.check, stiffmbs.verify):
+        with pytest.raises(InputError, match=r"nowhere\.yaml: .*no such file"):
+            use(kind("nowhere.yaml"))
+
+
+def test_a_model_is_solved_by_its_own_methods():
+    model, settings = cart_pendulum(), stiffmbs.RunSettings(duration=0.1, rtol=1e-8)
+    expected = stiffmbs.run(cart_pendulum(), settings)
+    for found in (model.run(settings), model.run(duration=0.1, rtol=1e-8), model.verify(settings)):
+        np.testing.assert_array_equal(found["bar.x"], expected["bar.x"])
+    assert model.verify(settings).verification
+    assert model.check(settings) == stiffmbs.check(model)
+    reached = []
+    model.run(settings, watch=reached.append)
+    assert reached
 
 
 def test_unknown_channels_are_told_with_their_neighbours():

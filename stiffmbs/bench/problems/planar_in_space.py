@@ -11,7 +11,7 @@ import numpy as np
 
 from ...compile.bodies import BODY_KINDS
 from ...describe.model import PlanarData
-from ...jobs.in_space import embedded
+from ...jobs.in_space import in_space
 from ...jobs.load_scene import load_scene
 from ...jobs.run import Job, prepare
 from ..benchmark import Row
@@ -41,7 +41,7 @@ class InSpace:
     def _rows(self, rounds: int) -> list[Row]:
         planar = load_scene(self.path)
         assert isinstance(planar, PlanarData)
-        jobs = [prepare(scene) for scene in (planar, embedded(planar))]
+        jobs = [prepare(scene) for scene in (planar, in_space(planar))]
         places, steps = zip(*(_solved(job) for job in jobs), strict=True)
         times: list[list[float]] = [[], []]
         for _ in range(rounds):

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import itertools
-from typing import Annotated, Any, Literal
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, WithJsonSchema, field_validator
 
+from .. import given
 from ..body import check_names
 from ..fields import Described
+from ..formula.names import SPACE
+from ..handle import Handle
 from ..units import si
 from .marker import ORIGIN, Marker, Placement, Point
 from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated
@@ -64,6 +68,22 @@ class Body(Described):
     markers: dict[str, Placement] = Field(
         default_factory=dict, description="named points and orientations on the body, in its own axes"
     )
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            mass: given.Number,
+            inertia: given.Matrix,
+            center_of_mass: given.Numbers = ORIGIN,
+            position: given.Numbers = ORIGIN,
+            orientation: given.Orientation = IDENTITY,
+            velocity: given.Numbers = ORIGIN,
+            omega: given.Numbers = ORIGIN,
+            open: Sequence[Literal["velocity", "omega"]] = (),
+            markers: given.Markers = {},  # noqa: B006 is never called
+        ) -> None: ...
 
     @field_validator("inertia", mode="before")
     @classmethod
@@ -143,20 +163,14 @@ class Body(Described):
         return Placement(point=(float(x), float(y), float(z)), orientation=product(turned, placed.orientation))
 
 
-class BodyHandle:
-    """A body of a model, as `Model.add` returns it: a shorthand for its markers and coordinates."""
+class BodyHandle(Handle):
+    __doc__ = Handle.__doc__
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    names = SPACE
+    fields = Body.model_fields
 
-    def at(self, x: float | str, y: float | str, z: float | str, orientation: Any = IDENTITY) -> Marker:
+    def at(
+        self, x: given.Number, y: given.Number, z: given.Number, orientation: given.Orientation = IDENTITY
+    ) -> Marker:
         """The marker at a point of the body's own axes, m, with an orientation against them."""
         return Marker(body=self.name, point=(x, y, z), orientation=orientation)
-
-    def __getattr__(self, coordinate: str) -> Any:
-        """The SymPy symbol of a coordinate (``x``, ``q0``), for `ConstraintEquation`."""
-        if coordinate not in ("x", "y", "z", "q0", "q1", "q2", "q3"):
-            raise AttributeError(f"a body in space has the coordinates x, y, z and q0 to q3, not '{coordinate}'")
-        import sympy
-
-        return sympy.Symbol(f"{self.name}.{coordinate}", real=True)

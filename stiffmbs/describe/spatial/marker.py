@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from pydantic import Field
 
 from ..fields import Described
 from ..marker import MarkerReference
 from ..units import si
 from .orientation import IDENTITY, Orientation, matrix
+
+if TYPE_CHECKING:
+    from .. import given
+    from ..handle import Handle
 
 Point = tuple[si.Length, si.Length, si.Length]
 ORIGIN = (0.0, 0.0, 0.0)
@@ -18,6 +24,10 @@ class Placement(Described):
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(IDENTITY, description="of the marker's axes against the body's")
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, point: given.Numbers = ORIGIN, orientation: given.Orientation = IDENTITY) -> None: ...
 
     def numbers(self) -> tuple[float, ...]:
         """What a kernel takes: the point, the rotation matrix row by row, and the quaternion."""
@@ -44,6 +54,17 @@ class Marker(MarkerReference):
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(IDENTITY, description="of the axes against the body's; a joint's axis is z")
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            body: str | Handle,
+            marker: str | None = None,
+            point: given.Numbers = ORIGIN,
+            orientation: given.Orientation = IDENTITY,
+        ) -> None: ...
 
     def placement(self) -> Placement:
         """Where it sits on its body, as given on the spot."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Literal, overload
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -11,6 +11,7 @@ from pydantic import Field
 from ..element import Force, Joint, any_of, kinds
 from ..fields import Described
 from ..forces.weight import weights
+from ..given import Law, Numbers
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
@@ -99,7 +100,7 @@ class Requests(Described):
     requested: dict[str, Requested]
 
 
-class Model(ModelBuilder):
+class Model(ModelBuilder[SpatialData, Body, BodyHandle]):
     """A model in space built in Python, piece by piece.
 
     Examples
@@ -116,37 +117,10 @@ class Model(ModelBuilder):
     handle_type = BodyHandle
     kinds = JOINTS | FORCES
 
-    def __init__(self, name: str = "", gravity: tuple[float | str, float | str, float | str] = (0.0, 0.0, 0.0)) -> None:
+    def __init__(self, name: str = "", gravity: Numbers = (0.0, 0.0, 0.0)) -> None:
         super().__init__(name, gravity)
 
-    @overload
-    def add(self, name: str, part: Body) -> BodyHandle: ...
-
-    @overload
-    def add(self, name: str, part: Joint | Force) -> None: ...
-
-    def add(self, name: str, part: Body | Joint | Force) -> BodyHandle | None:
-        """Add a body, a joint or a force.
-
-        Parameters
-        ----------
-        name : str
-            Letters, digits and ``_``; no other part has it.
-        part : Body, Joint or Force
-
-        Returns
-        -------
-        BodyHandle or None
-            For a body a shorthand for its markers and coordinates.
-
-        Raises
-        ------
-        InputError
-            When the name is taken, reserved or no identifier, or the part names an unknown body.
-        """
-        return super().add(name, part)
-
-    def request(self, name: str, formula: str | float | Mapping[str, str | float]) -> None:
+    def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
         """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
 
         Parameters
@@ -165,7 +139,3 @@ class Model(ModelBuilder):
         self.requests[name] = Requests(
             requested={name: dict(formula) if isinstance(formula, Mapping) else formula}
         ).requested[name]
-
-    def data(self) -> SpatialData:
-        """The model as it would stand in a scene, checked."""
-        return super().data()

@@ -25,6 +25,8 @@ IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
 AXES = "xyz"
 ROUGH = 1e-3
 """How far what is written may be from a unit quaternion or a rotation matrix: four digits are enough, a slip is not."""
+UNIT = 1e-15
+"""How far rounding alone leaves a unit quaternion from length 1; such a one is kept as it is, so that it can be written and read."""
 
 
 def matrix(p: Sequence[float]) -> np.ndarray:
@@ -144,7 +146,8 @@ def _checked(p: np.ndarray) -> Quaternion:
     length = float(np.linalg.norm(p))
     if abs(length - 1) > ROUGH:
         raise FormulaError(f"found a quaternion of length {length:.6g}, expected one of length 1")
-    return _unit(p)
+    w, x, y, z = (float(part) for part in p)
+    return (w, x, y, z) if abs(length - 1) < UNIT else _unit(p)
 
 
 def _from_rows(rows: list[list[float]]) -> Quaternion:

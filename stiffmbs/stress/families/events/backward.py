@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Literal
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ...double_pendulum import double_pendulum
 from ...simulation import refusal
 
 
-def _retraced(solver: str) -> Verdict:
+def _retraced(solver: Literal["bdf", "projected"]) -> Verdict:
     """A double pendulum solved for 2 s, its velocities turned round, and solved for 2 s again: it is where it began."""
     model = double_pendulum()
     there = run(model, duration=2.0, points=2, rtol=1e-10, solver=solver, scheme="dop853")

@@ -26,7 +26,7 @@ def wheel(speed: float, stiffness: float = 0.0, swing: float = 0.0) -> spatial.M
     if stiffness:
         model.add("spring", spatial.TorsionSpring(i="wheel", j="ground", stiffness=stiffness))
     if swing:
-        model.add("push", spatial.FORCES["torque"](i="wheel", torque=(0, 0, f"{50 * swing}*cos(50*t)")))
+        model.add("push", spatial.AppliedTorque(i="wheel", torque=(0, 0, f"{50 * swing}*cos(50*t)")))
     model.request("turned", "az(wheel)")
     return model
 

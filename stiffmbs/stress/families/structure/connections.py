@@ -64,8 +64,8 @@ def wishbone(apart: float, about: float = 0.0, damping: float = 0.0) -> spatial.
             spatial.Marker(body="arm", point=(-0.2, y, 0)),
             spatial.Marker(body="ground", point=(0, y, 0)),
         )
-        held = {"stiffness": (1e7, 1e7, 1e7, about, 0, 0), "damping": (0, 0, 0, damping, 0, 0)}
-        model.add(name, spatial.FORCES["bushing"](i=on_arm, j=on_ground, **held))
+        stiffness, dampings = (1e7, 1e7, 1e7, about, 0, 0), (0, 0, 0, damping, 0, 0)
+        model.add(name, spatial.Bushing(i=on_arm, j=on_ground, stiffness=stiffness, damping=dampings))
     return model
 
 

@@ -81,7 +81,7 @@ def _advised(model: ModelBuilder, case: Overconstraint, stiffness: np.ndarray) -
             continue
         held = [float(c in TRANSMITTED[joint.kind]) for c in COMPONENTS] if in_space else HELD[joint.kind]
         k = float(stiffness[case.elastic.index(name)])
-        bushing = (spatial.FORCES if in_space else FORCES)["bushing"]
+        bushing = spatial.Bushing if in_space else FORCES["bushing"]
         springs, dampers = (tuple(much * part for part in held) for much in (k, DAMPING))
         other.add(name, bushing(i=joint.i, j=joint.j, stiffness=springs, damping=dampers))
     return other

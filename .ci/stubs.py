@@ -1,0 +1,150 @@
+"""The types of what ``stiffmbs`` and ``stiffmbs.spatial`` offer, for type checkers and editors: `python .ci/stubs.py` writes them.
+
+An element's fields take more than they hold (a body's name for a marker, text with a unit for a number), and modules load
+their attributes when they are used; neither can be seen in the source without running it.
+"""
+
+from __future__ import annotations
+
+import inspect
+import subprocess
+import types
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic_core import PydanticUndefined
+
+import stiffmbs
+from stiffmbs.describe.element import Element, JointName
+from stiffmbs.describe.fields import Measured
+from stiffmbs.describe.formula.field import Formula
+from stiffmbs.describe.marker import MarkerReference
+from stiffmbs.describe.spatial.orientation import OrientationField
+from stiffmbs.describe.table import Table
+
+ROOT = Path(stiffmbs.__file__).parent
+HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
+PLANE = """
+from typing import Literal
+
+from . import spatial as spatial
+from .compile.compile_model import compile_model as compile_model
+from .describe import given
+from .describe.body import Body as Body
+from .describe.marker import Marker as Marker
+from .describe.model import Model as Model
+from .describe.scene import Scene as Scene
+from .describe.scene import read_scene as read_scene
+from .describe.schema import scene_schema as scene_schema
+from .describe.settings import RunSettings as RunSettings
+from .describe.table import Table as Table
+from .errors import AssemblyError as AssemblyError
+from .errors import InputError as InputError
+from .errors import SolverError as SolverError
+from .errors import StiffmbsError as StiffmbsError
+from .jobs.check import Report as Report
+from .jobs.check import check as check
+from .jobs.equilibrium import equilibrium as equilibrium
+from .jobs.load_scene import load_scene as load_scene
+from .jobs.modes import modes as modes
+from .jobs.run import run as run
+from .jobs.transfer import transfer as transfer
+from .results.solution import Solution as Solution
+from .verification.verify import verify as verify
+"""
+SPACE = """
+from typing import Literal
+
+from .describe import given
+from .describe.spatial.body import Body as Body
+from .describe.spatial.marker import Marker as Marker
+from .describe.spatial.model import Model as Model
+from .jobs.in_space import in_space as in_space
+"""
+VALUES = "__version__: str\nground: str"
+MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "", stiffmbs.spatial)}
+
+
+def stub(file: str) -> str:
+    """The content of a stub, before it is formatted."""
+    exports, others, module = MODULES[file]
+    elements = sorted(module._ELEMENTS.items())
+    imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
+    classes = ["\n".join(_class(name, element)) for name, element in elements]
+    return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"
+
+
+def _class(name: str, element: type[Element]) -> Iterator[str]:
+    yield f"class {name}(_{name}):"
+    yield f'    """{(inspect.getdoc(element) or name).partition(chr(10) * 2)[0]}"""'
+    fields = [_field(key, field) for key, field in element.model_fields.items() if key != "type"]
+    fields.append(f"type: Literal['{element.kind}'] = ...")
+    yield f"    def __init__(self, *, {', '.join(fields)}) -> None: ..."
+
+
+def _field(name: str, field: Any) -> str:
+    taken = _given(field.annotation, field.metadata)
+    required = field.default is PydanticUndefined and field.default_factory is None
+    return f"{field.alias or name}: {taken}{'' if required else ' = ...'}"
+
+
+def _given(annotation: Any, metadata: Any = ()) -> str:
+    """The type of what may be given for a field."""
+    if any(isinstance(mark, OrientationField) for mark in metadata):
+        return "given.Orientation"
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _given(parts[0], parts[1:])
+    if origin is Literal:
+        return f"Literal[{', '.join(map(repr, parts))}]"
+    if origin in (Union, types.UnionType):
+        if {Formula, Table} <= set(parts):
+            return "given.Curve" + (" | None" if type(None) in parts else "")
+        return " | ".join(dict.fromkeys(_given(part) for part in parts))
+    if origin is tuple:
+        return _of_many([_given(part) for part in parts if part is not Ellipsis])
+    return _named(annotation, metadata)
+
+
+def _of_many(parts: list[str]) -> str:
+    inner = {part.removesuffix(" | None") for part in parts}
+    if inner <= {"given.Number"}:
+        return "given.Numbers"
+    if inner <= {"given.Numbers"}:
+        return "given.Matrix"
+    if inner <= {"given.Law"}:
+        return "given.Laws"
+    raise TypeError(f"found a field of several {inner}, expected numbers, rows of them, or formulas")
+
+
+TAKEN: Mapping[type, str] = {
+    MarkerReference: "given.Marker",
+    JointName: "str",
+    Formula: "given.Law",
+    Table: "given.Curve",
+}
+PLAIN = {bool: "bool", int: "int", str: "str", type(None): "None"}
+
+
+def _named(annotation: Any, metadata: Any) -> str:
+    if annotation is float or any(isinstance(mark, Measured) for mark in metadata):
+        return "given.Number"
+    if annotation in PLAIN:
+        return PLAIN[annotation]
+    for base, word in TAKEN.items():
+        if issubclass(annotation, base):
+            return word
+    raise TypeError(f"found a field of {annotation}, expected a type that this file knows")
+
+
+def main() -> None:
+    for file in MODULES:
+        (ROOT / file).write_text(stub(file), encoding="utf-8")
+    paths = [str(ROOT / file) for file in MODULES]
+    subprocess.run(["ruff", "check", "--fix", "--quiet", *paths], check=True)
+    subprocess.run(["ruff", "format", "--quiet", *paths], check=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,266 @@
+"""Types of the module; written by .ci/stubs.py."""
+
+from typing import Literal
+
+from stiffmbs.describe.forces.applied import AppliedForce as _AppliedForce
+from stiffmbs.describe.forces.applied import AppliedTorque as _AppliedTorque
+from stiffmbs.describe.forces.bushing import Bushing as _Bushing
+from stiffmbs.describe.forces.contact import Contact as _Contact
+from stiffmbs.describe.forces.joint_friction import JointFriction as _JointFriction
+from stiffmbs.describe.forces.line_force import LineForce as _LineForce
+from stiffmbs.describe.forces.spring_damper import SpringDamper as _SpringDamper
+from stiffmbs.describe.forces.torsion_spring import TorsionSpring as _TorsionSpring
+from stiffmbs.describe.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
+from stiffmbs.describe.joints.coupler import Coupler as _Coupler
+from stiffmbs.describe.joints.distance import Distance as _Distance
+from stiffmbs.describe.joints.drive import Drive as _Drive
+from stiffmbs.describe.joints.fixed import Fixed as _Fixed
+from stiffmbs.describe.joints.gear import Gear as _Gear
+from stiffmbs.describe.joints.point_on_curve import PointOnCurve as _PointOnCurve
+from stiffmbs.describe.joints.point_on_line import PointOnLine as _PointOnLine
+from stiffmbs.describe.joints.prismatic import Prismatic as _Prismatic
+from stiffmbs.describe.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
+from stiffmbs.describe.joints.revolute import Revolute as _Revolute
+from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _VelocityEquation
+
+from . import spatial as spatial
+from .compile.compile_model import compile_model as compile_model
+from .describe import given
+from .describe.body import Body as Body
+from .describe.marker import Marker as Marker
+from .describe.model import Model as Model
+from .describe.scene import Scene as Scene
+from .describe.scene import read_scene as read_scene
+from .describe.schema import scene_schema as scene_schema
+from .describe.settings import RunSettings as RunSettings
+from .describe.table import Table as Table
+from .errors import AssemblyError as AssemblyError
+from .errors import InputError as InputError
+from .errors import SolverError as SolverError
+from .errors import StiffmbsError as StiffmbsError
+from .jobs.check import Report as Report
+from .jobs.check import check as check
+from .jobs.equilibrium import equilibrium as equilibrium
+from .jobs.load_scene import load_scene as load_scene
+from .jobs.modes import modes as modes
+from .jobs.run import run as run
+from .jobs.transfer import transfer as transfer
+from .results.solution import Solution as Solution
+from .verification.verify import verify as verify
+
+__version__: str
+ground: str
+
+class AppliedForce(_AppliedForce):
+    """A force at a point of a body: constant, or a formula of time and of anything measured."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        force: given.Laws,
+        axes: Literal["ground", "body"] = ...,
+        type: Literal["force"] = ...,
+    ) -> None: ...
+
+class AppliedTorque(_AppliedTorque):
+    """A torque on a body: constant, or a formula of time and of anything measured."""
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker | None = ..., torque: given.Law, type: Literal["torque"] = ...
+    ) -> None: ...
+
+class Bushing(_Bushing):
+    """Force and torque between two markers that are held together elastically."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Matrix = ...,
+        damping: given.Matrix = ...,
+        preload: given.Numbers = ...,
+        law_x: given.Curve | None = ...,
+        law_y: given.Curve | None = ...,
+        law_angle: given.Curve | None = ...,
+        axes: Literal["j", "ground"] = ...,
+        type: Literal["bushing"] = ...,
+    ) -> None: ...
+
+class ConstraintEquation(_ConstraintEquation):
+    """Formulas of body coordinates and time that stay zero: ``cart.y - 0.1*sin(cart.x)``."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker | None = ...,
+        j: given.Marker | None = ...,
+        zero: given.Laws,
+        type: Literal["equation"] = ...,
+    ) -> None: ...
+
+class Contact(_Contact):
+    """A point or circle about marker i that presses on a line or circle of marker j, with friction."""
+    def __init__(
+        self,
+        *,
+        friction: given.Number | None = ...,
+        static_friction: given.Number | None = ...,
+        stribeck_velocity: given.Number = ...,
+        smooth_velocity: given.Number = ...,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        dissipation: given.Number = ...,
+        i: given.Marker,
+        j: given.Marker,
+        radius: given.Number = ...,
+        surface: Literal["line", "circle", "hole"] = ...,
+        surface_radius: given.Number = ...,
+        type: Literal["contact"] = ...,
+    ) -> None: ...
+
+class Coupler(_Coupler):
+    """Ties two joint coordinates by a straight line: s_1 - scale s_2 - offset = 0."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        joint_1: str,
+        joint_2: str,
+        scale: given.Number,
+        type: Literal["coupler"] = ...,
+    ) -> None: ...
+
+class Distance(_Distance):
+    """Rod: a point of body i and a point of body j keep their distance, (d . d - L^2)/(2 L) = 0."""
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker, length: given.Number, type: Literal["distance"] = ...
+    ) -> None: ...
+
+class Drive(_Drive):
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker | None = ...,
+        j: given.Marker | None = ...,
+        joint: str | None = ...,
+        coordinate: given.Law | None = ...,
+        position: given.Curve | None = ...,
+        velocity: given.Curve | None = ...,
+        type: Literal["drive"] = ...,
+    ) -> None: ...
+
+class Fixed(_Fixed):
+    """Weld: two markers coincide in place and direction."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["fixed"] = ...) -> None: ...
+
+class Gear(_Gear):
+    """Two wheels in mesh, each pinned to one carrier: theta_1 + ratio theta_2 - offset = 0."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        joint_1: str,
+        joint_2: str,
+        ratio: given.Number,
+        type: Literal["gear"] = ...,
+    ) -> None: ...
+
+class JointFriction(_JointFriction):
+    """Dry friction in a revolute or prismatic joint, pressed by the joint's own reaction."""
+    def __init__(
+        self,
+        *,
+        friction: given.Number,
+        static_friction: given.Number | None = ...,
+        stribeck_velocity: given.Number = ...,
+        smooth_velocity: given.Number = ...,
+        joint: str,
+        radius: given.Number = ...,
+        length: given.Number | None = ...,
+        type: Literal["joint_friction"] = ...,
+    ) -> None: ...
+
+class LineForce(_LineForce):
+    """A force between two points along the line through them: constant, or a formula of anything measured."""
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker, force: given.Law, type: Literal["line_force"] = ...
+    ) -> None: ...
+
+class PointOnCurve(_PointOnCurve):
+    """Point-follower: the point of marker i stays on a curve fixed to marker j."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        y: given.Curve | None = ...,
+        radius: given.Curve | None = ...,
+        type: Literal["point_on_curve"] = ...,
+    ) -> None: ...
+
+class PointOnLine(_PointOnLine):
+    """Pin in a slot: the point of marker i stays on the line through marker j along j's axis, d . n_j = 0."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["point_on_line"] = ...) -> None: ...
+
+class Prismatic(_Prismatic):
+    """Slider: marker i stays on the line through marker j along j's axis and keeps j's direction."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["prismatic"] = ...) -> None: ...
+
+class RackAndPinion(_RackAndPinion):
+    """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        rack: str,
+        pinion: str,
+        pitch_radius: given.Number,
+        type: Literal["rack_and_pinion"] = ...,
+    ) -> None: ...
+
+class Revolute(_Revolute):
+    """Pin: a point of body i and a point of body j coincide."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["revolute"] = ...) -> None: ...
+
+class SpringDamper(_SpringDamper):
+    """Line spring and damper, linear or by curves, along the line between two points."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number = ...,
+        damping: given.Number = ...,
+        free_length: given.Number = ...,
+        preload: given.Number = ...,
+        spring_law: given.Curve | None = ...,
+        damper_law: given.Curve | None = ...,
+        type: Literal["spring_damper"] = ...,
+    ) -> None: ...
+
+class TorsionSpring(_TorsionSpring):
+    """Rotational spring and damper, linear or by curves, on the angle of marker i against marker j."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number = ...,
+        damping: given.Number = ...,
+        free_angle: given.Number = ...,
+        preload: given.Number = ...,
+        spring_law: given.Curve | None = ...,
+        damper_law: given.Curve | None = ...,
+        type: Literal["torsion_spring"] = ...,
+    ) -> None: ...
+
+class VelocityEquation(_VelocityEquation):
+    """Formulas linear in velocities that stay zero, J(q) u - b(q, t) = 0, and need not be the rate of anything."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker | None = ...,
+        j: given.Marker | None = ...,
+        zero: given.Laws,
+        type: Literal["velocity_equation"] = ...,
+    ) -> None: ...

@@ -1,0 +1,29 @@
+"""What may be given for a field of each type: numbers as such or as text with units, bodies by name or by their handles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .handle import Handle
+    from .marker import MarkerReference
+    from .table import Table
+
+Number: TypeAlias = "float | np.number[Any] | str"
+"""In SI units, or text with a unit: ``0.3``, ``"300 mm"``."""
+Numbers: TypeAlias = "Sequence[Number | None] | np.ndarray"
+Matrix: TypeAlias = "Sequence[Number | Sequence[Number | None] | np.ndarray | None] | np.ndarray"
+"""By rows, or by its diagonal where the field allows it."""
+Law: TypeAlias = "float | np.number[Any] | str"
+"""A formula, or a number."""
+Laws: TypeAlias = "Law | Sequence[Law]"
+Curve: TypeAlias = "Law | Table | Mapping[str, Any]"
+"""A formula of one variable, or a table."""
+Marker: TypeAlias = "str | Handle | MarkerReference | Mapping[str, Any]"
+"""A body or a marker of it by name, a body's handle, or a marker given on the spot."""
+Markers: TypeAlias = "Mapping[str, Any]"
+"""Named points on a body."""
+Orientation: TypeAlias = "Sequence[Any] | np.ndarray | Mapping[str, Any]"

@@ -1,0 +1,99 @@
+"""Models as the text of scene files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..errors import InputError
+from .element import Element, JointName
+from .fields import Described
+from .files.scene_text import scene_text
+from .formula.field import Formula
+from .marker import MarkerReference
+from .model_data import ModelData
+from .units.units import CONSTANTS, UNITS
+
+PLAIN = ("name", "dimensions", "gravity")
+SECTIONS = ("markers", "bodies", "joints", "forces", "requests")
+
+
+def model_text(data: ModelData) -> str:
+    """The text of a scene file that holds a model; what formulas read of parameters and tables is written with it.
+
+    Raises
+    ------
+    InputError
+        When two formulas have other values for a parameter, or other tables of one name.
+    """
+    parts = {name: _written(getattr(data, name)) for name in (*PLAIN, *SECTIONS)}
+    formulas = list(_formulas([getattr(data, section) for section in SECTIONS]))
+    parts["parameters"] = _agreed(pair for formula in formulas for pair in _parameters(formula))
+    parts["tables"] = _agreed((name, _written(table)) for formula in formulas for name, table in formula.tables.items())
+    order = ("name", "dimensions", "parameters", "tables", "gravity", *SECTIONS)
+    return scene_text({name: parts[name] for name in order if parts[name]})
+
+
+def _written(value: Any) -> Any:
+    """A value as a scene file writes it."""
+    match value:
+        case MarkerReference():
+            return _marker(value)
+        case Described():
+            kind = {"type": value.kind} if isinstance(value, Element) else {}
+            return {**kind, **_fields(value)}
+        case JointName():
+            return str(value)
+        case dict():
+            return {name: _written(part) for name, part in value.items()}
+        case tuple():
+            return [_written(part) for part in value]
+    return _formula(value.text) if hasattr(value, "text") else value
+
+
+def _formula(text: str) -> str | float:
+    """A formula's text, or the number that it was given as."""
+    try:
+        return float(text) if repr(float(text)) == text else text
+    except ValueError:
+        return text
+
+
+def _fields(described: Described) -> dict[str, Any]:
+    return {name: _written(value) for name, value in described.__repr_args__()}
+
+
+def _marker(found: MarkerReference) -> Any:
+    fields = _fields(found)
+    return found.label if fields.keys() <= {"body", "marker"} else fields
+
+
+def _formulas(value: Any) -> Iterator[Any]:
+    """The formulas in a value, however deep: those of elements, and of requests in space."""
+    if hasattr(value, "values") and hasattr(value, "tables") and hasattr(value, "text"):
+        yield value
+    elif isinstance(value, Described):
+        for name in type(value).model_fields:
+            yield from _formulas(getattr(value, name))
+    elif isinstance(value, dict | list | tuple):
+        for part in value.values() if isinstance(value, dict) else value:
+            yield from _formulas(part)
+
+
+def _parameters(formula: Any) -> Iterator[tuple[str, float]]:
+    """The names in a formula that are neither units nor constants, with their values."""
+    units = {} if isinstance(formula, Formula) and formula.variables else UNITS
+    for name, value in formula.values.items():
+        known = units.get(name) or CONSTANTS.get(name)
+        if "." not in name and (known is None or known.value != value):
+            yield name, value
+
+
+def _agreed(pairs: Iterator[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in pairs:
+        if found.setdefault(name, value) != value:
+            raise InputError(
+                f"{name}: found {found[name]!r} in one formula and {value!r} in another, expected one value"
+            )
+    return found

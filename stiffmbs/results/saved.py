@@ -1,0 +1,86 @@
+"""What an .npz file holds of a run besides its channels, so that it can be read again.
+
+Its names have a slash, which no channel has: ``run/about`` is one text, JSON; the rest are arrays.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import astuple, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from ..describe.figure import Figure
+from ..errors import InputError
+from ..solve.trajectory import History, Outcome
+from .energy_balance import Balance
+from .error_bars import ErrorBar
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+ABOUT, HISTORY, BALANCE = "run/about", "run/history/", "run/balance/"
+TEXTS = ("notes", "not_unique", "presolve", "verification")
+
+
+def record(solution: Solution) -> dict[str, np.ndarray]:
+    """The arrays to save besides the channels."""
+    about: dict[str, Any] = {
+        "name": solution.name,
+        "outcome": solution.outcome.name,
+        "message": solution.message,
+        **{name: list(getattr(solution, name)) for name in TEXTS},
+        "requested": sorted(solution.requested),
+        "solver": solution.solver,
+        "errors": {channel: astuple(bar) for channel, bar in solution.errors.items()},
+        "figure": solution.figure and solution.figure.model_dump(),
+    }
+    return {
+        ABOUT: np.array(json.dumps(about, default=_plain)),
+        **{HISTORY + part.name: getattr(solution.history, part.name) for part in fields(History)},
+        **{BALANCE + part.name: np.asarray(getattr(solution.balance, part.name)) for part in fields(Balance)},
+    }
+
+
+def _plain(value: Any) -> Any:
+    """A number of NumPy's as Python's."""
+    return value.item()
+
+
+def loaded(path: Path) -> Solution:
+    """See `Solution.load`."""
+    if path.suffix != ".npz":
+        raise InputError(
+            f"load {path}: found the ending '{path.suffix}', expected .npz: other files hold the channels alone"
+        )
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            return _restored(path, dict(archive))
+    except OSError as error:
+        raise InputError(f"load {path}: {error.strerror or 'found no archive of arrays'}") from None
+    except (BadZipFile, ValueError, EOFError):
+        raise InputError(f"load {path}: found no archive of arrays, expected a file that Solution.save wrote") from None
+
+
+def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
+    from .solution import Solution
+
+    if ABOUT not in arrays:
+        raise InputError(
+            f"load {path}: found no record of a run, expected a file that Solution.save or stiffmbs run wrote"
+        )
+    about = json.loads(str(arrays[ABOUT]))
+    channels = {name: array for name, array in arrays.items() if "/" not in name and name not in ("time", "not_unique")}
+    balance = {part.name: arrays[BALANCE + part.name] for part in fields(Balance)}
+    return Solution(
+        name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=about["message"],
+        **{name: tuple(about[name]) for name in TEXTS}, requested=frozenset(about["requested"]), solver=about["solver"],
+        errors={channel: ErrorBar(*bar) for channel, bar in about["errors"].items()},
+        history=History(*(arrays[HISTORY + part.name] for part in fields(History))),
+        balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),
+        figure=Figure(**about["figure"]) if about["figure"] else None,
+    )  # fmt: skip

@@ -1,0 +1,379 @@
+"""Types of the module; written by .ci/stubs.py."""
+
+from typing import Literal
+
+from stiffmbs.describe.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
+from stiffmbs.describe.joints.coupler import Coupler as _Coupler
+from stiffmbs.describe.joints.drive import Drive as _Drive
+from stiffmbs.describe.joints.gear import Gear as _Gear
+from stiffmbs.describe.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
+from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _VelocityEquation
+from stiffmbs.describe.spatial.forces.applied import AppliedForce as _AppliedForce
+from stiffmbs.describe.spatial.forces.applied import AppliedTorque as _AppliedTorque
+from stiffmbs.describe.spatial.forces.beam import Beam as _Beam
+from stiffmbs.describe.spatial.forces.bushing import Bushing as _Bushing
+from stiffmbs.describe.spatial.forces.field import FieldForce as _FieldForce
+from stiffmbs.describe.spatial.forces.joint_friction import JointFriction as _JointFriction
+from stiffmbs.describe.spatial.forces.line_force import LineForce as _LineForce
+from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
+from stiffmbs.describe.spatial.forces.spring_damper import SpringDamper as _SpringDamper
+from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
+from stiffmbs.describe.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
+from stiffmbs.describe.spatial.joints.cylindrical import Cylindrical as _Cylindrical
+from stiffmbs.describe.spatial.joints.distance import Distance as _Distance
+from stiffmbs.describe.spatial.joints.fixed import Fixed as _Fixed
+from stiffmbs.describe.spatial.joints.orientation import Orientation as _Orientation
+from stiffmbs.describe.spatial.joints.parallel import Parallel as _Parallel
+from stiffmbs.describe.spatial.joints.perpendicular import Perpendicular as _Perpendicular
+from stiffmbs.describe.spatial.joints.planar import Planar as _Planar
+from stiffmbs.describe.spatial.joints.point_on_curve import PointOnCurve as _PointOnCurve
+from stiffmbs.describe.spatial.joints.point_on_line import PointOnLine as _PointOnLine
+from stiffmbs.describe.spatial.joints.point_on_plane import PointOnPlane as _PointOnPlane
+from stiffmbs.describe.spatial.joints.prismatic import Prismatic as _Prismatic
+from stiffmbs.describe.spatial.joints.revolute import Revolute as _Revolute
+from stiffmbs.describe.spatial.joints.revolute_spherical import RevoluteSpherical as _RevoluteSpherical
+from stiffmbs.describe.spatial.joints.screw import Screw as _Screw
+from stiffmbs.describe.spatial.joints.spherical import Spherical as _Spherical
+from stiffmbs.describe.spatial.joints.thread import Thread as _Thread
+from stiffmbs.describe.spatial.joints.universal import Universal as _Universal
+
+from .describe import given
+from .describe.spatial.body import Body as Body
+from .describe.spatial.marker import Marker as Marker
+from .describe.spatial.model import Model as Model
+from .jobs.in_space import in_space as in_space
+
+class AppliedForce(_AppliedForce):
+    """A force at a point of a body: constant, or a formula of time and of anything measured."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        axes: Literal["ground", "body"] = ...,
+        frame: given.Marker | None = ...,
+        force: given.Laws,
+        type: Literal["force"] = ...,
+    ) -> None: ...
+
+class AppliedTorque(_AppliedTorque):
+    """A torque on a body: constant, or a formula of time and of anything measured."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        axes: Literal["ground", "body"] = ...,
+        frame: given.Marker | None = ...,
+        torque: given.Laws,
+        type: Literal["torque"] = ...,
+    ) -> None: ...
+
+class Beam(_Beam):
+    """A massless straight beam of uniform cross section along the x axis of marker j, from j to i."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        length: given.Number,
+        young: given.Number,
+        shear_modulus: given.Number,
+        area: given.Number,
+        torsion: given.Number,
+        iyy: given.Number,
+        izz: given.Number,
+        asy: given.Number = ...,
+        asz: given.Number = ...,
+        damping_ratio: given.Number | None = ...,
+        damping: given.Matrix = ...,
+        type: Literal["beam"] = ...,
+    ) -> None: ...
+
+class Bushing(_Bushing):
+    """Force and torque between two markers that are held together elastically in all six components."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Matrix = ...,
+        damping: given.Matrix = ...,
+        preload: given.Numbers = ...,
+        law_x: given.Curve | None = ...,
+        law_y: given.Curve | None = ...,
+        law_z: given.Curve | None = ...,
+        law_about_x: given.Curve | None = ...,
+        law_about_y: given.Curve | None = ...,
+        law_about_z: given.Curve | None = ...,
+        axes: Literal["j", "ground"] = ...,
+        type: Literal["bushing"] = ...,
+    ) -> None: ...
+
+class ConstantVelocity(_ConstantVelocity):
+    """Homokinetic joint of two shafts: two points coincide, and both shafts turn about their axes z at one rate."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        axes: Literal["same", "opposite"] | None = ...,
+        type: Literal["constant_velocity"] = ...,
+    ) -> None: ...
+
+class ConstraintEquation(_ConstraintEquation):
+    """Formulas of body coordinates and time that stay zero: ``cart.y - 0.1*sin(cart.x)``."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker | None = ...,
+        j: given.Marker | None = ...,
+        zero: given.Laws,
+        type: Literal["equation"] = ...,
+    ) -> None: ...
+
+class Coupler(_Coupler):
+    """Ties two joint coordinates by a straight line: s_1 - scale s_2 - offset = 0."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        joint_1: str,
+        joint_2: str,
+        scale: given.Number,
+        type: Literal["coupler"] = ...,
+    ) -> None: ...
+
+class Cylindrical(_Cylindrical):
+    """Sleeve on a shaft: marker i stays on the z axis of marker j, parallel to it, and may slide and turn."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["cylindrical"] = ...) -> None: ...
+
+class Distance(_Distance):
+    """Rod: a point of body i and a point of body j keep their distance, (d . d - L^2)/(2 L) = 0."""
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker, length: given.Number, type: Literal["distance"] = ...
+    ) -> None: ...
+
+class Drive(_Drive):
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker | None = ...,
+        j: given.Marker | None = ...,
+        joint: str | None = ...,
+        coordinate: given.Law | None = ...,
+        position: given.Curve | None = ...,
+        velocity: given.Curve | None = ...,
+        type: Literal["drive"] = ...,
+    ) -> None: ...
+
+class FieldForce(_FieldForce):
+    """Linear elastic connection of two markers that are apart: preload - K (s - s0) - C (v, w)."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Matrix = ...,
+        damping: given.Matrix = ...,
+        preload: given.Numbers = ...,
+        free: given.Numbers | None = ...,
+        type: Literal["field"] = ...,
+    ) -> None: ...
+
+class Fixed(_Fixed):
+    """Weld: two markers coincide in place and orientation."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["fixed"] = ...) -> None: ...
+
+class Gear(_Gear):
+    """Two wheels in mesh, each pinned to one carrier: theta_1 + ratio theta_2 - offset = 0."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        joint_1: str,
+        joint_2: str,
+        ratio: given.Number,
+        type: Literal["gear"] = ...,
+    ) -> None: ...
+
+class JointFriction(_JointFriction):
+    """Dry friction in a revolute, cylindrical, prismatic or spherical joint, pressed by the joint's own reaction."""
+    def __init__(
+        self,
+        *,
+        friction: given.Number,
+        static_friction: given.Number | None = ...,
+        stribeck_velocity: given.Number = ...,
+        smooth_velocity: given.Number = ...,
+        joint: str,
+        radius: given.Number = ...,
+        length: given.Number | None = ...,
+        thrust_radius: given.Number | None = ...,
+        torsion_radius: given.Number | None = ...,
+        type: Literal["joint_friction"] = ...,
+    ) -> None: ...
+
+class LineForce(_LineForce):
+    """A force between two points of space along the line through them: constant, or a formula of anything measured."""
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker, force: given.Law, type: Literal["line_force"] = ...
+    ) -> None: ...
+
+class Orientation(_Orientation):
+    """Two markers keep the same axes, wherever their points are."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["orientation"] = ...) -> None: ...
+
+class Parallel(_Parallel):
+    """The axes z of two markers stay parallel, wherever their points are."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["parallel"] = ...) -> None: ...
+
+class Perpendicular(_Perpendicular):
+    """The axes z of two markers stay at right angles, wherever their points are."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["perpendicular"] = ...) -> None: ...
+
+class Planar(_Planar):
+    """A body that slides and turns on a plane: the point of marker i stays in the xy plane of marker j, their z parallel."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["planar"] = ...) -> None: ...
+
+class PointOnCurve(_PointOnCurve):
+    """Point-follower: the point of marker i stays on a curve in the xy plane of marker j, in any orientation."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        y: given.Curve | None = ...,
+        radius: given.Curve | None = ...,
+        type: Literal["point_on_curve"] = ...,
+    ) -> None: ...
+
+class PointOnLine(_PointOnLine):
+    """Bead on a wire: the point of marker i stays on the z axis of marker j, in any orientation."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["point_on_line"] = ...) -> None: ...
+
+class PointOnPlane(_PointOnPlane):
+    """A tip on a floor: the point of marker i stays in the xy plane of marker j, in any orientation."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["point_on_plane"] = ...) -> None: ...
+
+class Prismatic(_Prismatic):
+    """Slider: marker i stays on the z axis of marker j and keeps j's orientation."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["prismatic"] = ...) -> None: ...
+
+class RackAndPinion(_RackAndPinion):
+    """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        rack: str,
+        pinion: str,
+        pitch_radius: given.Number,
+        type: Literal["rack_and_pinion"] = ...,
+    ) -> None: ...
+
+class Revolute(_Revolute):
+    """Hinge: two points coincide and the axes z of both markers are one."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["revolute"] = ...) -> None: ...
+
+class RevoluteSpherical(_RevoluteSpherical):
+    """Rod without mass, hinged at marker j and ending in a ball at marker i."""
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker, length: given.Number, type: Literal["revolute_spherical"] = ...
+    ) -> None: ...
+
+class Screw(_Screw):
+    """Nut on a spindle: marker i stays on the z axis of marker j, parallel to it, and a turn carries it on by the pitch."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        i: given.Marker,
+        j: given.Marker,
+        pitch: given.Number,
+        type: Literal["screw"] = ...,
+    ) -> None: ...
+
+class SphereContact(_SphereContact):
+    """A sphere or point about marker i that presses on a plane, on a sphere, or on a hollow sphere from within."""
+    def __init__(
+        self,
+        *,
+        friction: given.Number | None = ...,
+        static_friction: given.Number | None = ...,
+        stribeck_velocity: given.Number = ...,
+        smooth_velocity: given.Number = ...,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        dissipation: given.Number = ...,
+        i: given.Marker,
+        j: given.Marker,
+        radius: given.Number = ...,
+        surface: Literal["plane", "sphere", "hollow"] = ...,
+        surface_radius: given.Number = ...,
+        type: Literal["sphere_contact"] = ...,
+    ) -> None: ...
+
+class Spherical(_Spherical):
+    """Ball joint: a point of body i and a point of body j coincide."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["spherical"] = ...) -> None: ...
+
+class SpringDamper(_SpringDamper):
+    """Line spring and damper, linear or by curves, along the line between two points of space."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number = ...,
+        damping: given.Number = ...,
+        free_length: given.Number = ...,
+        preload: given.Number = ...,
+        spring_law: given.Curve | None = ...,
+        damper_law: given.Curve | None = ...,
+        type: Literal["spring_damper"] = ...,
+    ) -> None: ...
+
+class Thread(_Thread):
+    """Ties how far marker i is along the z axis of marker j to its angle about it: s - pitch theta/(2 pi) - offset = 0."""
+    def __init__(
+        self,
+        *,
+        offset: given.Number | None = ...,
+        i: given.Marker,
+        j: given.Marker,
+        pitch: given.Number,
+        type: Literal["thread"] = ...,
+    ) -> None: ...
+
+class TorsionSpring(_TorsionSpring):
+    """Rotational spring and damper, linear or by curves, about the axis z that two markers have in common."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number = ...,
+        damping: given.Number = ...,
+        free_angle: given.Number = ...,
+        preload: given.Number = ...,
+        spring_law: given.Curve | None = ...,
+        damper_law: given.Curve | None = ...,
+        type: Literal["torsion_spring"] = ...,
+    ) -> None: ...
+
+class Universal(_Universal):
+    """Cardan joint: two points coincide, and the axes z of both markers, the arms of its cross, are at right angles."""
+    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["universal"] = ...) -> None: ...
+
+class VelocityEquation(_VelocityEquation):
+    """Formulas linear in velocities that stay zero, J(q) u - b(q, t) = 0, and need not be the rate of anything."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker | None = ...,
+        j: given.Marker | None = ...,
+        zero: given.Laws,
+        type: Literal["velocity_equation"] = ...,
+    ) -> None: ...
