@@ -3,7 +3,7 @@
 Examples
 --------
 >>> import stiffmbs
->>> solution = stiffmbs.run(stiffmbs.load_scene("examples/cart_pendulum.yaml"), rtol=1e-8)
+>>> solution = stiffmbs.run("examples/cart_pendulum.yaml", rtol=1e-8)
 >>> print(f"the rail carries {solution['rail.fy'].max():.1f} N at most")
 the rail carries 108.8 N at most
 """
