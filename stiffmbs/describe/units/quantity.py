@@ -34,7 +34,8 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
     """
     known = parameters or {}
     tree = parse(text)
-    check_functions(tree, IN_NUMBERS)
+    if "(" in text:
+        check_functions(tree, IN_NUMBERS)
 
     def named(name: str) -> Quantity:
         owner, _, last = name.rpartition(".")
