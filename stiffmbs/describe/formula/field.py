@@ -168,7 +168,9 @@ class FormulaOf:
             self._check(found)
             return found
         if isinstance(found, Table | dict) and self.table:
-            return found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
+            table = found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
+            self._check_table(table)
+            return table
         context = info.context or {}
         formula = self._made(found, *(context.get(key) or {} for key in ("parameters", "tables", "variables")))
         self._check(formula)
@@ -196,8 +198,9 @@ class FormulaOf:
         )
         used = dict(self.quantities(found, tree, parameters))
         values = {name: quantity.value for name, quantity in used.items()}
-        dimension = self.dimension_of(tree, used)
-        return Formula(found, tree, self.variables, values, self.velocities, called_tables(tree, tables), dimension)
+        called = called_tables(tree, tables)
+        dimension = self.dimension_of(tree, used, called)
+        return Formula(found, tree, self.variables, values, self.velocities, called, dimension)
 
     def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
         """The parameters, units and constants in a tree.
@@ -227,13 +230,23 @@ class FormulaOf:
         raise FormulaError(f"found the unknown name '{name}' in '{quoted(text)}', expected {expected}")
 
     def dimension_of(
-        self, tree: ast.expr, used: Mapping[str, Quantity], terms: Mapping[str, Known] | None = None
+        self,
+        tree: ast.expr,
+        used: Mapping[str, Quantity],
+        tables: Mapping[str, Table],
+        terms: Mapping[str, Known] | None = None,
     ) -> Known:
         """The dimension of a formula's value, as `stiffmbs.describe.formula.measured.dimension_within`; `terms` are other
         names in the tree.
         """
         own = dict(zip(self.variables, map(measured_in, self.measured_in), strict=False))
-        return dimension_within(tree, used, own | dict(terms or {}))
+        columns = {name: table.dimensions for name, table in tables.items()}
+        return dimension_within(tree, used, own | dict(terms or {}), columns)
+
+    def _check_table(self, table: Table) -> None:
+        argument, value = table.dimensions
+        check_dimension("the table's arguments", argument, *self.measured_in or ("time",))
+        check_dimension("the table's values", value, self.dimension)
 
     def _check(self, formula: Formula) -> None:
         if not self.time and any(isinstance(n, ast.Name) and n.id == TIME for n in reading_order(formula.tree)):
@@ -242,7 +255,7 @@ class FormulaOf:
         used += [f"{name}(...)" for name, _ in formula.measures()]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
-        check_dimension(formula.text, formula.dimension, self.dimension)
+        check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)

@@ -6,9 +6,8 @@ import ast
 from collections.abc import Mapping
 
 from ..units.units import Quantity
-from .check_dimensions import dimension_of
+from .check_dimensions import Columns, dimension_of
 from .dimension import UNKNOWN, Known, measured_in
-from .functions import FUNCTIONS
 from .text import FormulaError
 
 _COORDINATES = {
@@ -39,7 +38,9 @@ def of_coordinate(name: str) -> Known:
     return COORDINATES.get(coordinate, UNKNOWN) if owner else UNKNOWN
 
 
-def dimension_within(tree: ast.expr, used: Mapping[str, Quantity], own: Mapping[str, Known]) -> Known:
+def dimension_within(
+    tree: ast.expr, used: Mapping[str, Quantity], own: Mapping[str, Known], tables: Mapping[str, Columns]
+) -> Known:
     """The dimension of a formula's value.
 
     Parameters
@@ -49,6 +50,8 @@ def dimension_within(tree: ast.expr, used: Mapping[str, Quantity], own: Mapping[
         The parameters, units and constants in it.
     own : mapping of str to Known
         Names with a meaning of the formula's own.
+    tables : mapping of str to (Known, Known)
+        Of arguments and values of the tables that it calls.
 
     Raises
     ------
@@ -56,14 +59,11 @@ def dimension_within(tree: ast.expr, used: Mapping[str, Quantity], own: Mapping[
         When a unit stands in it and dimensions do not fit; without any it is in SI units as it stands.
     """
     names: dict[str, Quantity | Known] = {"t": TIME, **own, **used}
-
-    def called(call: ast.Call) -> Known | None:
-        name = call.func.id  # type: ignore[attr-defined]
-        return MEASURES.get(name, None if name in FUNCTIONS else UNKNOWN)
-
     try:
-        return dimension_of(tree, lambda name: names.get(name) or of_coordinate(name), called)
+        return dimension_of(tree, lambda name: names.get(name) or of_coordinate(name), MEASURES, tables)
     except FormulaError:
         if any(quantity.dimension is not None for quantity in used.values()):
+            raise
+        if any(column.stated for columns in tables.values() for column in columns):
             raise
         return UNKNOWN

@@ -41,11 +41,13 @@ def _levels(tree: ast.expr) -> Iterator[list[ast.expr]]:
 
 def _children(node: ast.expr) -> list[ast.expr]:
     match node:
-        case ast.Attribute():
-            return []
+        case ast.BinOp(left, _, right):
+            return [left, right]
+        case ast.UnaryOp(_, operand):
+            return [operand]
         case ast.Call(_, arguments):
             return arguments
-    return [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.expr)]
+    return []
 
 
 def check_size(tree: ast.expr, text: str, inserted: Sequence[ast.expr] = ()) -> None:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..files.quoted import quoted
-from .size import MOST_PARTS, FormulaError, balanced, check_size
+from .size import DEEPEST, MOST_PARTS, FormulaError, balanced, check_size
 
 UNIT = "unit"
 _NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
@@ -55,8 +55,10 @@ def parse(text: str) -> ast.expr:
     if len(text) > LONGEST:
         raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST}")
     try:
-        tree = balanced(ast.parse(_python_spelling(text), mode="eval").body)
-        check_size(tree, text)
+        tree = ast.parse(_python_spelling(text), mode="eval").body
+        if len(text) > DEEPEST:  # shorter ones are within the bounds
+            tree = balanced(tree)
+            check_size(tree, text)
     except FormulaError:
         raise
     except (SyntaxError, tokenize.TokenError, ValueError, RecursionError, MemoryError):

@@ -92,9 +92,10 @@ class OutputField:
         parameters = context.get("parameters") or {}
         named = _NAMES.quantities(found, tree, parameters | dict.fromkeys(places, Quantity(0.0)))
         used = {name: quantity for name, quantity in named if name not in places}
-        _NAMES.dimension_of(tree, used, places)
+        called = called_tables(tree, tables)
+        _NAMES.dimension_of(tree, used, called, places)
         values = {name: quantity.value for name, quantity in used.items()}
-        return Output(found, tree, tuple(terms.found), values, called_tables(tree, tables))
+        return Output(found, tree, tuple(terms.found), values, called)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
