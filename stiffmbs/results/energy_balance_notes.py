@@ -14,7 +14,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..describe.settings import RunSettings
-from ..solve.explicit import ADAPTIVE
+from ..solve import traits_of
 from ..solve.mechanics import OutputRows
 from .energy_balance import Balance, potentials
 
@@ -70,8 +70,7 @@ def balance_notes(
 
 def may_be_missing(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> float:
     """An energy that may be missing in a balance before it is told, J."""
-    fixed = settings.solver == "projected" and settings.scheme not in ADAPTIVE
-    part = BROKEN if fixed else max(BROKEN, PER_TOLERANCE * settings.rtol)
+    part = BROKEN if traits_of(settings).fixed_steps else max(BROKEN, PER_TOLERANCE * settings.rtol)
     return part * balance.scale + _negligible(system, rows, settings)
 
 

@@ -21,7 +21,7 @@ from .events.limits import refuse_beyond_limits
 from .events.masked import HeldSwitches
 from .events.restart import just_after, restarted
 from .events.velocity_jumps import VelocityJumps
-from .formulations import FORMULATIONS
+from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.choice import chosen
 from .ida.engine import Engine, Reached
 from .ida.libraries import available
@@ -29,11 +29,20 @@ from .ida.native_engine import NativeEngine
 from .ida.sundae import SundaeEngine
 from .initial import InitialValues
 from .mechanics import Mechanics
+from .solver import Traits
 from .suspect import suspect
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 SHORT = 8
 """Stretches of a run before its counters are looked at: reading them costs as much as some steps."""
+READ = ("formulation", "rtol", "atol", "max_step", "max_order")
+"""Settings that it follows."""
+
+
+def traits(settings: RunSettings) -> Traits:
+    """Those of the formulation in the settings, which may read settings of its own."""
+    of_formulation = READ_BY_FORMULATIONS.get(settings.formulation, ())
+    return Traits("bdf", (*READ, *of_formulation), implicit=True)
 
 
 def solve(

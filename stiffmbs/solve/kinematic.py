@@ -16,6 +16,7 @@ from .failures import FAILURES
 from .initial import InitialValues
 from .mechanics import Mechanics
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
+from .solver import Traits
 from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
 
 LARGEST_SURPRISE = 0.05
@@ -28,6 +29,11 @@ SHORTEST = 1e-10
 """Part of the duration below which a step that still fails means that the mechanism locks."""
 MOST_MOVES = 12
 """Newton's moves of one step; a step that asks for more was too long."""
+
+
+def traits(settings: RunSettings) -> Traits:
+    """It takes no tolerance and no step from the settings."""
+    return Traits("kinematic", exact=True)
 
 
 def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:

@@ -157,9 +157,14 @@ class AdaptiveRun:
             status = ADVANCE.load()(work.t, 1, 1, self._grid.times is None, work.at)
             work.collect(self._rows)
 
-    def _statistics(self) -> dict[str, int | float]:
+    def _statistics(self) -> dict[str, int | float | str]:
         counted = {name: self.work.count(name) for name in ("steps", "rejected", "accelerations")}
-        return {**counted, "corners": int(np.sum(self._corners < self.work.t)), "events": self._events}
+        return {
+            "scheme": self._scheme.name,
+            **counted,
+            "corners": int(np.sum(self._corners < self.work.t)),
+            "events": self._events,
+        }
 
 
 def first_step(
