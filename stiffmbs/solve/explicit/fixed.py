@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -19,7 +18,7 @@ from ..events.limits import refuse_beyond_limits
 from ..events.narrow_inputs import narrower_than_steps
 from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
-from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from ..trajectory import Ending, Grid, Rows, Trajectory, Watch
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS
@@ -92,34 +91,27 @@ def solve_with_fixed_steps(
     times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
     rows = Rows(len(stepper.q), len(stepper.u), len(times))
     rows.append(times[0], stepper.q, stepper.u)
-    outcome, message, steps, note = Outcome.DONE, Outcome.DONE.value, 0, ""
-    longest = 0.0
+    steps, longest, note = 0, 0.0, ""
     apart = max(1, len(times) // LOOKS)
-    begun = time.perf_counter()
-    try:
+    with Ending() as ending:
         for row, (t, end) in enumerate(itertools.pairwise(times), 1):
             count = max(1, math.ceil((end - t) / settings.step - ROUNDING))
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
-                outcome, message = Outcome.STOPPED, f"stopped after t = {t:.9g} s: {REASONS[status]}"
-                break
+                raise SolverError(f"stopped after t = {t:.9g} s: {REASONS[status]}")
             steps += count
             refuse_beyond_limits(mechanics, end, stepper.q, stepper.u)
             rows.append(end, stepper.q, stepper.u)
             if not note and row % apart == 0:
                 note = _jumps(mechanics, stepper, end, settings.step)
             watch(end)
-    except SolverError as error:
-        outcome, message = Outcome.STOPPED, str(error)
-    except KeyboardInterrupt:
-        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-    statistics = {
-        "scheme": stepper.scheme, "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": time.perf_counter() - begun,
+    statistics: dict[str, int | float | str] = {
+        "scheme": stepper.scheme, "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": ending.seconds,
     }  # fmt: skip
     narrow = narrower_than_steps(mechanics.input_features(grid.start, grid.end), settings.step, stepper.scheme)
     note = "; ".join(filter(None, (note, narrow, _cut(longest, settings))))
-    return Trajectory(*rows.stored, outcome, message, statistics, note=note)
+    return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
 def _jumps(mechanics: Mechanics, stepper: Stepper, t: float, step: float) -> str:
