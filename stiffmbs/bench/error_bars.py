@@ -92,7 +92,7 @@ def measured(problem: Problem, rtols: Iterable[float] = RTOLS) -> Iterator[tuple
     model = problem.model()
 
     def job(solver: str, rtol: float, points: int) -> Job:
-        return prepare(model, duration=problem.duration, solver=solver, scheme="dop853", rtol=rtol, points=points)
+        return prepare(model, duration=problem.duration, solver=solver, rtol=rtol, points=points)
 
     fine = FINER * (POINTS - 1) + 1
     less_true, truth = (at_more_instants(job(problem.trusted, rtol, fine)) for rtol in REFERENCES)

@@ -58,9 +58,7 @@ def evenness(problem: Problem, control: ErrorControl) -> Evenness:
     model = problem.model()
 
     def job(solver: str, rtol: float) -> Job:
-        return prepare(
-            model, duration=problem.duration, points=POINTS, presolve=False, solver=solver, scheme="dop853", rtol=rtol
-        )
+        return prepare(model, duration=problem.duration, points=POINTS, presolve=False, solver=solver, rtol=rtol)
 
     exact = _states(job("projected", REFERENCE).integrate())
     largest = np.maximum(np.max(np.abs(exact), axis=0), 1e-3)

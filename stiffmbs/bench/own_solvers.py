@@ -11,7 +11,8 @@ import numpy as np
 
 from ..describe.model_data import ModelData
 from ..jobs.run import prepare
-from ..solve.explicit import ADAPTIVE
+from ..solve.explicit.projected import TRAITS
+from ..solve.formulations import FORMULATIONS
 from ..solve.trajectory import Outcome, Trajectory
 from .benchmark import Row
 from .decades import LONGEST, ONCE, TARGETS, at_errors
@@ -19,8 +20,6 @@ from .peers.scipy import explicit, states
 from .problem import Problem
 from .task import Task
 
-FORMULATIONS = ("SI2", "SI2_exact", "SI1", "I3", "index1")
-SCHEMES = ("euler_cromer", "rk4", "dopri5", "dop853")
 TOLERANCES = tuple(float(f"{10.0**-k:.2g}") for k in np.arange(3, 12.1, 0.5))
 STEPS = tuple(10.0**-k for k in np.arange(2, 5.6, 0.25))
 """Of the fixed schemes, in parts of the duration."""
@@ -96,8 +95,8 @@ def _solvers() -> Iterator[tuple[str, bool, dict[str, Any]]]:
     """Name, whether its steps are fixed, and its settings."""
     for formulation in FORMULATIONS:
         yield f"bdf {formulation}", False, {"solver": "bdf", "formulation": formulation}
-    for scheme in SCHEMES:
-        yield scheme, scheme not in ADAPTIVE, {"solver": "projected", "scheme": scheme}
+    for scheme, traits in TRAITS.items():
+        yield scheme, traits.fixed_steps, {"solver": "projected", "scheme": scheme}
 
 
 def _settings(duration: float) -> list[tuple[str, float]]:

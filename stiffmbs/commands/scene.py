@@ -43,11 +43,15 @@ CHANGES = click.option(
 
 
 def solving_options(command: Command) -> Command:
-    """The options ``--rtol``, ``--duration``, ``--solver`` and ``--set`` of a command; see `changes_of`."""
+    """The options ``--rtol``, ``--duration``, ``--solver``, ``--scheme`` and ``--set`` of a command; see `changes_of`."""
     options = (
         click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
         click.option("--duration", help="Time to solve, s, or with a unit."),
         click.option("--solver", help="bdf, projected, kinematic or auto."),
+        click.option(
+            "--scheme",
+            help="Of projected: dop853 (without a step), dopri5, rk4 or euler_cromer (where a step is given).",
+        ),
         CHANGES,
     )
     for option in reversed(options):
@@ -57,7 +61,7 @@ def solving_options(command: Command) -> Command:
 
 def changes_of(options: dict[str, Any]) -> list[tuple[str, str]]:
     """All changes that the options of `solving_options` ask for, as paths and values."""
-    chosen = [(f"run.{name}", options[name]) for name in ("rtol", "duration", "solver")]
+    chosen = [(f"run.{name}", options[name]) for name in ("rtol", "duration", "solver", "scheme")]
     return options["changes"] + [(path, value) for path, value in chosen if value is not None]
 
 

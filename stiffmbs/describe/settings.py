@@ -61,13 +61,14 @@ class RunSettings(Described):
         Of the residual that ``bdf`` integrates (`stiffmbs.solve.formulations`).
     stabilisation : float
         Of the formulation ``index1``: rate at which violations decay, 1/s; 0 shows its drift.
-    scheme : str
-        Of ``projected``: ``euler_cromer`` and ``rk4`` take fixed steps, ``dopri5`` and ``dop853`` choose them.
+    scheme : str, optional
+        Of ``projected``: ``euler_cromer`` and ``rk4`` take fixed steps, ``dopri5`` and ``dop853`` choose them.  Without it
+        ``dop853``, but ``euler_cromer`` where a step is given.
     rtol, atol : floats
         Error tolerances of ``bdf`` and the adaptive schemes; atol (m, rad, m/s, rad/s) is rtol unless given, times
         the size of a mechanism that is smaller than 1 m.
     step : float
-        Step of the fixed schemes, s.
+        Step of the fixed schemes, s; shorter where it does not divide the time between output points.
     projection : bool
         Whether ``projected`` returns to the constraints after each step.
     max_step : float
@@ -92,7 +93,9 @@ class RunSettings(Described):
     stabilisation: Annotated[float, Measured("angular velocity", at_least=0)] = Field(
         0.0, description="of index1: rate at which violations decay, 1/s"
     )
-    scheme: Literal["euler_cromer", "rk4", "dopri5", "dop853"] = Field("euler_cromer", description="of projected")
+    scheme: Literal["euler_cromer", "rk4", "dopri5", "dop853"] | None = Field(
+        None, description="of projected; without it dop853, and euler_cromer where a step is given"
+    )
     rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
         1e-6, description="relative error tolerance of bdf and the adaptive schemes"
     )

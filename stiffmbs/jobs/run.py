@@ -25,9 +25,8 @@ from ..results.energy_balance_notes import balance_notes
 from ..results.missing_rows import reported
 from ..results.solution import Solution
 from ..results.undefined_values import no_number_sentences
-from ..solve import SOLVERS
+from ..solve import SOLVERS, traits_of
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
-from ..solve.explicit import ADAPTIVE
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
 from ..solve.mechanics import Mechanics, OutputRows
@@ -40,6 +39,7 @@ from ..structure.redundancy import Redundancy, examine
 from ..structure.told.unconnected import unconnected_sentence
 from .load_scene import load_scene
 from .presolve_report import presolve_sentences
+from .settings_notes import settings_notes
 from .taken_again import Computed, seen_through
 
 
@@ -72,7 +72,7 @@ class Job:
 
     def integrate(self, watch: Watch | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
-        solve, watch = SOLVERS[self.settings.solver], watch or (lambda t: None)
+        solve, watch = SOLVERS[self.settings.solver].solve, watch or (lambda t: None)
 
         def over(grid: Grid) -> Trajectory:
             if self.pieces:
@@ -142,7 +142,7 @@ def presolved(
         return ()
     parts = parts_of(model, mechanics.system, apart=grid.times is not None)
     pieces = tuple(piece_of(part, start, grid.start) for part in parts)
-    if settings.solver != "projected":
+    if traits_of(settings).implicit:
         for solved in [piece.mechanics for piece in pieces] or [mechanics]:
             leave_out_coordinates(solved, grid.start)
     return pieces
@@ -276,11 +276,4 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    if job.settings.max_order is not None and job.settings.solver in ("projected", "kinematic"):
-        yield f"max_order = {job.settings.max_order} has no effect: it is the highest order of bdf's formulas, found solver '{job.settings.solver}'"
-    fixed = job.settings.solver == "projected" and job.settings.scheme not in ADAPTIVE
-    if fixed and job.mechanics.system.n_values("switch"):
-        yield (
-            f"{job.settings.scheme} does not locate the corners that forces have in the state (contacts, step, abs, tables), and a step of "
-            f"{job.settings.step:g} s may pass over them; dopri5, dop853 and bdf see them"
-        )
+    yield from settings_notes(job.settings, job.mechanics.system)

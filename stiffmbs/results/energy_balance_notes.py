@@ -14,10 +14,12 @@ import numpy as np
 
 from ..compile.system import System
 from ..describe.settings import RunSettings
-from ..solve.explicit import ADAPTIVE
+from ..solve import traits_of
 from ..solve.mechanics import OutputRows
 from .energy_balance import Balance, potentials
 
+FINER = ("rtol", "max_step", "step")
+"""Settings that make steps shorter."""
 BROKEN, PER_TOLERANCE = 1e-2, 100.0
 """Part of the exchanged energy that may be missing before it is told; so many times the relative tolerance where that is more."""
 TOLD = 1e-6
@@ -63,15 +65,14 @@ def balance_notes(
         return
     allowed = may_be_missing(system, balance, rows, settings)
     if balance.keeps_energy:
-        yield from _changed(system, balance, rows, allowed)
+        yield from _changed(system, balance, rows, settings, allowed)
     else:
         yield from _left(system, balance, rows, steps, allowed)
 
 
 def may_be_missing(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> float:
     """An energy that may be missing in a balance before it is told, J."""
-    fixed = settings.solver == "projected" and settings.scheme not in ADAPTIVE
-    part = BROKEN if fixed else max(BROKEN, PER_TOLERANCE * settings.rtol)
+    part = BROKEN if traits_of(settings).fixed_steps else max(BROKEN, PER_TOLERANCE * settings.rtol)
     return part * balance.scale + _negligible(system, rows, settings)
 
 
@@ -84,17 +85,20 @@ def _negligible(system: System, rows: OutputRows, settings: RunSettings) -> floa
     return float(OF_TOLERANCE * settings.rtol * system.size * max(force, weight) + ROUNDING * stored)
 
 
-def _changed(system: System, balance: Balance, rows: OutputRows, allowed: float) -> Iterator[str]:
+def _changed(
+    system: System, balance: Balance, rows: OutputRows, settings: RunSettings, allowed: float
+) -> Iterator[str]:
     """Of a scene that keeps its energy: where that first changed too much."""
     beyond = np.flatnonzero(np.abs(balance.open) > allowed)
     if not len(beyond):
         return
+    finer = [name for name in FINER if name in traits_of(settings).reads]
+    remedy = f"; take a smaller {' or '.join(finer)} until it is kept" if finer else ""
     steepest = int(np.argmax(np.abs(np.diff(balance.open))))
     yield (
         f"the energy balance is broken: nothing in the scene takes or gives energy, but kinetic + potential energy changes by "
         f"{balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged (first by more than {allowed:.2g} J at "
-        f"t = {balance.t[beyond[0]]:.6g} s{_where(system, balance, rows, steepest)}); take a smaller rtol, max_step or "
-        "step until it is kept"
+        f"t = {balance.t[beyond[0]]:.6g} s{_where(system, balance, rows, steepest)}){remedy}"
     )
 
 

@@ -26,7 +26,8 @@ def solver_words(solver: Mapping[str, Any]) -> str:
     solver : mapping of str
         The statistics of a `Solution`.
     """
-    name = [solver["name"], *([f"linear solver {solver['linear_solver']}"] if "linear_solver" in solver else [])]
+    chosen = {"scheme": "scheme", "linear_solver": "linear solver"}
+    name = [solver["name"], *(f"{word} {solver[key]}" for key, word in chosen.items() if key in solver)]
     parts = (name, _steps(solver), _work(solver), _starts(solver), [f"{solver['seconds'] * 1e3:.1f} ms"])
     return "; ".join(", ".join(told) for told in map(list, parts) if told)
 

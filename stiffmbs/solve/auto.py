@@ -1,4 +1,4 @@
-"""The explicit integrator, and the implicit one where and while the scene is stiff: a run may change hands on its way.
+"""The explicit integrator, and the implicit one where and while the scene is stiff: a run may switch on its way.
 
 How short stability would keep explicit steps, the fastest rate of the motion tells: asked at the start, and where the
 explicit steps show, at no cost, that stability and not accuracy holds them back.  How long BDF's steps would be,
@@ -19,11 +19,13 @@ from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
 from .explicit.integration import Integration
+from .explicit.projected import TRAITS
 from .fastest_rate import fastest_rate
 from .ida.engine import Reached
 from .initial import InitialValues
 from .mechanics import Mechanics
-from .segments import joined
+from .segments import Leg, joined
+from .solver import Traits
 from .trajectory import Grid, Outcome, Trajectory, Watch
 
 LOOK = 32
@@ -40,6 +42,11 @@ AMENDS = 3.0
 as many times after each further one."""
 MOST_TOLD = 3
 """Changes of hand that the note tells one by one."""
+
+
+def traits(settings: RunSettings) -> Traits:
+    """Those of `bdf`: the explicit scheme is `dop853`, with projection, whose settings are among them."""
+    return replace(bdf.traits(settings), name="auto", switches=True)
 
 
 def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
@@ -80,7 +87,7 @@ class _Shared:
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
-        self._legs: list[Trajectory] = []
+        self._legs: list[Leg] = []
         self._told: list[str] = []
         self._gave_up = False  # whether explicit steps could not go on
 
@@ -95,7 +102,8 @@ class _Shared:
             try:
                 at = start if t == self._grid.start else restarted(self._mechanics, t, *self._state)
             except SolverError as error:
-                self._legs[-1] = replace(self._legs[-1], outcome=Outcome.STOPPED, message=str(error))
+                stopped = replace(self._legs[-1].trajectory, outcome=Outcome.STOPPED, message=str(error))
+                self._legs[-1] = replace(self._legs[-1], trajectory=stopped)
                 break
             t = self._explicit_leg(at, t) if explicit else self._implicit_leg(at, t)
             explicit = not explicit and not self._gave_up
@@ -130,7 +138,7 @@ class _Shared:
             self._gave_up, self._legs = True, []
             self._told = [f"bdf, as explicit steps {leg.message}"]
             return self._grid.start
-        self._legs.append(replace(leg, solver="projected"))
+        self._legs.append(Leg(replace(leg, solver="projected"), TRAITS["dop853"]))
         if not run.left:
             return None
         self._state = run.work.q.copy(), run.work.u.copy()
@@ -164,7 +172,7 @@ class _Shared:
         self._pace, self._before = _Pace(t), self._effort()
         pays = None if self._gave_up else self._implicit_pays
         leg = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
-        self._legs.append(replace(leg, solver="bdf"))
+        self._legs.append(Leg(replace(leg, solver="bdf"), bdf.traits(self._settings)))
         reached = self._implicit.reached
         if leg.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
@@ -205,9 +213,10 @@ class _Shared:
         told = self._told[:MOST_TOLD]
         if len(self._told) > MOST_TOLD:
             told += [f"and so on, {len(self._told)} changes in all"]
-        note = "auto chose " + ", then ".join(told if self._legs[0].solver == "bdf" else ["projected dop853", *told])
+        note = "auto chose " + ", then ".join(told if self._legs[0].traits.implicit else ["projected dop853", *told])
+        parts = [leg.trajectory for leg in self._legs]
         return replace(
-            self._legs[0] if len(self._legs) == 1 else joined(self._legs),
-            note="; ".join([note, *dict.fromkeys(leg.note for leg in self._legs if leg.note)]),
-            solver=", ".join(dict.fromkeys(leg.solver for leg in self._legs)),
+            parts[0] if len(parts) == 1 else joined(self._legs),
+            note="; ".join([note, *dict.fromkeys(part.note for part in parts if part.note)]),
+            solver=", ".join(dict.fromkeys(part.solver for part in parts)),
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -21,7 +20,7 @@ from .events.limits import refuse_beyond_limits
 from .events.masked import HeldSwitches
 from .events.restart import just_after, restarted
 from .events.velocity_jumps import VelocityJumps
-from .formulations import FORMULATIONS
+from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.choice import chosen
 from .ida.engine import Engine, Reached
 from .ida.libraries import available
@@ -29,11 +28,20 @@ from .ida.native_engine import NativeEngine
 from .ida.sundae import SundaeEngine
 from .initial import InitialValues
 from .mechanics import Mechanics
+from .solver import Traits
 from .suspect import suspect
-from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from .trajectory import Ending, Grid, Rows, Trajectory, Watch
 
 SHORT = 8
 """Stretches of a run before its counters are looked at: reading them costs as much as some steps."""
+READ = ("formulation", "rtol", "atol", "max_step", "max_order")
+"""Settings that it follows."""
+
+
+def traits(settings: RunSettings) -> Traits:
+    """Those of the formulation in the settings, which may read settings of its own."""
+    of_formulation = READ_BY_FORMULATIONS.get(settings.formulation, ())
+    return Traits("bdf", (*READ, *of_formulation), implicit=True)
 
 
 def solve(
@@ -65,28 +73,22 @@ def integrated(
     system = integrator.mechanics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
-    outcome, message = Outcome.DONE, Outcome.DONE.value
-    begun = time.perf_counter()
-    try:
+    with Ending() as ending:
         for stretch, reached in enumerate(integrator.run(start, grid)):
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
             watch(reached.t)
             integrator.reached = reached
             failure = _failure(integrator, reached) if reached.failure or stretch > SHORT else ""
             if failure:
-                outcome, message = Outcome.STOPPED, f"stopped at t = {reached.t:.9g} s: {failure}"
-                break
+                raise SolverError(f"stopped at t = {reached.t:.9g} s: {failure}")
             if pays and not pays(reached):
                 break
             if reached.t < grid.end:
                 state = integrator.split(reached.y)
                 refuse_beyond_sense(integrator.mechanics, rows, reached.t, *state, integrator.steps())
-    except SolverError as error:
-        outcome, message = Outcome.STOPPED, str(error)
-    except KeyboardInterrupt:
-        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-    statistics = {**integrator.statistics(), "seconds": time.perf_counter() - begun}
-    return Trajectory(*rows.stored, outcome, message, statistics, integrator.engine.history(), integrator.note())
+    statistics = {**integrator.statistics(), "seconds": ending.seconds}
+    history = integrator.engine.history()
+    return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, history, integrator.note())
 
 
 def _failure(integrator: Integrator, reached: Reached) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from ..compile.inputs.features import InputFeatures
@@ -16,7 +14,8 @@ from .failures import FAILURES
 from .initial import InitialValues
 from .mechanics import Mechanics
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
-from .trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from .solver import Traits
+from .trajectory import Ending, Grid, Rows, Trajectory, Watch
 
 LARGEST_SURPRISE = 0.05
 """Part of a step's own length by which the positions found may miss the predicted ones."""
@@ -28,6 +27,11 @@ SHORTEST = 1e-10
 """Part of the duration below which a step that still fails means that the mechanism locks."""
 MOST_MOVES = 12
 """Newton's moves of one step; a step that asks for more was too long."""
+
+
+def traits(settings: RunSettings) -> Traits:
+    """It takes no tolerance and no step from the settings."""
+    return Traits("kinematic", exact=True)
 
 
 def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
@@ -47,14 +51,12 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, 1001)
     system = mechanics.system
     rows = Rows(system.n_q, system.n_u, len(times))
-    outcome, message = Outcome.DONE, Outcome.DONE.value
-    begun = time.perf_counter()
     features = mechanics.input_features(grid.start, grid.end)
     motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start), features)
     corners = iter((*features.corners, np.inf))
     corner = next(corners)
     rows.append(times[0], motion.q, motion.u)
-    try:
+    with Ending() as ending:
         for t in times[1:]:
             while corner <= t:
                 motion.go_past(corner)
@@ -63,14 +65,10 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
             refuse_beyond_limits(mechanics, t, motion.q, motion.u)
             rows.append(t, motion.q, motion.u)
             watch(t)
-    except SolverError as error:
-        outcome, message = Outcome.STOPPED, str(error)
-    except KeyboardInterrupt:
-        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-    statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": time.perf_counter() - begun}
+    statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": ending.seconds}
     narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
     note = narrow or hidden_peak(inputs_of(system), features, times)
-    return Trajectory(*rows.stored, outcome, message, statistics, note=note)
+    return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
 def _refuse_freedoms(mechanics: Mechanics) -> None:

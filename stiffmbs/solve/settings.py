@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..describe.settings import RunSettings
-from .explicit import ADAPTIVE
+from . import traits_of
 from .trajectory import Grid
 
 DEFAULT_POINTS = 1001
@@ -15,13 +15,13 @@ DEFAULT_POINTS = 1001
 
 def may_presolve(settings: RunSettings) -> bool:
     """Whether a smaller problem has the same results: explicit steps of fixed length and drifts are shown as they are."""
-    shown_as_it_is = settings.solver == "projected" and not near_constraints(settings)
-    return settings.presolve and settings.solver != "kinematic" and not shown_as_it_is
+    return settings.presolve and not traits_of(settings).exact and near_constraints(settings)
 
 
 def near_constraints(settings: RunSettings) -> bool:
     """Whether states are on the constraints but for the tolerance; those of explicit fixed steps are shown as they are."""
-    return settings.solver != "projected" or (settings.projection and settings.scheme in ADAPTIVE)
+    traits = traits_of(settings)
+    return not traits.fixed_steps and (settings.projection or "projection" not in traits.reads)
 
 
 def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:

@@ -1,16 +1,18 @@
 """What an integrator is given and what it gives back: the contract of all solvers.
 
-A solver is a function in a file of its own: `solve(mechanics, start, grid, settings, watch) -> Trajectory`.
+A solver is a function in a file of its own: `solve(mechanics, start, grid, settings, watch) -> Trajectory`.  What else
+others need to know of it are its traits (`stiffmbs.solve.solver`).
 
 1. It starts from consistent initial values and works on the mechanics' state; it knows no kinds of element.
 2. It returns the state at every instant of `grid`, or at its own steps where the grid's `times` is None.
 3. It calls `watch(t)` often enough for a progress bar (a few times a second at the least).
 4. It never loses what it has: when it cannot go on, or is interrupted, it returns the rows up to there with the
-   outcome that says so.
+   outcome that says so: its loop stands in a ``with Ending()``.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -19,6 +21,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from ..describe.settings import RunSettings
+from ..errors import SolverError
 from .storage import BLOCK, release, room
 
 if TYPE_CHECKING:
@@ -105,6 +108,38 @@ class Trajectory:
     def step_times(self) -> np.ndarray:
         """Ends of the solver's own steps, s."""
         return self.history.t
+
+
+class Ending:
+    """How a run ends, told by what ends the block of a ``with``: a `SolverError`, an interruption, or nothing.
+
+    Attributes
+    ----------
+    outcome : Outcome
+    message : str
+        One sentence.
+    seconds : float
+        Time that the block took.
+    """
+
+    def __init__(self) -> None:
+        self.outcome, self.message, self.seconds = Outcome.DONE, Outcome.DONE.value, 0.0
+
+    def __enter__(self) -> Ending:
+        self._begun = time.perf_counter()
+        return self
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        self.seconds = time.perf_counter() - self._begun
+        if isinstance(error, SolverError):
+            self.stop(str(error))
+        elif isinstance(error, KeyboardInterrupt):
+            self.outcome, self.message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
+        return isinstance(error, SolverError | KeyboardInterrupt)
+
+    def stop(self, message: str) -> None:
+        """The solver stopped early, and why."""
+        self.outcome, self.message = Outcome.STOPPED, message
 
 
 class Solver(Protocol):

@@ -14,7 +14,7 @@ from ..diagnostics.singular_poses import SingularPose
 from ..jobs.run import Job
 from ..results.error_bars import ErrorBar, Fine
 from ..results.solution import Solution
-from ..solve.explicit import ADAPTIVE
+from ..solve import traits_of
 from .dense_sampling import Between
 from .parting import SENSITIVE, Parting, distance, parting
 from .poses import poses_of
@@ -62,7 +62,7 @@ class Comparison:
     def acceptable(self) -> float:
         """Part of its scale by which a peak may be wrong before it is told."""
         settings = self.job.settings
-        if settings.solver == "projected" and settings.scheme not in ADAPTIVE:
+        if traits_of(settings).fixed_steps:
             return VISIBLE
         return max(min(AMPLIFIED * settings.rtol, VISIBLE), LOOSE * settings.rtol)
 
@@ -132,7 +132,7 @@ def _parting_sentence(comparison: Comparison, partings: list[Parting | None], fi
                 f"{names[1]}, and that parts from {names[2]} at t = {of_levels[1].t:.4g} s; a tighter tolerance puts "
                 "the parting off but never away, so beyond it the results are one of many possible motions"
             )
-    remedy = f"tighten {'the step' if settings.solver == 'projected' and settings.scheme not in ADAPTIVE else 'rtol'}"
+    remedy = f"tighten {'the step' if traits_of(settings).fixed_steps else 'rtol'}"
     other = names[1] if of_levels and of_levels[0] else names[-1]
     return (
         f"the motion is not resolved: from t = {first.t:.4g} s on {first.body} is elsewhere in {other}; {remedy} until "
@@ -170,7 +170,7 @@ def _peak(comparison: Comparison, name: str) -> str:
 def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
     """What a tighter tolerance would bring, as far as the runs tell."""
     settings, first = comparison.job.settings, comparison.first
-    fixed = settings.solver == "projected" and settings.scheme not in ADAPTIVE
+    fixed = traits_of(settings).fixed_steps
     what, ratio = (f"step {settings.step:.3g} s", 2.0) if fixed else (f"rtol {settings.rtol:.3g}", 10.0)
     if parted:
         return f"at {what} they belong to motions that part"

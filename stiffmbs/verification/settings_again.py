@@ -8,8 +8,12 @@ import numpy as np
 
 from ..describe.settings import RunSettings
 from ..results.solution import Solution
-from ..solve.explicit import ADAPTIVE
+from ..solve import traits_of
+from ..solve.settings import changed
 
+EXPLICIT: dict[str, Any] = {"solver": "projected", "scheme": "dop853", "projection": True}
+IMPLICIT: dict[str, Any] = {"solver": "bdf", "formulation": "SI2"}
+"""The integrators that runs of others are compared with."""
 TIGHTEST = 1e-13
 """Relative tolerance below which steps fail by rounding."""
 APART = 2.0
@@ -44,11 +48,8 @@ def shorter_step(first: Solution) -> float:
     return float(f"{many:.2g}")
 
 
-def has_fixed_steps(settings: RunSettings) -> bool:
-    """Whether a run with these settings takes steps of one length."""
-    return settings.solver == "projected" and settings.scheme not in ADAPTIVE
-
-
-def name_of_solver(solver: str, scheme: str) -> str:
-    """What a message calls a solver: the projected integrator by its scheme."""
-    return scheme if solver == "projected" else solver
+def other_integrator(first: Solution, settings: RunSettings) -> dict[str, Any]:
+    """The explicit one after implicit steps, and the implicit one after others: their errors have nothing in common."""
+    names = str(first.solver["name"]).split(", ")
+    implicit = all(traits_of(changed(settings, {"solver": name})).implicit for name in names)
+    return EXPLICIT if implicit else IMPLICIT

@@ -27,11 +27,13 @@ from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import may_be_missing
 from ..results.missing_rows import reported
 from ..results.solution import Solution
+from ..solve import traits_of
 from ..solve.events.restart import restarted
 from ..solve.mechanics import OutputRows
 from ..solve.settings import changed, near_constraints
 from ..solve.trajectory import Grid, Outcome
 from .dense_sampling import apart
+from .settings_again import EXPLICIT
 from .solve_again import Deadline
 
 SAMPLES, TIMED = 20_000, 20
@@ -234,7 +236,7 @@ def _solved_again(
 ) -> np.ndarray | None:
     """The velocities at the end of a stretch that is solved in another way; None where it does not come to its end."""
     begin, end = float(rows.t[first]), float(rows.t[last])
-    how |= {"solver": "projected", "scheme": "dop853"} if job.settings.solver == "auto" else {}
+    how |= EXPLICIT if traits_of(job.settings).switches else {}
     try:
         start = restarted(job.mechanics, begin, rows.q[first], rows.u[first])
         grid = Grid(begin, end, np.array([begin, end]))

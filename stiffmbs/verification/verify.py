@@ -31,12 +31,13 @@ from ..jobs.run import Job, Runnable, prepare, solved
 from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution
+from ..solve import traits_of
 from ..solve.settings import changed
 from ..solve.trajectory import Outcome, Watch
 from .dense_sampling import Between, looked_between, more_instants
 from .diagnostics import Comparison, doubts
 from .parting import distance, parting
-from .settings_again import has_fixed_steps, levels_of, name_of_solver, shorter_step, tolerances
+from .settings_again import levels_of, other_integrator, shorter_step, tolerances
 from .solve_again import Again, solve_again
 from .step_diagnostics import by_luck, doubts_of_steps
 from .stepped_over import Along, SteppedOver, looked_along
@@ -96,7 +97,8 @@ class _Verification:
         self._job, self._first = job, first
         self._begun, self._allowed = time.perf_counter(), allowed
         self._sizes = scales(first.channels, job.mechanics.system.size)
-        self._exact = job.settings.solver == "kinematic"
+        self._traits = traits_of(job.settings)
+        self._exact = self._traits.exact
         self._between: Between | None = None
         self._tighter: dict[int, Again] = {}
         self._other: Again | None = None
@@ -131,7 +133,7 @@ class _Verification:
 
     def _look_along(self) -> None:
         """What the first run's steps went over, and a run with shorter ones where there may be such."""
-        if has_fixed_steps(self._job.settings):
+        if self._traits.fixed_steps:
             return
         spare = self._allowed / 2
         self._along = looked_along(self._job, self._first, spare)
@@ -207,28 +209,27 @@ class _Verification:
         settings = self._job.settings
         if self._exact:
             return (1,)
-        return (1, 2) if has_fixed_steps(settings) else levels_of(settings.rtol)
+        return (1, 2) if self._traits.fixed_steps else levels_of(settings.rtol)
 
     def _tighter_settings(self, level: int) -> tuple[str, dict[str, Any]]:
         settings = self._job.settings
         if self._exact:
             return "kinematic between the output instants", {}
-        if has_fixed_steps(settings):
+        if self._traits.fixed_steps:
             step = settings.step / 2**level
-            return f"{settings.scheme} with steps of {step:.3g} s", {"step": step}
+            return f"{self._traits.name} with steps of {step:.3g} s", {"step": step}
         changes = tolerances(settings, level)
-        return f"{name_of_solver(settings.solver, settings.scheme)} at rtol {changes['rtol']:.3g}", changes
+        return f"{self._traits.name} at rtol {changes['rtol']:.3g}", changes
 
     def _ask_the_other(self) -> None:
         changes, reported = self._other_settings(), self._first.time
-        name = f"{name_of_solver(changes['solver'], 'dop853')} at rtol {changes['rtol']:.3g}"
+        name = f"{traits_of(changed(self._job.settings, changes)).name} at rtol {changes['rtol']:.3g}"
         self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
 
     def _other_settings(self) -> dict[str, Any]:
         settings = self._job.settings
-        solver = "projected" if self._first.solver["name"] == "bdf" else "bdf"
-        how = {"solver": solver, "scheme": "dop853", "formulation": "SI2", "projection": True}
-        return {**how, **({"rtol": OTHER_OF_FIXED} if has_fixed_steps(settings) else tolerances(settings, 2))}
+        tighter = {"rtol": OTHER_OF_FIXED} if self._traits.fixed_steps else tolerances(settings, 2)
+        return {**other_integrator(self._first, settings), **tighter}
 
     def _left(self) -> float:
         return self._allowed - (time.perf_counter() - self._begun)

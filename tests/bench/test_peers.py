@@ -13,7 +13,7 @@ from stiffmbs.bench.benchmark import Row, families
 from stiffmbs.bench.contestant import Contestant, Failed
 from stiffmbs.bench.decades import SET_UP, error_of, over_decades, races
 from stiffmbs.bench.figure import draw
-from stiffmbs.bench.own_solvers import FORMULATIONS, SCHEMES, OwnSolvers, exact_of
+from stiffmbs.bench.own_solvers import OwnSolvers, exact_of
 from stiffmbs.bench.peers import missing, peers
 from stiffmbs.bench.peers.absolute import Maths, constraints, forces
 from stiffmbs.bench.peers.legs import legs_of
@@ -23,6 +23,8 @@ from stiffmbs.bench.problems.stiffness import OverStiffness
 from stiffmbs.bench.sweep import at_target_rows
 from stiffmbs.commands.main import main
 from stiffmbs.compile.compile_model import compile_model
+from stiffmbs.solve.explicit.projected import TRAITS
+from stiffmbs.solve.formulations import FORMULATIONS
 from stiffmbs.solve.initial import initial_values
 from stiffmbs.solve.mechanics import Mechanics
 
@@ -165,7 +167,7 @@ def test_quick_look_at_peers_in_json(tmp_path):
 def test_solvers_of_this_package_are_measured_in_positions_velocities_and_reactions():
     rows = OwnSolvers(PROBLEMS["cart_pendulum"]).glanced()
     found = {row.solver.partition(":")[0] for row in rows}
-    assert found == {*(f"bdf {name}" for name in FORMULATIONS), *SCHEMES}
+    assert found == {*(f"bdf {name}" for name in FORMULATIONS), *TRAITS}
     for quantity in ("positions", "velocities", "reactions"):
         assert sum(row.solver.endswith(quantity) for row in rows) == len(found)
 

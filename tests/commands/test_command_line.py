@@ -128,6 +128,17 @@ def test_one_of_a_repeated_entry_cannot_be_set_alone(examples):
     assert "bodies.link3: found a name that a repeated entry makes too" in result.output
 
 
+def test_a_scheme_can_be_chosen_and_a_setting_without_effect_is_told(in_folder):
+    how = "run", "scene.yaml", "--json", "--duration", "0.1"
+    explicit = json.loads(stiffmbs(*how, "--solver", "projected", "--scheme", "rk4", "--rtol", "1e-12").output)
+    assert (explicit["solver"]["name"], explicit["solver"]["scheme"]) == ("projected", "rk4")
+    assert "rtol = 1e-12 has no effect: rk4 reads scheme, step and projection" in explicit["notes"]
+    implicit = json.loads(stiffmbs(*how, "--scheme", "rk4").output)
+    assert any("scheme = rk4 has no effect: bdf reads" in note for note in implicit["notes"])
+    refused = stiffmbs("run", "scene.yaml", "--scheme", "heun")
+    assert refused.exit_code == 2 and "run.scheme: found 'heun', expected 'euler_cromer'" in refused.output
+
+
 def test_solver_tolerance_and_duration_can_be_chosen(in_folder):
     report = json.loads(stiffmbs("run", "scene.yaml", "--json", "--solver", "projected", "--duration", "0.1").output)
     assert (report["solver"]["name"], report["time"]["end"]) == ("projected", 0.1)

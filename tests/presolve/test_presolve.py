@@ -215,7 +215,7 @@ def test_equations_of_time_or_with_corners_stay():
 def test_drifts_and_fixed_steps_are_shown_as_they_are():
     scene = read_scene(WELDED)
     for changes in (
-        {"solver": "projected"}, {"solver": "projected", "scheme": "rk4"}, {"solver": "projected", "scheme": "dop853", "projection": False},
+        {"solver": "projected", "scheme": "euler_cromer"}, {"solver": "projected", "scheme": "rk4"}, {"solver": "projected", "scheme": "dop853", "projection": False},
     ):  # fmt: skip
         assert not prepare(scene, **changes).pieces
 

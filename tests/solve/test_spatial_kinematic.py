@@ -63,7 +63,7 @@ def test_a_motor_that_asks_for_more_than_a_rod_allows(solver):
     shape = {"height": 0.4, "length": 0.75}
     reach = lambda angle: 0.75**2 - (CRANK * math.cos(angle)) ** 2 - (CRANK * math.sin(angle) - 0.4) ** 2  # noqa: E731
     locked = (brentq(reach, math.pi, 1.5 * math.pi) - START) / SPEED
-    solution = stiffmbs.run(driven(**shape), duration=2.0, points=401, solver=solver, scheme="dop853")
+    solution = stiffmbs.run(driven(**shape), duration=2.0, points=401, solver=solver)
     assert solution.outcome.name == "STOPPED"
     assert solution.time[-1] == pytest.approx(locked, abs=0.01)
     before = solution.time < locked - 0.01
@@ -144,6 +144,6 @@ def test_a_force_without_a_value_is_named(solver, force):
     along = {"z": (1, 0, 0)}
     model.add("track", Prismatic(i=Marker(body="sled", orientation=along), j=ground(orientation=along)))
     model.add("pull", AppliedForce(i="sled", force=(force, 0, 0)))
-    solution = stiffmbs.run(model, duration=2.0, points=41, solver=solver, scheme="dop853")
+    solution = stiffmbs.run(model, duration=2.0, points=41, solver=solver)
     assert solution.outcome.name == "STOPPED"
     assert "'pull'" in solution.message

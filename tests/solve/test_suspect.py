@@ -26,7 +26,7 @@ def sled(**force):
     ],
 )
 def test_a_force_without_a_value(solver, force, clause):
-    solution = stiffmbs.run(sled(force=(force, 0)), duration=2.0, points=41, solver=solver, scheme="dop853")
+    solution = stiffmbs.run(sled(force=(force, 0)), duration=2.0, points=41, solver=solver)
     assert solution.outcome.name == "STOPPED"
     assert "stopped at t = " in solution.message
     assert clause in solution.message
@@ -41,7 +41,7 @@ def test_a_motor_that_asks_for_more_than_a_rod_allows(solver):
     model.add("pin", Revolute(i=rod.at(-0.2, 0), j=crank.at(0.25, 0)))
     model.add("foot", PointOnLine(i=rod.at(0.2, 0), j="ground"))
     model.add("motor", Drive(joint="bearing", position="2*t"))
-    solution = stiffmbs.run(model, duration=10.0, points=101, solver=solver, scheme="dop853")
+    solution = stiffmbs.run(model, duration=10.0, points=101, solver=solver)
     assert solution.outcome.name == "STOPPED"
     joints = ("bearing", "pin", "foot", "motor")
     assert any(

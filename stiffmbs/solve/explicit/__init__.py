@@ -5,5 +5,3 @@ from .dopri5 import DOPRI5
 from .rk4 import RK4
 
 SCHEMES = {scheme.name: scheme for scheme in (RK4, DOPRI5, DOP853)}
-ADAPTIVE = tuple(scheme.name for scheme in SCHEMES.values() if scheme.adaptive)
-"""Schemes that choose their steps by the error."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -11,7 +10,6 @@ import numpy as np
 
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
-from ...errors import SolverError
 from ..error_control.tolerances import absolute_tolerances
 from ..events.chattering import Chattering
 from ..events.divergence import refuse_beyond_sense
@@ -21,7 +19,7 @@ from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
 from ..mechanics import Mechanics
 from ..suspect import suspect
-from ..trajectory import Grid, History, Outcome, Rows, Trajectory, Watch
+from ..trajectory import Ending, Grid, History, Outcome, Rows, Trajectory, Watch
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
@@ -82,9 +80,7 @@ class AdaptiveRun:
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:
         """Integrate to the end, or to where the run is left; the contract is in `stiffmbs.solve.trajectory`."""
         work, status = self.work, AT_END
-        outcome, message = Outcome.DONE, Outcome.DONE.value
-        begun = time.perf_counter()
-        try:
+        with Ending() as ending:
             for corner in (*self._corners.tolist(), self._grid.end):
                 stop, status = just_before(corner) if corner < self._grid.end else corner, AT_EVENT
                 while status == AT_EVENT and not self.left:
@@ -92,21 +88,18 @@ class AdaptiveRun:
                 if status < 0 or self.left or corner == self._grid.end:
                     break
                 self._go_past(corner)
-        except SolverError as error:
+        if ending.outcome is Outcome.STOPPED:
             self._store_rows()
-            outcome, message = Outcome.STOPPED, str(error)
-        except KeyboardInterrupt:
-            outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
         if status < 0:
             self.left = True
             likely = suspect(self._mechanics, work.t, work.q.copy(), work.u.copy())
-            outcome, message = Outcome.STOPPED, f"stopped at t = {work.t:.9g} s: {REASONS[status]}{likely}"
+            ending.stop(f"stopped at t = {work.t:.9g} s: {REASONS[status]}{likely}")
         elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
-            message = f"{message}; {stiff_sentence(work)}"
+            ending.message = f"{ending.message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
-        statistics = {**self._statistics(), "seconds": time.perf_counter() - begun}
+        statistics = {**self._statistics(), "seconds": ending.seconds}
         note = "; ".join(filter(None, (self._note, self._jumps.sentence())))
-        return Trajectory(*self._rows.stored, outcome, message, statistics, history, note)
+        return Trajectory(*self._rows.stored, ending.outcome, ending.message, statistics, history, note)
 
     def _leg(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
@@ -159,9 +152,14 @@ class AdaptiveRun:
             status = ADVANCE.load()(work.t, 1, 1, self._grid.times is None, work.at)
             work.collect(self._rows)
 
-    def _statistics(self) -> dict[str, int | float]:
+    def _statistics(self) -> dict[str, int | float | str]:
         counted = {name: self.work.count(name) for name in ("steps", "rejected", "accelerations")}
-        return {**counted, "corners": int(np.sum(self._corners < self.work.t)), "events": self._events}
+        return {
+            "scheme": self._scheme.name,
+            **counted,
+            "corners": int(np.sum(self._corners < self.work.t)),
+            "events": self._events,
+        }
 
 
 def first_step(

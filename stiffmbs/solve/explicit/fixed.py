@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -19,7 +18,7 @@ from ..events.limits import refuse_beyond_limits
 from ..events.narrow_inputs import narrower_than_steps
 from ..initial import InitialValues
 from ..mechanics import POSITION_TOLERANCE, Mechanics
-from ..trajectory import Grid, Outcome, Rows, Trajectory, Watch
+from ..trajectory import Ending, Grid, Rows, Trajectory, Watch
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS
@@ -32,6 +31,8 @@ LOOKS, FARTHEST = 50, 0.1
 """How often a run looks whether a force jumps back and forth, and the largest change of a velocity in a step that is taken for that."""
 ROUNDING = 1e-9
 """Part of a step by which an output time may miss a whole number of steps."""
+CUT = 1e-6
+"""Part of a step from which on it is told that steps are shorter."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class Stepper:
 
     Attributes
     ----------
+    scheme : str
     q, u : ndarrays
         The state reached.
     take : callable
@@ -48,6 +50,7 @@ class Stepper:
         Accelerations computed in a step.
     """
 
+    scheme: str
     q: np.ndarray
     u: np.ndarray
     take: Callable[[float, float, int], int]
@@ -62,7 +65,7 @@ def euler_cromer(mechanics: Mechanics, start: InitialValues, settings: RunSettin
     def take(t: float, h: float, steps: int) -> int:
         return steps_of(t, h, steps, settings.projection, POSITION_TOLERANCE, table)
 
-    return Stepper(state.q, state.u, take, 1)
+    return Stepper("euler_cromer", state.q, state.u, take, 1)
 
 
 def runge_kutta(
@@ -74,7 +77,7 @@ def runge_kutta(
     def take(t: float, h: float, steps: int) -> int:
         return steps_of(t, h, steps, work.at)
 
-    return Stepper(work.q, work.u, take, scheme.stages)
+    return Stepper(scheme.name, work.q, work.u, take, scheme.stages)
 
 
 def solve_with_fixed_steps(
@@ -88,32 +91,27 @@ def solve_with_fixed_steps(
     times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
     rows = Rows(len(stepper.q), len(stepper.u), len(times))
     rows.append(times[0], stepper.q, stepper.u)
-    outcome, message, steps, note = Outcome.DONE, Outcome.DONE.value, 0, ""
+    steps, longest, note = 0, 0.0, ""
     apart = max(1, len(times) // LOOKS)
-    begun = time.perf_counter()
-    try:
+    with Ending() as ending:
         for row, (t, end) in enumerate(itertools.pairwise(times), 1):
             count = max(1, math.ceil((end - t) / settings.step - ROUNDING))
+            longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
-                outcome, message = Outcome.STOPPED, f"stopped after t = {t:.9g} s: {REASONS[status]}"
-                break
+                raise SolverError(f"stopped after t = {t:.9g} s: {REASONS[status]}")
             steps += count
             refuse_beyond_limits(mechanics, end, stepper.q, stepper.u)
             rows.append(end, stepper.q, stepper.u)
             if not note and row % apart == 0:
                 note = _jumps(mechanics, stepper, end, settings.step)
             watch(end)
-    except SolverError as error:
-        outcome, message = Outcome.STOPPED, str(error)
-    except KeyboardInterrupt:
-        outcome, message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-    statistics = {
-        "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": time.perf_counter() - begun,
+    statistics: dict[str, int | float | str] = {
+        "scheme": stepper.scheme, "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": ending.seconds,
     }  # fmt: skip
-    narrow = narrower_than_steps(mechanics.input_features(grid.start, grid.end), settings.step, settings.scheme)
-    note = "; ".join(filter(None, (note, narrow)))
-    return Trajectory(*rows.stored, outcome, message, statistics, note=note)
+    narrow = narrower_than_steps(mechanics.input_features(grid.start, grid.end), settings.step, stepper.scheme)
+    note = "; ".join(filter(None, (note, narrow, _cut(longest, settings))))
+    return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
 def _jumps(mechanics: Mechanics, stepper: Stepper, t: float, step: float) -> str:
@@ -126,6 +124,13 @@ def _jumps(mechanics: Mechanics, stepper: Stepper, t: float, step: float) -> str
     found = sliding(mechanics, t, q, u, min(max(change, FAR), FARTHEST))
     stepper.q[:], stepper.u[:] = q, u
     return f"at t = {t:.6g} s and before, {jump_sentence(mechanics, int(found[0]))}" if len(found) else ""
+
+
+def _cut(longest: float, settings: RunSettings) -> str:
+    """That no step was as long as the one that was given; empty where some were."""
+    if "step" not in settings.model_fields_set or longest >= settings.step * (1 - CUT):
+        return ""
+    return f"step = {settings.step:.6g} s was cut to {longest:.6g} s, the longest that divides the time between output points"
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:

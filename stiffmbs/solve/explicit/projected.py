@@ -5,10 +5,35 @@ from __future__ import annotations
 from ...describe.settings import RunSettings
 from ..initial import InitialValues
 from ..mechanics import Mechanics
+from ..solver import Traits
 from ..trajectory import Grid, Trajectory, Watch
 from . import SCHEMES
 from .adaptive import AdaptiveRun
 from .fixed import euler_cromer, runge_kutta, solve_with_fixed_steps
+
+EULER_CROMER = "euler_cromer"
+READ_BY_FIXED_STEPS = ("scheme", "step", "projection")
+READ_BY_ADAPTIVE_STEPS = ("scheme", "rtol", "atol", "max_step", "projection")
+
+
+def _fixed(name: str) -> Traits:
+    return Traits(name, READ_BY_FIXED_STEPS, fixed_steps=True, locates_events=False)
+
+
+def _adaptive(name: str) -> Traits:
+    return Traits(name, READ_BY_ADAPTIVE_STEPS)
+
+
+TRAITS = {
+    EULER_CROMER: _fixed(EULER_CROMER),
+    **{name: _adaptive(name) if scheme.adaptive else _fixed(name) for name, scheme in SCHEMES.items()},
+}
+"""Of each scheme."""
+
+
+def traits(settings: RunSettings) -> Traits:
+    """Those of the scheme in the settings; without one `dop853`, and `euler_cromer` where a step is given."""
+    return TRAITS[settings.scheme or (EULER_CROMER if "step" in settings.model_fields_set else "dop853")]
 
 
 def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
@@ -19,9 +44,10 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     "projection methods").
     """
     mechanics.forget_pivots()
-    if settings.scheme == "euler_cromer":
+    chosen = traits(settings).name
+    if chosen == EULER_CROMER:
         return solve_with_fixed_steps(mechanics, euler_cromer(mechanics, start, settings), grid, settings, watch)
-    scheme = SCHEMES[settings.scheme]
+    scheme = SCHEMES[chosen]
     if scheme.adaptive:
         return AdaptiveRun(scheme, mechanics, start, grid, settings, watch).integrate()
     return solve_with_fixed_steps(

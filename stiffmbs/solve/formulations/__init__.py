@@ -19,3 +19,5 @@ FORMULATIONS: dict[str, Callable[[RunSettings], Formulation]] = {
     "index1": lambda settings: index1(settings.stabilisation),
 }
 """By the name in the settings."""
+READ_BY_FORMULATIONS = {"index1": ("stabilisation",)}
+"""Settings that a formulation follows."""

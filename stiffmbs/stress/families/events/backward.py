@@ -17,8 +17,8 @@ from ...simulation import refusal
 def _retraced(solver: Literal["bdf", "projected"]) -> Verdict:
     """A double pendulum solved for 2 s, its velocities turned round, and solved for 2 s again: it is where it began."""
     model = double_pendulum()
-    there = run(model, duration=2.0, points=2, rtol=1e-10, solver=solver, scheme="dop853")
-    back = run(_thrown_back(model, there), duration=2.0, points=2, rtol=1e-10, solver=solver, scheme="dop853")
+    there = run(model, duration=2.0, points=2, rtol=1e-10, solver=solver)
+    back = run(_thrown_back(model, there), duration=2.0, points=2, rtol=1e-10, solver=solver)
     error = max(float(np.abs(back[f"{name}.angle"][-1])) for name in ("inner", "outer"))
     return measured(error, 1e-6, f"{there.solver['steps'] + back.solver['steps']} steps")
 

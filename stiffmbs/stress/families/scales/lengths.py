@@ -24,7 +24,7 @@ def _case(length: float, solver: str):
         f"bars of {length:.0e} m, {solver}",
         "double pendulum over the time that its length asks for; angles against the Euler-Lagrange equations",
         partial(double_pendulum, length), partial(_error, length=length), 1e-5,
-        duration=1.5 * length**0.5, points=31, rtol=1e-8, solver=solver, scheme="dop853",
+        duration=1.5 * length**0.5, points=31, rtol=1e-8, solver=solver,
     )  # fmt: skip
 
 

@@ -25,7 +25,7 @@ def _case(ratio: float, solver: str):
         f"mass ratio {ratio:.0e}, {solver}",
         "double pendulum, the outer bar's mass over the inner one's; angles against the Euler-Lagrange equations",
         partial(double_pendulum, masses=masses), partial(_error, masses=masses), 1e-5,
-        duration=1.5, points=31, rtol=1e-8, solver=solver, scheme="dop853",
+        duration=1.5, points=31, rtol=1e-8, solver=solver,
     )  # fmt: skip
 
 

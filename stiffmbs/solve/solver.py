@@ -1,0 +1,69 @@
+"""What a solver is to the other packages: a function, and traits that it declares, so that none asks for its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..describe.settings import RunSettings
+from .trajectory import Solver
+
+FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "give_way"})
+"""Settings that are read before a solver begins; every other one is for the solvers that declare it."""
+
+
+@dataclass(frozen=True)
+class Traits:
+    """What a solver, with its scheme or formulation, is like.
+
+    Attributes
+    ----------
+    name : str
+        What messages call it.
+    reads : tuple of str
+        The settings that it follows, besides those for all solvers.
+    implicit : bool
+        Whether it takes implicit steps; their mechanics leave out coordinates that others determine.
+    fixed_steps : bool
+        Whether all its steps have the length `step`, whatever the error.
+    exact : bool
+        Whether states follow from drives alone, exact but for rounding.
+    locates_events : bool
+        Whether it stops where a force changes its law, or has no need to.
+    switches : bool
+        Whether it switches between integrators during a run.
+    """
+
+    name: str
+    reads: tuple[str, ...] = ()
+    implicit: bool = False
+    fixed_steps: bool = False
+    exact: bool = False
+    locates_events: bool = True
+    switches: bool = False
+
+    def ignored(self, settings: RunSettings) -> dict[str, object]:
+        """Settings that were given and that the solver does not read, with their values."""
+        given = {
+            name: getattr(settings, name) for name in RunSettings.model_fields if name in settings.model_fields_set
+        }
+        return {
+            name: value
+            for name, value in given.items()
+            if value is not None and name not in FOR_ALL_SOLVERS and name not in self.reads
+        }
+
+
+@dataclass(frozen=True)
+class Registered:
+    """A solver by the name in the settings.
+
+    Attributes
+    ----------
+    solve : Solver
+    traits : callable
+        Its traits with the scheme or formulation that the settings choose.
+    """
+
+    solve: Solver
+    traits: Callable[[RunSettings], Traits]
