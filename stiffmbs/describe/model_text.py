@@ -12,7 +12,7 @@ from .files.scene_text import scene_text
 from .formula.field import Formula
 from .marker import MarkerReference
 from .model_data import ModelData
-from .units.units import CONSTANTS, UNITS
+from .units.units import CONSTANTS, UNITS, in_text
 
 PLAIN = ("name", "dimensions", "gravity")
 SECTIONS = ("markers", "bodies", "joints", "forces", "requests")
@@ -80,13 +80,14 @@ def _formulas(value: Any) -> Iterator[Any]:
             yield from _formulas(part)
 
 
-def _parameters(formula: Any) -> Iterator[tuple[str, float]]:
-    """The names in a formula that are neither units nor constants, with their values."""
+def _parameters(formula: Any) -> Iterator[tuple[str, float | str]]:
+    """The names in a formula that are neither units nor constants, with their values and units."""
+    stated = formula.stated if isinstance(formula, Formula) else {}
     units = {} if isinstance(formula, Formula) and formula.variables else UNITS
     for name, value in formula.values.items():
         known = units.get(name) or CONSTANTS.get(name)
         if "." not in name and (known is None or known.value != value):
-            yield name, value
+            yield name, in_text(stated[name]) if name in stated else value
 
 
 def _agreed(pairs: Iterator[tuple[str, Any]]) -> dict[str, Any]:

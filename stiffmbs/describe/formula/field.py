@@ -47,6 +47,8 @@ class Formula:
         The scene's tables that it calls as functions.
     dimension : Known
         Of its value.
+    stated : mapping of str to Quantity
+        What `values` holds, with dimensions.
     """
 
     text: str
@@ -56,6 +58,7 @@ class Formula:
     velocities: bool = False
     tables: Mapping[str, Table] = field(default_factory=dict)
     dimension: Known = UNKNOWN
+    stated: Mapping[str, Quantity] = field(default_factory=dict)
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
@@ -200,7 +203,7 @@ class FormulaOf:
         values = {name: quantity.value for name, quantity in used.items()}
         called = called_tables(tree, tables)
         dimension = self.dimension_of(tree, used, called)
-        return Formula(found, tree, self.variables, values, self.velocities, called, dimension)
+        return Formula(found, tree, self.variables, values, self.velocities, called, dimension, used)
 
     def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
         """The parameters, units and constants in a tree.
