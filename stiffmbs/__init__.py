@@ -16,10 +16,12 @@ quiet_while_loading()
 from typing import Any
 
 from .describe.body import Body
+from .describe.element import Force, Joint
 from .describe.marker import GROUND as ground
 from .describe.marker import Marker
 from .describe.model import FORCES, JOINTS
 from .describe.model import Model as DescribedModel
+from .describe.own_elements import register
 from .describe.scene import read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings
@@ -28,11 +30,11 @@ from .jobs.load_scene import load_scene
 
 __version__ = "0.1.0"
 
-_ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES.values())}
+_ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
 
 __all__ = [
-    "AssemblyError", "Body", "InputError", "Marker", "Model", "RunSettings", "SolverError", "StiffmbsError",
-    "check", "compile_model", "ground", "load_scene", "read_scene", "run", "scene_schema", "verify", *_ELEMENTS,
+    "AssemblyError", "Body", "Force", "InputError", "Joint", "Marker", "Model", "RunSettings", "SolverError", "StiffmbsError",
+    "check", "compile_model", "ground", "load_scene", "read_scene", "register", "run", "scene_schema", "verify", *_ELEMENTS,
 ]  # fmt: skip
 
 

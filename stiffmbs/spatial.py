@@ -10,14 +10,15 @@ Examples
 
 from typing import Any
 
+from .describe.element import Force, Joint
 from .describe.spatial.body import Body
 from .describe.spatial.marker import Marker
 from .describe.spatial.model import FORCES, JOINTS
 from .describe.spatial.model import Model as DescribedModel
 
-_ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES.values())}
+_ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
 
-__all__ = ["Body", "Marker", "Model", "in_space", *_ELEMENTS]
+__all__ = ["Body", "Force", "Joint", "Marker", "Model", "in_space", *_ELEMENTS]
 
 
 class Model(DescribedModel):

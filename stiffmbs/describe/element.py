@@ -8,18 +8,14 @@ fields, its equations and their names.
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
+import builtins
 from collections.abc import Iterator, Mapping
-from functools import reduce
-from operator import or_
-from types import ModuleType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import Field, WithJsonSchema
+from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
 
-from ..errors import InputError
 from .fields import Described
+from .files.quoted import quoted
 from .formula.field import Formula
 from .marker import MarkerReference
 
@@ -60,11 +56,40 @@ JointReference = Annotated[
 
 
 class Element(Described):
-    """Base of joints and forces.  A subclass in its own file in `joints` or `forces` is all that a new kind takes."""
+    """Base of joints and forces.  A subclass is all that a new kind takes: in its own file in `joints` or `forces`, or a user's own.
+
+    Attributes
+    ----------
+    kind : str
+        What scenes call it, as its `type`.
+    dimensions : tuple of int
+        In which models it can stand, 2 for the plane and 3 for space; () for those that its markers are of.
+    """
 
     kind: ClassVar[str] = ""
+    dimensions: ClassVar[tuple[int, ...]] = ()
 
-    def parts(self, part: type) -> Iterator[tuple[str, Any]]:
+    type: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_its_kind(cls, found: Any) -> Any:
+        """Let the type be the class's kind."""
+        if not isinstance(found, dict):
+            return found
+        if found.get("type", cls.kind) != cls.kind:
+            raise ValueError(f"found the type '{quoted(found['type'])}', expected '{cls.kind}'")
+        return {**found, "type": cls.kind}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        schema = handler(core_schema)
+        handler.resolve_ref_schema(schema)["properties"]["type"] = {
+            "const": cls.kind, "default": cls.kind, "title": "Type", "type": "string",
+        }  # fmt: skip
+        return schema
+
+    def parts(self, part: builtins.type) -> Iterator[tuple[str, Any]]:
         """The element's markers, formulas, or joint names: every value of a type, by field name, in order."""
         for name in type(self).model_fields:
             value = getattr(self, name)
@@ -177,20 +202,3 @@ class Force(Element):
     def point(e: Symbolic) -> Any:
         """The point on the first body about which the force's torque is reported."""
         return e.i.point
-
-
-def kinds(package: ModuleType, base: type[Element]) -> dict[str, type[Any]]:
-    """The element classes found in the files of a package, by kind."""
-    found: dict[str, type[Any]] = {}
-    for module in pkgutil.iter_modules(package.__path__):
-        members = vars(importlib.import_module(f"{package.__name__}.{module.name}")).values()
-        for member in members:
-            named = isinstance(member, type) and issubclass(member, base) and member.kind
-            if named and found.setdefault(member.kind, member) is not member:
-                raise InputError(f"two classes of elements have the kind '{member.kind}'")
-    return found
-
-
-def any_of(found: Mapping[str, type[Element]]) -> Any:
-    """The type of a field that takes an element of any of the kinds, told apart by its ``type``."""
-    return Annotated[reduce(or_, found.values()), Field(discriminator="type")]

@@ -142,10 +142,8 @@ def sentence(error: PydanticError) -> str:
 
 
 def location(parts: tuple[Any, ...]) -> str:
-    """A fault's place as it is written with ``--set``: ``bodies.cart.mass``, without the kinds that validation adds."""
+    """A fault's place as it is written with ``--set``: ``bodies.cart.mass``, without the branches that validation adds."""
     named = [str(part) for part in parts]
-    if named[:1] in (["joints"], ["forces"]) and len(named) > 2:
-        del named[2]  # the element's type
     while named and ("[" in named[-1] or named[-1] in ("int", "float", "str")):
         named.pop()  # the branch of a union
     return ".".join(named)
@@ -161,10 +159,6 @@ def _reason(fault: Any) -> str:
         case "too_short" | "too_long":
             limit = context.get("min_length", context.get("max_length"))
             return f"found {context['actual_length']} values, expected {limit}"
-        case "union_tag_not_found":
-            return "found no 'type', expected one that the schema lists (stiffmbs schema)"
-        case "union_tag_invalid":
-            return f"found the type '{context['tag']}', expected one of {context['expected_tags']}"
         case "string_pattern_mismatch":
             return f"found '{quoted(found)}', expected a name of letters, digits and _ that does not start with a digit"
         case "literal_error" | "enum":

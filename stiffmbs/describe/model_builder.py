@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from ..errors import InputError
@@ -10,8 +9,10 @@ from .body import check_names
 from .element import Element, Force, Joint
 from .fields import Described
 from .formula.names import NAMES
+from .kinds import Kinds
 from .marker import GROUND, MarkerReference
 from .model_data import RESERVED, check_element
+from .own_elements import check_class
 from .request import Request
 
 
@@ -22,14 +23,14 @@ class ModelBuilder:
     ----------
     data_type, body_type, handle_type : types
         The class of what is built, of its bodies, and of what stands for a body that has been added.
-    kinds : mapping of str to type
-        The joints and forces of the family, by kind.
+    kinds : Kinds, Kinds
+        The joints and the forces of the family, by kind.
     """
 
     data_type: ClassVar[type[Any]]
     body_type: ClassVar[type[Described]]
     handle_type: ClassVar[type[Any]]
-    kinds: ClassVar[Mapping[str, type[Element]]]
+    kinds: ClassVar[tuple[Kinds, Kinds]]
 
     def __init__(self, name: str, gravity: tuple[float | str, ...]) -> None:
         self.name = name
@@ -58,7 +59,9 @@ class ModelBuilder:
                 section = self.forces
             case _:
                 raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
-        if isinstance(part, Element) and type(part) not in self.kinds.values():
+        if isinstance(part, Element):
+            check_class(type(part))
+        if isinstance(part, Element) and not any(kinds.fits(part) for kinds in self.kinds):
             raise InputError(f"{name}: found {part!r}, expected a joint or a force{self._of_the_family()}")
         self._check(name, part)
         section[name] = part

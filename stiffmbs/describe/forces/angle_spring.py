@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic, Literal, TypeVar
+from typing import Any, Generic, TypeVar
 
 from pydantic import Field
 
@@ -18,7 +18,6 @@ M = TypeVar("M", bound=MarkerReference)
 class AngleSpring(Spring, Generic[M]):
     """Base of the torsion springs of the plane and of space (it has no kind: scenes name its subclasses)."""
 
-    type: Literal["torsion_spring"] = "torsion_spring"
     i: M = Field(description="marker of the first body, on which the torque is reported")
     j: M = Field(description="marker of the second body")
     stiffness: si.TorsionalStiffness = Field(0.0, description="k, N m/rad")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -26,7 +26,6 @@ class RubbingJoint(Friction):
     rubbing: ClassVar[tuple[str, ...]] = ()
     round: ClassVar[tuple[str, ...]] = ()
 
-    type: Literal["joint_friction"] = "joint_friction"
     joint: JointReference = Field(description="the joint")
     friction: si.NumberOrZero = Field(description="mu_d, coefficient of friction when sliding fast")
     radius: si.LengthOrZero = Field(0.0, description="R of a pin or ball, m")

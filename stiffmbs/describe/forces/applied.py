@@ -31,7 +31,6 @@ class AppliedForce(Force):
 
     kind: ClassVar[str] = "force"
 
-    type: Literal["force"] = "force"
     i: Marker = Field(description="marker at which the force acts")
     j: Marker | None = Field(None, description="a second body, which takes the opposite force at the same point")
     force: tuple[OfMotion, OfMotion] = Field(description="components along x and y, N: numbers or formulas")
@@ -64,7 +63,6 @@ class AppliedTorque(Force):
 
     kind: ClassVar[str] = "torque"
 
-    type: Literal["torque"] = "torque"
     i: Marker = Field(description="marker of the body on which the torque acts")
     j: Marker | None = Field(None, description="marker of a second body, which takes the opposite torque")
     torque: OfMotion = Field(description="about z, N m: a number or a formula")

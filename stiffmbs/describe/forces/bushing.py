@@ -54,7 +54,6 @@ class Bushing(Force):
 
     kind: ClassVar[str] = "bushing"
 
-    type: Literal["bushing"] = "bushing"
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")
     j: Marker = Field(description="marker of the second body, whose direction orients the bushing")
     stiffness: Stiffness = Field(NONE, validate_default=True, description="K: x, y, angle, or a symmetric matrix")

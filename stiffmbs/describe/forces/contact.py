@@ -31,7 +31,6 @@ class Contact(ContactLaw):
 
     kind: ClassVar[str] = "contact"
 
-    type: Literal["contact"] = "contact"
     i: Marker = Field(description="the point, or the circle's centre")
     j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")
     radius: si.LengthOrZero = Field(0.0, description="of the circle about i, m; 0 for a point")

@@ -21,6 +21,7 @@ class JointFriction(RubbingJoint):
     """
 
     kind: ClassVar[str] = "joint_friction"
+    dimensions: ClassVar[tuple[int, ...]] = (2,)
     rubbing: ClassVar[tuple[str, ...]] = ("revolute", "prismatic")
     round: ClassVar[tuple[str, ...]] = ("revolute",)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -22,7 +22,6 @@ class ConstraintEquation(KeptAtZero):
 
     kind: ClassVar[str] = "equation"
 
-    type: Literal["equation"] = "equation"
     zero: Annotated[tuple[OfPosition, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, that the joint keeps at zero"
     )

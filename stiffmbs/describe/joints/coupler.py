@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -25,7 +25,6 @@ class Coupler(Relation):
     kind: ClassVar[str] = "coupler"
     equations: ClassVar[tuple[str, ...]] = ("ratio",)
 
-    type: Literal["coupler"] = "coupler"
     joint_1: JointReference = Field(description="joint with the coordinate s_1")
     joint_2: JointReference = Field(description="joint with the coordinate s_2")
     scale: si.ValueNotZero = Field(description="ds_1/ds_2, in units of s_1 over units of s_2 (m, rad)")

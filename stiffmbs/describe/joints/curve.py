@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Generic, Literal, Self, TypeVar
+from typing import Annotated, ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
@@ -26,7 +26,6 @@ class Curve(Joint, Generic[M]):
 
     equations: ClassVar[tuple[str, ...]] = ("normal",)
 
-    type: Literal["point_on_curve"] = "point_on_curve"
     i: M = Field(description="marker of the body with the point, on which the reaction is reported")
     j: M = Field(description="marker in whose axes the curve is given")
     y: Annotated[Formula | Table, FormulaOf(("x",), time=False, table=True)] | None = Field(

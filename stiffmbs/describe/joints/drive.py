@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from types import FunctionType
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
@@ -35,7 +35,6 @@ class Drive(Joint):
     kind: ClassVar[str] = "drive"
     equations: ClassVar[tuple[str, ...]] = ("motion",)
 
-    type: Literal["drive"] = "drive"
     i: MarkerReference | None = Field(
         None, description="marker of the body on which the action of a driven coordinate is reported"
     )

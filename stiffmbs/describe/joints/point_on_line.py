@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -21,7 +21,6 @@ class PointOnLine(Joint):
     equations: ClassVar[tuple[str, ...]] = ("normal",)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
 
-    type: Literal["point_on_line"] = "point_on_line"
     i: Marker = Field(description="marker of the body with the pin, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line")
 

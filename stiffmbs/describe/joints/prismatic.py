@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -23,7 +23,6 @@ class Prismatic(Joint):
     equations: ClassVar[tuple[str, ...]] = ("normal", "angle")
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
 
-    type: Literal["prismatic"] = "prismatic"
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line to slide along")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, field_validator
 
@@ -27,7 +27,6 @@ class VelocityEquation(KeptAtZero):
 
     kind: ClassVar[str] = "velocity_equation"
 
-    type: Literal["velocity_equation"] = "velocity_equation"
     zero: Annotated[tuple[OfMotion, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, linear in velocities, that the joint keeps at zero"
     )

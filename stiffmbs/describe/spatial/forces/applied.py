@@ -55,7 +55,6 @@ class AppliedForce(Applied):
 
     kind: ClassVar[str] = "force"
 
-    type: Literal["force"] = "force"
     force: Components = Field(description="components along x, y and z, N: numbers or formulas")
 
     @classmethod
@@ -83,7 +82,6 @@ class AppliedTorque(Applied):
 
     kind: ClassVar[str] = "torque"
 
-    type: Literal["torque"] = "torque"
     torque: Components = Field(description="components along x, y and z, N m: numbers or formulas")
 
     @classmethod

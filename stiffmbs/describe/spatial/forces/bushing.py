@@ -47,7 +47,6 @@ class Bushing(Elastic):
 
     kind: ClassVar[str] = "bushing"
 
-    type: Literal["bushing"] = "bushing"
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     preload: Preload = Field(NOTHING, description="force and torque on i without deformation, N and N m")

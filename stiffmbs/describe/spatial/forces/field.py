@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field, field_validator
 
@@ -35,7 +35,6 @@ class FieldForce(Elastic):
 
     kind: ClassVar[str] = "field"
 
-    type: Literal["field"] = "field"
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     preload: Preload = Field(NOTHING, description="force and torque on i at s0, N and N m")

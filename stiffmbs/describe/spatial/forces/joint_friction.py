@@ -32,6 +32,7 @@ class JointFriction(RubbingJoint):
     """
 
     kind: ClassVar[str] = "joint_friction"
+    dimensions: ClassVar[tuple[int, ...]] = (3,)
 
     rubbing: ClassVar[tuple[str, ...]] = ("revolute", "cylindrical", "prismatic", "spherical")
     round: ClassVar[tuple[str, ...]] = ("revolute", "spherical")

@@ -29,7 +29,6 @@ class SphereContact(ContactLaw):
 
     kind: ClassVar[str] = "sphere_contact"
 
-    type: Literal["sphere_contact"] = "sphere_contact"
     i: Marker = Field(description="the point, or the sphere's centre")
     j: Marker = Field(description="on the plane, its z pointing out of the solid, or the surface's centre")
     radius: si.LengthOrZero = Field(0.0, description="of the sphere about i, m; 0 for a point")

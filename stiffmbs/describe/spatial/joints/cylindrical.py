@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -27,7 +27,6 @@ class Cylindrical(Joint):
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ALIGN)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement", "angle")
 
-    type: Literal["cylindrical"] = "cylindrical"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along and to turn about")
 

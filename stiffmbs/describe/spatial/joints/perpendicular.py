@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -25,7 +25,6 @@ class Perpendicular(Joint):
     kind: ClassVar[str] = "perpendicular"
     equations: ClassVar[tuple[str, ...]] = ACROSS
 
-    type: Literal["perpendicular"] = "perpendicular"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 

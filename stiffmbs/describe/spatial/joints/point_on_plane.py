@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -22,7 +22,6 @@ class PointOnPlane(Joint):
     kind: ClassVar[str] = "point_on_plane"
     equations: ClassVar[tuple[str, ...]] = IN_PLANE
 
-    type: Literal["point_on_plane"] = "point_on_plane"
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the plane")
 

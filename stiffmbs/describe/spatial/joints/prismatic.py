@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -26,7 +26,6 @@ class Prismatic(Joint):
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ORIENT)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
 
-    type: Literal["prismatic"] = "prismatic"
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along")
 

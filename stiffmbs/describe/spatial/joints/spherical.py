@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -22,7 +22,6 @@ class Spherical(Joint):
     kind: ClassVar[str] = "spherical"
     equations: ClassVar[tuple[str, ...]] = COINCIDE
 
-    type: Literal["spherical"] = "spherical"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 

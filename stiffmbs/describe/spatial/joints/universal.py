@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -26,7 +26,6 @@ class Universal(Joint):
     kind: ClassVar[str] = "universal"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ACROSS)
 
-    type: Literal["universal"] = "universal"
     i: Marker = Field(
         description="marker of the first body, z along its arm of the cross; the reaction is reported on it"
     )
