@@ -22,6 +22,7 @@ from .describe.marker import Marker
 from .describe.model import FORCES, JOINTS
 from .describe.model import Model as DescribedModel
 from .describe.own_elements import register
+from .describe.python_function import PythonFunction
 from .describe.scene import read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings
@@ -33,7 +34,7 @@ __version__ = "0.1.0"
 _ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
 
 __all__ = [
-    "AssemblyError", "Body", "Force", "InputError", "Joint", "Marker", "Model", "RunSettings", "SolverError", "StiffmbsError",
+    "AssemblyError", "Body", "Force", "InputError", "Joint", "Marker", "Model", "PythonFunction", "RunSettings", "SolverError", "StiffmbsError",
     "check", "compile_model", "ground", "load_scene", "read_scene", "register", "run", "scene_schema", "verify", *_ELEMENTS,
 ]  # fmt: skip
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..compile.callbacks import fault_of, notes_on_functions
 from ..compile.compile_model import compile_model
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
@@ -36,6 +37,7 @@ from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
 from ..structure.redundancy import Redundancy, examine
 from ..structure.told.unconnected import unconnected_sentence
 from .presolve_report import presolve_sentences
+from .python_faults import told_faults, up_to_a_fault
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,9 @@ def prepare(model: ModelBuilder | ModelData, settings: RunSettings | None = None
 
         refuse_contradictions(found.redundancy)
     mechanics = found.mechanics()
-    start = initial_values(mechanics, found.grid.start)
-    pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+    with told_faults(mechanics.system):
+        start = initial_values(mechanics, found.grid.start)
+        pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
     return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
 
 
@@ -129,7 +132,8 @@ def examined(model: ModelBuilder | ModelData, settings: RunSettings | None = Non
     grid = output_grid(chosen)
     refuse_far_away(data)
     system = compile_model(data)
-    return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
+    with told_faults(system):
+        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
 
 
 def run(
@@ -166,7 +170,7 @@ def run(
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: Watch | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    trajectory = _sound_part(job, job.integrate(watch))
+    trajectory = _sound_part(job, up_to_a_fault(job.mechanics.system, job.integrate(watch)))
     project = near_constraints(job.settings)
     rows, left_out = reported(job.mechanics, trajectory, project)
     if not len(rows.t):
@@ -215,6 +219,9 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
         return trajectory.outcome, trajectory.message
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
     sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    fault = fault_of(job.mechanics.system)
+    if fault:
+        return Outcome.STOPPED, f"{sentence}; {fault.clause}"
     return Outcome.STOPPED, sentence + suspect(job.mechanics, t, q, u)
 
 
@@ -225,6 +232,7 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
 
         yield from note_sentences(job.redundancy)
     yield from unconnected_sentence(job.mechanics.system)
+    yield from notes_on_functions(job.mechanics.system)
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:

@@ -18,6 +18,7 @@ from .differentiate import Derivatives
 from .frames import ReferredJoint, SymbolicElement
 from .measures import measure, own_coordinate
 from .nonsmooth import CORNERED
+from .python_call import python_law
 from .spline import Spline
 
 NARROW: dict[type[sp.Basic], str] = {
@@ -131,6 +132,8 @@ class _Builder:
             case ("table",):
                 offset = self.fresh(name, integer=True)
                 return lambda x: self.spline(offset, x)
+            case ("python",):
+                return python_law(self.fresh(name), self.symbols.element.read)
             case ("formula", text, counts, measures):
                 return self.formula(name, text, counts, measures)
             case ("joint", element, fields, slot, coordinate):

@@ -11,6 +11,14 @@ from ..formula.field import OfMotion
 from ..marker import Marker
 
 
+def force_at(fx: Any, fy: Any, i: Any, j: Any = None) -> list[tuple[Any, Any]]:
+    """The efforts of a force on the body of i at i's point; with j the opposite one on j's body at the same point."""
+    if j is None:
+        return [(fx, i.point[0]), (fy, i.point[1])]
+    d = i.point - j.point
+    return [(fx * axis[0] + fy * axis[1], d.dot(axis)) for axis in (j.axis, j.normal)]
+
+
 class AppliedForce(Force):
     """A force at a point of a body: constant, or a formula of time and of anything measured.
 
@@ -41,10 +49,7 @@ class AppliedForce(Force):
         """The components on the point's coordinates in ground axes, or relative to j along j's axes."""
         along, across = e.force
         fx, fy = along * e.i.axis + across * e.i.normal if e.axes == "body" else (along, across)
-        if e.j is None:
-            return [(fx, e.i.point[0]), (fy, e.i.point[1])]
-        d = e.i.point - e.j.point
-        return [(fx * axis[0] + fy * axis[1], d.dot(axis)) for axis in (e.j.axis, e.j.normal)]
+        return force_at(fx, fy, e.i, e.j)
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
