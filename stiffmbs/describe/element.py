@@ -64,10 +64,14 @@ class Element(Described):
         What scenes call it, as its `type`.
     dimensions : tuple of int
         In which models it can stand, 2 for the plane and 3 for space; () for those that its markers are of.
+    forms : tuple of mappings of str to Any
+        The fields that make the forms in which it is mostly used, where those that have no default are not enough: these are
+        compiled ahead (``stiffmbs cache warm``) and tested.
     """
 
     kind: ClassVar[str] = ""
     dimensions: ClassVar[tuple[int, ...]] = ()
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
 
     type: str = ""
 

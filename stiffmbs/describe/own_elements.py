@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any, get_args
+from typing import Any
 
 from ..errors import InputError
 from .element import Element, Force, Joint
 from .fields import NAME_PATTERN
 from .marker import MarkerReference
+from .samples import types_in
 
 GROUP = "stiffmbs.elements"
 """The entry point group under which a package offers its elements."""
@@ -143,17 +144,10 @@ def dimensions_of(element: type[Element]) -> tuple[int, ...]:
     found = {
         part.dimensions
         for field in element.model_fields.values()
-        for part in _parts(field.annotation)
+        for part in types_in(field.annotation)
         if isinstance(part, type) and issubclass(part, MarkerReference)
     } - {None}
     return tuple(family for family in (2, 3) if found <= {family})
-
-
-def _parts(annotation: Any) -> Iterator[Any]:
-    """A type and all types that it is made of."""
-    yield annotation
-    for inner in get_args(annotation):
-        yield from _parts(inner)
 
 
 def _base(element: type[Element]) -> type[Element]:

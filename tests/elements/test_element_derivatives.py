@@ -45,8 +45,11 @@ def assert_close(found, expected):
 
 
 def case_name(case):
-    dimensions, kind, left_out = case
-    return "-".join([*(["space"] if dimensions == 3 else []), kind.kind, *(f"no_{name}" for name in left_out)])
+    dimensions, kind, (left_out, given) = case
+    words = [str(value) for _, value in given if isinstance(value, str)]
+    return "-".join(
+        [*(["space"] if dimensions == 3 else []), kind.kind, *(f"no_{name}" for name in sorted(left_out)), *words]
+    )
 
 
 @pytest.fixture(
@@ -54,9 +57,9 @@ def case_name(case):
 )
 def state(request):
     rng = np.random.default_rng(7)
-    dimensions, kind, left_out = request.param
+    dimensions, kind, form = request.param
     model = three_bodies(rng) if dimensions == 2 else three_bodies_in_space(rng)
-    element = random_element(kind, rng, left_out, dimensions)
+    element = random_element(kind, rng, form, dimensions)
     if refers_to_joints(element):
         add_joints(model)
     model.add("element", element)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic, TypeVar
+from collections.abc import Mapping
+from typing import Any, ClassVar, Generic, TypeVar
 
 from pydantic import Field
 
@@ -17,6 +18,8 @@ M = TypeVar("M", bound=MarkerReference)
 
 class AngleSpring(Spring, Generic[M]):
     """Base of the torsion springs of the plane and of space (it has no kind: scenes name its subclasses)."""
+
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"stiffness": 1, "damping": 1},)
 
     i: M = Field(description="marker of the first body, on which the torque is reported")
     j: M = Field(description="marker of the second body")

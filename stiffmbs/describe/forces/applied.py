@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field
@@ -38,6 +39,7 @@ class AppliedForce(Force):
     """
 
     kind: ClassVar[str] = "force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"axes": "body"}, {"j": "b"})
 
     i: Marker = Field(description="marker at which the force acts")
     j: Marker | None = Field(None, description="a second body, which takes the opposite force at the same point")
@@ -67,6 +69,7 @@ class AppliedTorque(Force):
     """
 
     kind: ClassVar[str] = "torque"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"j": "b"})
 
     i: Marker = Field(description="marker of the body on which the torque acts")
     j: Marker | None = Field(None, description="marker of a second body, which takes the opposite torque")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, WithJsonSchema, field_validator
@@ -53,6 +54,10 @@ class Bushing(Force):
     """
 
     kind: ClassVar[str] = "bushing"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"stiffness": (1, 1, 1), "damping": (1, 1, 1)},
+        {"stiffness": (1, 1, 1), "damping": (1, 1, 1), "axes": "ground"},
+    )
 
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")
     j: Marker = Field(description="marker of the second body, whose direction orients the bushing")

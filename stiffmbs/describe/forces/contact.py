@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -30,6 +31,11 @@ class Contact(ContactLaw):
     """
 
     kind: ClassVar[str] = "contact"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"radius": 0.1},
+        {"radius": 0.1, "friction": 0.3},
+        {"radius": 0.1, "surface": "circle", "surface_radius": 0.1},
+    )
 
     i: Marker = Field(description="the point, or the circle's centre")
     j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from ..element import Symbolic
@@ -22,6 +23,11 @@ class JointFriction(RubbingJoint):
 
     kind: ClassVar[str] = "joint_friction"
     dimensions: ClassVar[tuple[int, ...]] = (2,)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"joint": "pin", "friction": 0.1, "radius": 0.01},
+        {"joint": "slider", "friction": 0.1},
+        {"joint": "slider", "friction": 0.1, "static_friction": 0.2},
+    )
     rubbing: ClassVar[tuple[str, ...]] = ("revolute", "prismatic")
     round: ClassVar[tuple[str, ...]] = ("revolute",)
 

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from ..element import Symbolic
 from ..marker import Marker
 from .any_python_force import ForceOfFunction
 from .applied import AppliedTorque, force_at
+
+
+def _example(x: Any) -> Any:
+    """Of one number."""
+    return [x[0] ** 2, math.sin(x[0]), math.cos(x[0])]
 
 
 class PythonForce(ForceOfFunction[Marker]):
@@ -35,6 +42,7 @@ class PythonForce(ForceOfFunction[Marker]):
     """
 
     kind: ClassVar[str] = "python_force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:

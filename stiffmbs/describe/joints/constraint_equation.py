@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
@@ -21,6 +22,7 @@ class ConstraintEquation(KeptAtZero):
     """
 
     kind: ClassVar[str] = "equation"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"zero": "a.x"},)
 
     zero: Annotated[tuple[OfPosition, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, that the joint keeps at zero"

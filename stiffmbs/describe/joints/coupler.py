@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field
@@ -24,6 +25,10 @@ class Coupler(Relation):
 
     kind: ClassVar[str] = "coupler"
     equations: ClassVar[tuple[str, ...]] = ("ratio",)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"joint_1": "pin", "joint_2": "second_pin"},
+        {"joint_1": "slider", "joint_2": "second_slider"},
+    )
 
     joint_1: JointReference = Field(description="joint with the coordinate s_1")
     joint_2: JointReference = Field(description="joint with the coordinate s_2")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, field_validator
@@ -26,6 +27,7 @@ class VelocityEquation(KeptAtZero):
     """
 
     kind: ClassVar[str] = "velocity_equation"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"zero": "a.vy"},)
 
     zero: Annotated[tuple[OfMotion, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, linear in velocities, that the joint keeps at zero"

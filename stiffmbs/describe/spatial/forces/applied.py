@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -54,6 +55,7 @@ class AppliedForce(Applied):
     """
 
     kind: ClassVar[str] = "force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"axes": "body"}, {"j": "b"})
 
     force: Components = Field(description="components along x, y and z, N: numbers or formulas")
 
@@ -81,6 +83,7 @@ class AppliedTorque(Applied):
     """
 
     kind: ClassVar[str] = "torque"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"j": "b"})
 
     torque: Components = Field(description="components along x, y and z, N m: numbers or formulas")
 

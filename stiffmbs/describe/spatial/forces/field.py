@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field, field_validator
@@ -34,6 +35,10 @@ class FieldForce(Elastic):
     """
 
     kind: ClassVar[str] = "field"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"stiffness": (1,) * 6, "damping": (1,) * 6},
+        {"stiffness": ((1,) * 6,) * 6, "damping": ((1,) * 6,) * 6, "free": (1, 0, 0, 0, 0, 0)},
+    )
 
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")

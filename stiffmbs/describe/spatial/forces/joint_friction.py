@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -33,6 +33,12 @@ class JointFriction(RubbingJoint):
 
     kind: ClassVar[str] = "joint_friction"
     dimensions: ClassVar[tuple[int, ...]] = (3,)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"joint": "pin", "friction": 0.1, "radius": 0.01},
+        {"joint": "slider", "friction": 0.1},
+        {"joint": "ball", "friction": 0.1, "radius": 0.01},
+        {"joint": "sleeve", "friction": 0.1, "radius": 0.01},
+    )
 
     rubbing: ClassVar[tuple[str, ...]] = ("revolute", "cylindrical", "prismatic", "spherical")
     round: ClassVar[tuple[str, ...]] = ("revolute", "spherical")

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 from ...element import Symbolic
 from ...forces.any_python_force import ForceOfFunction
 from ..marker import Marker
 from ..wrench import Pairs, force_at, torque_on
+
+
+def _example(x: Any) -> Any:
+    """Of one number."""
+    return [x[0] ** 2, math.sin(x[0]), math.cos(x[0]), x[0], 1 - x[0], x[0] ** 3]
 
 
 class PythonForce(ForceOfFunction[Marker]):
@@ -21,6 +28,7 @@ class PythonForce(ForceOfFunction[Marker]):
     """
 
     kind: ClassVar[str] = "python_force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field
@@ -24,6 +24,7 @@ class Perpendicular(Joint):
 
     kind: ClassVar[str] = "perpendicular"
     equations: ClassVar[tuple[str, ...]] = ACROSS
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field
@@ -25,6 +25,7 @@ class Universal(Joint):
 
     kind: ClassVar[str] = "universal"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ACROSS)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
 
     i: Marker = Field(
         description="marker of the first body, z along its arm of the cross; the reaction is reported on it"
