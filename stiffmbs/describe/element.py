@@ -17,6 +17,7 @@ from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
 from .fields import Described
 from .files.quoted import quoted
 from .formula.field import Formula
+from .loads import Loads
 from .marker import MarkerReference
 
 if TYPE_CHECKING:
@@ -135,10 +136,18 @@ class Joint(Element):
     coordinates : tuple of str
         The names of its coordinates, for drives and couplers: ``angle``, ``displacement``.  A joint has a static
         function of `e` by the name of each.
+    transmits : tuple of str
+        In space what it transmits: forces ``fx fy fz`` along the axes of marker j, and torques ``tx ty tz`` about them at the
+        point of marker i.  What does not lie along one of them, as the torque of a universal joint, is left out.  A joint that
+        states it is advised in place of one that transmits more than is needed.
+    elastic : str
+        The kind of force that holds the same elastically.
     """
 
     equations: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
+    transmits: ClassVar[tuple[str, ...]] = ()
+    elastic: ClassVar[str] = ""
 
     @staticmethod
     def position(e: Symbolic) -> Any:
@@ -154,6 +163,15 @@ class Joint(Element):
     def point(e: Symbolic) -> Any:
         """The joint's point, about which its torque is reported."""
         return e.i.point
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        """What presses its surfaces, from its multipliers ``e.lam``; a joint that states it can have friction.
+
+        With the coordinate ``angle`` it rubs as a pin, with ``displacement`` as a guide, with both as a sleeve, and in space
+        without coordinates as a ball.
+        """
+        raise NotImplementedError
 
     def equation_names(self) -> tuple[str, ...]:
         return self.equations

@@ -229,6 +229,16 @@ class ReferredJoint(SymbolicElement):
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
         self.angles, self.corners = of.angles, of.corners
 
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The names of its coordinates."""
+        return tuple(self._joint.coordinates)
+
+    @cached_property
+    def loads(self) -> Any:
+        """What presses its surfaces."""
+        return self._joint.loads(self)
+
     @cached_property
     def coordinate(self) -> Any:
         """None where none is named and there is a choice; only one that is used is counted, if it is an angle."""

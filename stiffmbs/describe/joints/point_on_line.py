@@ -20,6 +20,7 @@ class PointOnLine(Joint):
     kind: ClassVar[str] = "point_on_line"
     equations: ClassVar[tuple[str, ...]] = ("normal",)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the body with the pin, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line")

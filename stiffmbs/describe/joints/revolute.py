@@ -7,6 +7,8 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ..element import Joint, Symbolic
+from ..forces.friction import magnitude
+from ..loads import Loads
 from ..marker import Marker
 
 
@@ -21,6 +23,7 @@ class Revolute(Joint):
     kind: ClassVar[str] = "revolute"
     equations: ClassVar[tuple[str, ...]] = ("x", "y")
     coordinates: ClassVar[tuple[str, ...]] = ("angle",)
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
@@ -33,3 +36,7 @@ class Revolute(Joint):
     def angle(e: Symbolic) -> Any:
         """The angle of marker i against marker j."""
         return e.i.angle - e.j.angle
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        return Loads(across=magnitude(*e.lam))

@@ -18,3 +18,4 @@ class Distance(Rod[Marker]):
     """
 
     kind: ClassVar[str] = "distance"
+    elastic: ClassVar[str] = "spring_damper"

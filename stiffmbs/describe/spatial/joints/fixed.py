@@ -25,6 +25,8 @@ class Fixed(Joint):
 
     kind: ClassVar[str] = "fixed"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ORIENT)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty", "tz")
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")

@@ -27,6 +27,8 @@ class Orientation(Joint):
 
     kind: ClassVar[str] = "orientation"
     equations: ClassVar[tuple[str, ...]] = ORIENT
+    transmits: ClassVar[tuple[str, ...]] = ("tx", "ty", "tz")
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")

@@ -24,6 +24,8 @@ class Parallel(Joint):
 
     kind: ClassVar[str] = "parallel"
     equations: ClassVar[tuple[str, ...]] = ALIGN
+    transmits: ClassVar[tuple[str, ...]] = ("tx", "ty")
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")

@@ -25,6 +25,8 @@ class Planar(Joint):
 
     kind: ClassVar[str] = "planar"
     equations: ClassVar[tuple[str, ...]] = (*IN_PLANE, *ALIGN)
+    transmits: ClassVar[tuple[str, ...]] = ("fz", "tx", "ty")
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the one to slide on")

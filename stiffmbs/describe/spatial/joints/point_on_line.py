@@ -22,6 +22,8 @@ class PointOnLine(Joint):
     kind: ClassVar[str] = "point_on_line"
     equations: ClassVar[tuple[str, ...]] = ON_AXIS
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy")
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line")

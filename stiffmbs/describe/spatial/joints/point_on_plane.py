@@ -21,6 +21,8 @@ class PointOnPlane(Joint):
 
     kind: ClassVar[str] = "point_on_plane"
     equations: ClassVar[tuple[str, ...]] = IN_PLANE
+    transmits: ClassVar[tuple[str, ...]] = ("fz",)
+    elastic: ClassVar[str] = "bushing"
 
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the plane")

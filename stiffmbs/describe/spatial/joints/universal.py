@@ -25,6 +25,7 @@ class Universal(Joint):
 
     kind: ClassVar[str] = "universal"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ACROSS)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz")
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
 
     i: Marker = Field(
