@@ -121,6 +121,25 @@ class Element(Described):
         """Why the element cannot act where the bodies are drawn."""
         yield from ()
 
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        """The element as a scene in space writes it, in the x-y plane; of a class of the plane.
+
+        By default the kind of the same name in space, with fields that mean the same.
+
+        Parameters
+        ----------
+        angles : Angles
+            Of the planar model (`stiffmbs.describe.spatial.embedding.angles`).
+
+        Raises
+        ------
+        InputError
+            When there is none.
+        """
+        from .spatial.embedding.fields import namesake
+
+        return namesake(self, angles)
+
     def as_drawn(self, model: ModelData) -> Self:
         """The element with what it leaves open taken from the bodies' described poses."""
         return self
@@ -142,12 +161,15 @@ class Joint(Element):
         states it is advised in place of one that transmits more than is needed.
     elastic : str
         The kind of force that holds the same elastically.
+    keeps_in_plane : bool
+        Of a planar joint with two markers whether its namesake in space keeps a body in the plane of the other one.
     """
 
     equations: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
     transmits: ClassVar[tuple[str, ...]] = ()
     elastic: ClassVar[str] = ""
+    keeps_in_plane: ClassVar[bool] = False
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -59,6 +59,11 @@ class AppliedForce(Force):
             return 0
         return -e.force[0] * e.i.point[0] - e.force[1] * e.i.point[1]
 
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import force
+
+        return force(self, angles)
+
 
 class AppliedTorque(Force):
     """A torque on a body: constant, or a formula of time and of anything measured.
@@ -87,3 +92,8 @@ class AppliedTorque(Force):
     def angle(e: Symbolic) -> Any:
         """The angle on which the torque does work."""
         return e.i.angle - (e.j.angle if e.j is not None else 0)
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import torque
+
+        return torque(self, angles)

@@ -105,6 +105,11 @@ class Bushing(Force):
             return 0
         return sum(elastic[k] * s[k] / 2 - e.preload[k] * s[k] for k in range(3)) + sum(of_laws)
 
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import bushing
+
+        return bushing(self, angles)
+
 
 def _laws(e: Symbolic) -> tuple[Any, Any, Any]:
     return e.law_x, e.law_y, e.law_angle

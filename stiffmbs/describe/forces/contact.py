@@ -85,3 +85,8 @@ class Contact(ContactLaw):
         arm = outward * distance - e.radius
         across = outward / distance
         return [(across * d[1], d[0]), (-across * d[0], d[1]), (e.radius, e.i.angle), (arm, e.j.angle)]
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import contact
+
+        return contact(self, angles)

@@ -48,3 +48,8 @@ class PythonForce(ForceOfFunction[Marker]):
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         fx, fy, torque = e.function(*e.of, count=3)
         return [*force_at(fx, fy, e.i, e.j), (torque, AppliedTorque.angle(e))]
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import python_force
+
+        return python_force(self, angles)

@@ -19,6 +19,7 @@ class Fixed(Joint):
     kind: ClassVar[str] = "fixed"
     equations: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
     elastic: ClassVar[str] = "bushing"
+    keeps_in_plane: ClassVar[bool] = True
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")

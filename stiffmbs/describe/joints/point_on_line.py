@@ -33,3 +33,8 @@ class PointOnLine(Joint):
     def displacement(e: Symbolic) -> Any:
         """The displacement of the pin along the line, from marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.joints import point_on_line
+
+        return point_on_line(self, angles)

@@ -25,6 +25,7 @@ class Prismatic(Joint):
     equations: ClassVar[tuple[str, ...]] = ("normal", "angle")
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
     elastic: ClassVar[str] = "bushing"
+    keeps_in_plane: ClassVar[bool] = True
 
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line to slide along")
@@ -42,3 +43,8 @@ class Prismatic(Joint):
     def loads(e: Symbolic) -> Loads:
         normal, moment = e.lam
         return Loads(across=magnitude(normal), bending=magnitude(moment))
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.joints import prismatic
+
+        return prismatic(self, angles)

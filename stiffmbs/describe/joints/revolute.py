@@ -24,6 +24,7 @@ class Revolute(Joint):
     equations: ClassVar[tuple[str, ...]] = ("x", "y")
     coordinates: ClassVar[tuple[str, ...]] = ("angle",)
     elastic: ClassVar[str] = "bushing"
+    keeps_in_plane: ClassVar[bool] = True
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
