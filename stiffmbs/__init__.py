@@ -26,6 +26,7 @@ from .describe.python_function import PythonFunction
 from .describe.scene import read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings
+from .describe.units import si
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
 from .jobs.load_scene import load_scene
 
@@ -35,7 +36,7 @@ _ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(),
 
 __all__ = [
     "AssemblyError", "Body", "Force", "InputError", "Joint", "Marker", "Model", "PythonFunction", "RunSettings", "SolverError", "StiffmbsError",
-    "check", "compile_model", "ground", "load_scene", "read_scene", "register", "run", "scene_schema", "verify", *_ELEMENTS,
+    "check", "compile_model", "ground", "load_scene", "read_scene", "register", "run", "scene_schema", "si", "verify", *_ELEMENTS,
 ]  # fmt: skip
 
 

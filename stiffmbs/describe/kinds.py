@@ -40,11 +40,7 @@ class Kinds(Mapping[str, type[Any]]):
 
     def own(self) -> dict[str, type[Any]]:
         """Those from outside of this package."""
-        return {
-            element.kind: element
-            for element in REGISTRY.classes()
-            if issubclass(element, self.base) and self.dimensions in dimensions_of(element)
-        }
+        return REGISTRY.kinds(self.base, self.dimensions)
 
     def __getitem__(self, kind: str) -> type[Any]:
         return self.shipped[kind] if kind in self.shipped else self.own()[kind]

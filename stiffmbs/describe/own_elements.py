@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -20,7 +21,7 @@ class Registry:
     """The classes that scenes know besides those of this package; those of installed packages are read when first needed."""
 
     def __init__(self) -> None:
-        self._classes: dict[tuple[type, str], type[Element]] = {}
+        self._classes: dict[tuple[type, int, str], type[Element]] = {}
         self._installed_are_read = False
 
     def add(self, element: type[Element]) -> None:
@@ -31,26 +32,29 @@ class Registry:
         InputError
             When the kind is taken.
         """
-        key = _base(element), element.kind
-        known = self._classes.get(key, element)
-        if (known.__module__, known.__qualname__) != (element.__module__, element.__qualname__):
-            raise InputError(
-                f"{element.__name__}: found the kind '{element.kind}', which {known.__module__}.{known.__qualname__} has, "
-                "expected another"
-            )
-        self._classes[key] = element
+        for key in _keys(element):
+            known = self._classes.get(key, element)
+            if (known.__module__, known.__qualname__) != (element.__module__, element.__qualname__):
+                raise InputError(
+                    f"{element.__name__}: found the kind '{element.kind}', which {known.__module__}.{known.__qualname__} has, "
+                    "expected another"
+                )
+        self._classes |= dict.fromkeys(_keys(element), element)
 
     def remove(self, element: type[Element]) -> None:
         """Take a class out again."""
-        self._classes.pop((_base(element), element.kind), None)
+        for key in _keys(element):
+            self._classes.pop(key, None)
 
-    def classes(self) -> tuple[type[Element], ...]:
-        """All of them."""
+    def kinds(self, base: type[Element], dimensions: int) -> dict[str, type[Any]]:
+        """The joints, or the forces, of the plane or of space, by kind."""
         if not self._installed_are_read:
             self._installed_are_read = True
             for element in _installed():
                 register(element)
-        return tuple(self._classes.values())
+        return {
+            kind: found for (sort, space, kind), found in self._classes.items() if (sort, space) == (base, dimensions)
+        }
 
 
 REGISTRY = Registry()
@@ -121,6 +125,7 @@ def _lacks(element: Any) -> Iterator[str]:
         yield f"found {found}, expected a name for scenes, such as kind = 'my_{_base(element).__name__.lower()}'"
     if not dimensions_of(element):
         yield "found markers of the plane and of space, expected markers of one of them"
+    yield from _not_static(element)
     if issubclass(element, Joint):
         if element.position is Joint.position and element.velocity is Joint.velocity:
             yield "found no equations, expected a static method position(e) or velocity(e)"
@@ -131,6 +136,18 @@ def _lacks(element: Any) -> Iterator[str]:
                 yield f"found the coordinate '{name}' without a function, expected a static method {name}(e)"
     elif element.efforts is Force.efforts and _is_inherited(element, "powers"):
         yield "found no law, expected a static method efforts(e) or powers(e)"
+
+
+STATIC = ("position", "velocity", "point", "loads", "efforts", "powers", "potential", "switches", "limits")
+"""Functions of e alone."""
+
+
+def _not_static(element: type[Element]) -> Iterator[str]:
+    """Functions written as methods of an object, which there is none of when equations are derived."""
+    for name in STATIC:
+        found = inspect.getattr_static(element, name, None)
+        if inspect.isfunction(found) and len(inspect.signature(found).parameters) != 1:
+            yield f"found {name}{inspect.signature(found)}, expected a static method {name}(e)"
 
 
 def _is_inherited(element: type[Element], name: str) -> bool:
@@ -148,6 +165,10 @@ def dimensions_of(element: type[Element]) -> tuple[int, ...]:
         if isinstance(part, type) and issubclass(part, MarkerReference)
     } - {None}
     return tuple(family for family in (2, 3) if found <= {family})
+
+
+def _keys(element: type[Element]) -> list[tuple[type, int, str]]:
+    return [(_base(element), dimensions, element.kind) for dimensions in dimensions_of(element)]
 
 
 def _base(element: type[Element]) -> type[Element]:

@@ -56,8 +56,12 @@ def case_name(case):
     params=[pytest.param(case, marks=pytest.mark.long if case[0] == 3 else (), id=case_name(case)) for case in CASES]
 )
 def state(request):
+    return state_with(*request.param)
+
+
+def state_with(dimensions, kind, form):
+    """A random state of three bodies with a random element of a class."""
     rng = np.random.default_rng(7)
-    dimensions, kind, form = request.param
     model = three_bodies(rng) if dimensions == 2 else three_bodies_in_space(rng)
     element = random_element(kind, rng, form, dimensions)
     if refers_to_joints(element):

@@ -116,10 +116,12 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     J = e.by_velocities(V)
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
-            raise InputError(f"found equation {row + 1} of {J.rows}, which depends on no coordinate of a body")
+            raise InputError(
+                f"{kind.element.__name__}: found equation {row + 1} of {J.rows}, which depends on no coordinate of a body"
+            )
         if any(e.depends(entry, e.velocities) for entry in J[row, :]):
             raise InputError(
-                f"found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
+                f"{kind.element.__name__}: found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
                 "in velocities"
             )
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)

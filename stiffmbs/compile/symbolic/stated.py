@@ -57,7 +57,7 @@ def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
             f"{kind.element.__name__}: found {len(position) + len(velocity)} expressions from position and velocity, "
             f"expected {len(names)}, one for each of its equations ({', '.join(names)})"
         )
-    return Stated(asked.column("point"), asked.switches(), position, velocity)
+    return asked.known(Stated(asked.column("point"), asked.switches(), position, velocity))
 
 
 def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
@@ -69,12 +69,11 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
         When it cannot be used; names the class.
     """
     asked = _Asked(kind.element, symbols)
-    powers = asked.pairs("powers")
+    powers = asked.pairs()
     (potential,) = asked.column("potential")
     limits = asked.column("limits")
-    return Stated(
-        asked.column("point"), asked.switches(), powers=powers, potential=potential, limits=limits
-    )  # fmt: skip
+    found = Stated(asked.column("point"), asked.switches(), powers=powers, potential=potential, limits=limits)
+    return asked.known(found)
 
 
 def text_of(kind: Kind) -> str:
@@ -107,15 +106,17 @@ class _Asked:
             self._read(name, part) for part in (found if isinstance(found, Iterable | sp.MatrixBase) else (found,))
         )
 
-    def pairs(self, name: str) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
-        """Pairs of an effort and a rate."""
+    def pairs(self) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
+        """Pairs of an effort and a rate, from `powers`, or else from `efforts` on coordinates."""
+        name = "powers" if "powers" in _own_names(self.element) else "efforts"
         try:
-            pairs = [(effort, rate) for effort, rate in self._called(name)]
+            pairs = [(effort, works_on) for effort, works_on in self._called(name)]
         except (TypeError, ValueError):
             raise InputError(
-                f"{self.element.__name__}.{self._written(name)}: expected a list of pairs, an effort and what it works on"
+                f"{self.element.__name__}.{name}: expected a list of pairs, an effort and what it works on"
             ) from None
-        return tuple((self._read(name, effort), self._read(name, rate)) for effort, rate in pairs)
+        found = [(self._read(name, effort), self._read(name, works_on)) for effort, works_on in pairs]
+        return tuple((effort, x if name == "powers" else self.e.rate(x)) for effort, x in found)
 
     def switches(self) -> tuple[sp.Expr, ...]:
         """The corners of formulas, and those that the class names, or else those of its equations."""
@@ -123,25 +124,30 @@ class _Asked:
         own = self.column("switches") if named else [x for x in self.e.corners if self.e.in_state(x)]
         return (*self.symbols.switches, *(x for x in own if named or x not in self.symbols.switches))
 
+    def known(self, stated: Stated) -> Stated:
+        """The equations, if all symbols in them mean something."""
+        columns = (stated.point, stated.switches, stated.position, stated.velocity, (stated.potential,), stated.limits)
+        parts = [x for column in (*columns, *stated.powers) for x in column]
+        meant = self.symbols.known()
+        for symbol in sorted({symbol for x in parts for symbol in self.e.derivatives.variables(x)} - meant, key=str):
+            raise InputError(
+                f"{self.element.__name__}: found the symbol {symbol} in its equations, expected fields, markers and time of e"
+            )
+        return stated
+
     def _called(self, name: str) -> Any:
         try:
             return getattr(self.element, name)(self.e)
         except InputError as error:
-            raise InputError(f"{self.element.__name__}.{self._written(name)}: {error}") from None
+            raise InputError(f"{self.element.__name__}.{name}: {error}") from None
         except Exception as error:
-            raise InputError(
-                f"{self.element.__name__}.{self._written(name)}: {type(error).__name__}: {error}"
-            ) from error
-
-    def _written(self, name: str) -> str:
-        """The method that a user has written: efforts, where there are no powers."""
-        return "efforts" if name == "powers" and "powers" not in _own_names(self.element) else name
+            raise InputError(f"{self.element.__name__}.{name}: {type(error).__name__}: {error}") from error
 
     def _read(self, name: str, x: Any) -> sp.Expr:
         try:
             return self.e.read(x)
         except (InputError, sp.SympifyError) as error:
-            raise InputError(f"{self.element.__name__}.{self._written(name)}: {error}") from None
+            raise InputError(f"{self.element.__name__}.{name}: {error}") from None
 
 
 def _own_names(element: type[Any]) -> set[str]:

@@ -14,6 +14,7 @@ from ...describe.formula.field import TIME
 from ...describe.formula.text import evaluate
 from ..kind import OWN, Kind, Shape
 from . import planar_frames, spatial_frames
+from .continuous_angle import counter
 from .differentiate import Derivatives
 from .frames import ReferredJoint, SymbolicElement
 from .measures import measure, own_coordinate
@@ -69,6 +70,14 @@ class Symbols:
     joint_lam: list[list[sp.Symbol]] = field(default_factory=list)
     switches: list[sp.Expr] = field(default_factory=list)
     laws: list[Law] = field(default_factory=list)
+
+    def known(self) -> frozenset[sp.Symbol]:
+        """All symbols that mean something."""
+        e = self.element
+        of_bodies = (s for f in e.frames for s in (*f.q, *f.u, *f.a, *f.turn, *f.pose, *f.velocities))
+        of_joints = (symbol for lam in self.joint_lam for symbol in lam)
+        counters = map(counter, range(len(e.angles)))
+        return frozenset((e.t, *self.numbers, *of_bodies, *of_joints, *counters)) | e.derivatives.defined()
 
     def note_switch(self, corner: sp.Expr) -> None:
         """Note what changes its sign at a corner, if that is in the state."""
