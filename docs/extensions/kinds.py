@@ -93,6 +93,8 @@ def documented(module: str, name: str) -> Iterator[str]:
     thing = getattr(importlib.import_module(module), name)
     if inspect.isclass(thing):
         yield f".. autoclass:: {module}.{name}"
+        if module != "stiffmbs" and getattr(stiffmbs, name, None) is thing:
+            yield "   :no-index:"
         if not issubclass(thing, Described | Exception):
             yield from ("   :members:", "   :inherited-members:", f"   :exclude-members: {INNER}")
         yield ""
