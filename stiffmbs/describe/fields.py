@@ -15,6 +15,7 @@ from pydantic import (
     ConfigDict,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    PydanticUserError,
     ValidationInfo,
     model_validator,
 )
@@ -31,7 +32,13 @@ NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
 
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]
-    """Makes a direct construction fail with the package's own error."""
+    """Makes a direct construction, and a class that cannot be made, fail with the package's own error."""
+
+    def __new__(mcs, name: str, *arguments: Any, **options: Any) -> Any:
+        try:
+            return super().__new__(mcs, name, *arguments, **options)
+        except PydanticUserError as error:
+            raise InputError(f"{name}: {_first_line(error)}") from error
 
     def __call__(cls, *unnamed: Any, **fields: Any) -> Any:
         if unnamed:
@@ -42,6 +49,12 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
             return super().__call__(**fields)
         except PydanticError as error:
             raise InputError(f"{cls.__name__}: {sentence(error)}") from None
+        except PydanticUserError as error:  # a type that was not known where the class was made
+            raise InputError(f"{cls.__name__}: {_first_line(error)}") from error
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).splitlines()[0]
 
 
 if TYPE_CHECKING:

@@ -219,6 +219,10 @@ JOINT = {"kind": "mine", "equations": ("x",)}
         (stiffmbs.Force, {"kind": "mine", "efforts": lambda e: [(1 / 0, e.i.point[0])]}, r"x: Mine.efforts: ZeroDivisionError"),
         (stiffmbs.Force, {"kind": "mine", "efforts": lambda e: [(stiffmbs_gamma(e), e.i.point[0])]}, r"x: Mine.efforts: found the function gamma, expected one of Abs, "),
         (stiffmbs.Force, {"kind": "mine", "efforts": lambda e: [(_stranger(), e.i.point[0])]}, r"x: Mine: found the symbol k in its equations"),
+        (stiffmbs.Force, {"kind": "mine", "efforts": lambda e: [(_half(e.i.point[1]), e.i.point[1])]}, r"x: Mine.efforts: found Piecewise.* expected a last part"),
+        (stiffmbs.Force, {"kind": "mine", "efforts": lambda e: [(_undone(e.i.point[1]), e.i.point[1])]}, r"x: Mine.efforts: found Integral.* which SymPy has not worked out"),
+        (stiffmbs.Force, {"kind": "mine", "stiffness": 5}, r"Mine: A non-annotated attribute was detected"),
+        (stiffmbs.Force, {"kind": "mine", "efforts": lambda e: [(1j, e.i.point[1])]}, r"x: Mine.efforts: found 1.0\*I, which is no real number"),
         (stiffmbs.Force, {"kind": "mine", "efforts": lambda e: [("what is this", e.i.point[0])]}, r"x: Mine.efforts: "),
     ],
 )  # fmt: skip
@@ -234,6 +238,19 @@ def stiffmbs_gamma(e):
     import sympy
 
     return sympy.gamma(e.i.point[0])
+
+
+def _half(x):
+    import sympy
+
+    return sympy.Piecewise((x, x > 0))
+
+
+def _undone(x):
+    import sympy
+
+    s = sympy.Symbol("s")
+    return sympy.Integral(sympy.exp(-(s**2)), (s, 0, x))
 
 
 def _stranger():

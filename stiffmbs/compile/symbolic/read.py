@@ -6,6 +6,7 @@ kernels is refused.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -22,15 +23,22 @@ KNOWN: tuple[type[sp.Basic], ...] = (
 """Functions that kernels have as they are."""
 BY_OTHERS = (sp.cos, sp.cosh, sp.tanh, sp.log)
 """Functions by which SymPy may write one that kernels do not have, tried in this order."""
+
+
+def _differences(x: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
+    return tuple(a - b for a, b in itertools.combinations(x, 2))
+
+
 CORNERED: dict[type[sp.Basic], Callable[..., tuple[sp.Expr, tuple[sp.Expr, ...]]]] = {
     sp.Abs: lambda x: (Magnitude(x), (x,)),
     sp.sign: lambda x: (Sign(x), (x,)),
-    sp.Max: lambda *x: (greater(*x), tuple(x[0] - other for other in x[1:])),
-    sp.Min: lambda *x: (less(*x), tuple(x[0] - other for other in x[1:])),
+    sp.Max: lambda *x: (greater(*x), _differences(x)),
+    sp.Min: lambda *x: (less(*x), _differences(x)),
     sp.Heaviside: lambda x, at: (Chosen(x, sp.Integer(0), at, sp.Integer(1)), (x,)),
 }
 """Functions with corners: what each becomes, and what is zero at its corners."""
-NO_NUMBER = (sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I)
+NO_NUMBER = frozenset((sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I))
+UNDONE = (sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
 
 
 def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
@@ -50,13 +58,21 @@ def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
     expression = sp.sympify(x)
     if not isinstance(expression, sp.Expr):
         raise InputError(f"found {x!r}, expected an expression of SymPy or a number")
-    if expression.has(*NO_NUMBER):
-        raise InputError(f"found {expression}, which is no real number, expected one")
-    return _read(expression, note) if _needs_reading(expression) else expression
+    other = False
+    for part in sp.preorder_traversal(expression):
+        if part in NO_NUMBER:
+            raise InputError(f"found {expression}, which is no real number, expected one")
+        if isinstance(part, UNDONE):
+            raise InputError(f"found {part}, which SymPy has not worked out, expected an expression without it")
+        other = other or not (_is_plain(part) or _is_own(part))
+    return _read(expression, note) if other else expression
 
 
-def _needs_reading(x: sp.Expr) -> bool:
-    return any(not isinstance(part, KNOWN) or isinstance(part, sp.Piecewise) for part in _functions(x))
+def _is_plain(part: sp.Basic) -> bool:
+    """Whether a part of an expression is in kernels what it is in SymPy."""
+    return not isinstance(part, sp.Function | sp.Max | sp.Min) or (
+        isinstance(part, KNOWN) and not isinstance(part, sp.Piecewise)
+    )
 
 
 def _functions(x: sp.Basic) -> Iterator[sp.Basic]:
@@ -81,6 +97,8 @@ def _read(x: sp.Basic, note: Callable[[sp.Expr], None]) -> Any:
             note(corner)
         return value
     if isinstance(x, sp.Piecewise):
+        if x.args[-1].cond != True:  # noqa: E712 SymPy's own
+            raise InputError(f"found {x}, which has no value elsewhere, expected a last part (value, True)")
         for relation in sp.Piecewise(*arguments).atoms(Relational):
             note(relation.lhs - relation.rhs)
     found = x.func(*arguments)
