@@ -106,10 +106,14 @@ def callback_of(function: PythonFunction) -> Callback:
 def callbacks(system: System) -> Iterator[tuple[str, Element, PythonFunction, Callback]]:
     """The Python functions of a system's elements, with the elements and their names."""
     for group in system.groups:
-        if any(shape[0] == "python" for _, shape in group.kind.fields):
+        if _has_function(group.kind.fields):
             for name, element in zip(group.names, group.elements, strict=True):
                 for _, function in element.parts(PythonFunction):
                     yield name, element, function, callback_of(function)
+
+
+def _has_function(shape: object) -> bool:
+    return shape == ("python",) or (isinstance(shape, tuple) and any(map(_has_function, shape)))
 
 
 def has_fault(system: System) -> bool:

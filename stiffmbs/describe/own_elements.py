@@ -49,9 +49,9 @@ class Registry:
     def kinds(self, base: type[Element], dimensions: int) -> dict[str, type[Any]]:
         """The joints, or the forces, of the plane or of space, by kind."""
         if not self._installed_are_read:
-            self._installed_are_read = True
             for element in _installed():
                 register(element)
+            self._installed_are_read = True
         return {
             kind: found for (sort, space, kind), found in self._classes.items() if (sort, space) == (base, dimensions)
         }

@@ -147,6 +147,22 @@ def test_a_potential_gives_the_force_at_rest(state):
     assert_close(term(state, "motion", "f"), -derivative(potential, state.q)[0] @ rates_of_each_velocity(state))
 
 
+def test_power_is_what_a_force_brings_into_the_energy(state):
+    """Kinetic and potential energy together change by the work of the forces, and as the potentials do."""
+    if state.is_joint:
+        return
+    state.evaluate("output", T)
+    potential, power = (state.system.term("output", name).source for name in ("potential", "power"))
+    brought = state.values["output"][power].sum()
+
+    def stored():
+        state.evaluate("output", T)
+        return np.array([state.values["output"][potential].sum()])
+
+    changing = derivative(stored, state.q)[0] @ rates(state)
+    assert_close(term(state, "motion", "f") @ state.u + changing, brought)
+
+
 def test_counters_have_the_rates_of_their_angles(state):
     if not state.system.n_counters:
         return

@@ -15,6 +15,7 @@ from stiffmbs.compile import record
 from stiffmbs.describe import own_elements
 from stiffmbs.describe.own_elements import REGISTRY
 from stiffmbs.jobs.usual_elements import usual_elements
+from stiffmbs.structure.transmitted import transmitted
 
 from ..outside import plane, space
 from ..random_parts import forms_of
@@ -26,6 +27,7 @@ from .test_element_derivatives import (  # noqa: F401 these run on the elements 
     test_constraints_and_their_jacobian,
     test_gamma_is_minus_the_rate_of_the_velocity_level_without_accelerations,
     test_iteration_matrix_of_every_formulation,
+    test_power_is_what_a_force_brings_into_the_energy,
     test_velocity_level_is_the_rate_of_the_position_level,
 )
 
@@ -148,6 +150,37 @@ def test_installed_packages_offer_elements_by_entry_points(monkeypatch):
     monkeypatch.setattr("stiffmbs.describe.kinds.REGISTRY", own_elements.Registry())
     with pytest.raises(InputError, match=r"entry point 'ring = tests.outside.nowhere:Ring' of stiffmbs.elements"):
         stiffmbs.read_scene(IN_PLANE)
+
+
+class Pin(spatial.Joint):
+    """A hinge made by a user, with what presses it."""
+
+    kind = "pin"
+    equations = spatial.Revolute.equations
+    coordinates = ("angle",)
+    i: spatial.Marker
+    j: spatial.Marker
+
+    position = staticmethod(spatial.Revolute.position)
+    angle = staticmethod(spatial.Revolute.angle)
+    loads = staticmethod(spatial.Revolute.loads)
+
+
+def test_a_joint_that_states_its_loads_rubs_and_is_driven():
+    def braked(hinge):
+        model = spatial.Model(gravity=(0, -9.81, 0))
+        bar = model.add("bar", spatial.Body(mass=1, inertia=(0.01, 0.1, 0.1), position=(0.5, 0, 0), omega=(0, 0, 3)))
+        model.add("hinge", hinge(i=bar.at(-0.5, 0, 0), j="ground"))
+        model.add("rubs", spatial.JointFriction(joint="hinge", friction=0.3, radius=0.05))
+        return stiffmbs.run(model, duration=1.0)
+
+    own, shipped = braked(Pin), braked(spatial.Revolute)
+    np.testing.assert_allclose(own["bar.wz"], shipped["bar.wz"], atol=1e-9)
+    assert shipped["energy.total"][-1] < shipped["energy.total"][0] - 0.1
+
+
+def test_advice_knows_what_own_joints_transmit(registered):
+    assert transmitted()["ring"] == ("fx",)
 
 
 SCRIPT = """

@@ -11,7 +11,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has no mprotect
 TOO_SHORT = """
 import sys
 import numpy as np
-from stiffmbs.solve import factors, saddle_point
+from stiffmbs.solve.linear import factors, saddle_point
 from stiffmbs.stress import guarded
 
 whole = factors.factors_of
