@@ -16,20 +16,24 @@ quiet_while_loading()
 from typing import Any
 
 from .describe.body import Body
+from .describe.element import Force, Joint
 from .describe.marker import GROUND as ground
 from .describe.marker import Marker
 from .describe.model import FORCES, JOINTS, Model
+from .describe.own_elements import register
+from .describe.python_function import PythonFunction
 from .describe.scene import Scene, read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings
 from .describe.table import Table
+from .describe.units import si
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
 from .jobs.load_scene import load_scene
 from .loaded_later import loaded
 
 __version__ = "0.1.0"
 
-_ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES.values())}
+_ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
 _LATER = {
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
@@ -38,8 +42,9 @@ _LATER = {
 """The modules of what is loaded when it is used."""
 
 __all__ = [
-    "AssemblyError", "Body", "InputError", "Marker", "Model", "RunSettings", "Scene", "SolverError", "StiffmbsError",
-    "Table", "ground", "load_scene", "read_scene", "scene_schema", *_LATER, *_ELEMENTS,
+    "AssemblyError", "Body", "Force", "InputError", "Joint", "Marker", "Model", "PythonFunction", "RunSettings", "Scene",
+    "SolverError", "StiffmbsError", "Table", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
+    *_LATER, *_ELEMENTS,
 ]  # fmt: skip
 
 

@@ -10,15 +10,16 @@ Examples
 
 from typing import Any
 
+from .describe.element import Force, Joint
 from .describe.spatial.body import Body
 from .describe.spatial.marker import Marker
 from .describe.spatial.model import FORCES, JOINTS, Model
 from .loaded_later import loaded
 
-_ELEMENTS = {element.__name__: element for element in (*JOINTS.values(), *FORCES.values())}
+_ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
 _LATER = {"in_space": ".jobs.in_space"}
 
-__all__ = ["Body", "Marker", "Model", *_LATER, *_ELEMENTS]
+__all__ = ["Body", "Force", "Joint", "Marker", "Model", *_LATER, *_ELEMENTS]
 
 
 def __getattr__(name: str) -> Any:

@@ -7,15 +7,19 @@ import typing
 import numpy as np
 
 import stiffmbs
-from stiffmbs import Body, Marker, Model, spatial
+from stiffmbs import Body, InputError, Marker, Model, spatial
 from stiffmbs.describe import model as plane
 from stiffmbs.describe.element import Element, JointName
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.field import FormulaOf
 from stiffmbs.describe.marker import MarkerReference
+from stiffmbs.describe.python_function import PythonFunction
+from stiffmbs.describe.samples import Samples, types_in
 from stiffmbs.describe.spatial import model as space
 from stiffmbs.describe.spatial.orientation import about, conjugate, product
 
+Form = tuple[frozenset[str], tuple[tuple[str, typing.Any], ...]]
+"""The fields that are left out, and those that are given."""
 FAMILIES = {2: stiffmbs, 3: spatial}
 OF_COORDINATES = {
     2: "b0.x*b1.y - 0.3*sin(b1.angle + 2*t) + 0.7*b0.angle^2 + b1.x - t^3 + dm(b0, b1)*az(b1)",
@@ -34,20 +38,8 @@ ALL_KINDS = [
     (dimensions, kind) for dimensions, family in ((2, plane), (3, space))
     for kind in (*family.JOINTS.values(), *family.FORCES.values())
 ]  # fmt: skip
-LEFT_OUT = {
-    "point_on_curve": [("radius",), ("y",)],
-    "sphere_contact": [("surface_radius",)],
-    "drive": [
-        (*one_way, level)
-        for one_way in (("coordinate", "i", "j"), ("joint",)) for level in ("velocity", "position")
-    ],
-}  # fmt: skip
-"""Fields to leave out, case by case, of kinds that want one of several."""
-CASES = [(dimensions, kind, left_out) for dimensions, kind in ALL_KINDS for left_out in LEFT_OUT.get(kind.kind, [()])]
-WANTED = {"joint_friction": {"radius": 0.7}}
-"""Fields of their own that the joints referred to ask for."""
-REFERENCES = {"joint_2": "second_pin", "rack": "slider"}
-"""The joint of `add_joints` for a field that names one; ``pin`` for all others."""
+JOINTS = ("pin", "second_pin", "slider")
+"""Those of `add_joints`."""
 
 
 def add_joints(model: typing.Any) -> None:
@@ -78,28 +70,64 @@ def refers_to_joints(element: Element) -> bool:
     return any(True for _ in element.parts(JointName))
 
 
+class RandomSamples(Samples):
+    """Elements with random numbers, all of their fields filled, their markers on b0, b1, ... in order."""
+
+    optional = True
+
+    def __init__(self, rng: np.random.Generator, dimensions: int) -> None:
+        self.rng, self.dimensions = rng, dimensions
+        model = three_bodies(rng) if dimensions == 2 else three_bodies_in_space(rng)
+        add_joints(model)
+        super().__init__(lambda k: _marker(f"b{k}", rng, dimensions), model.joints)
+
+    def number(self, mark: Measured) -> float:
+        """About one, within the bounds of the field."""
+        low = max(0.5, mark.above or 0.0, mark.at_least or 0.0)
+        high = low + 1.0 if mark.at_most is None else min(low + 1.0, mark.at_most)
+        return self.rng.uniform(low, high)
+
+    def formula(self, mark: FormulaOf, kind: type[Element]) -> str:
+        """Of all that the field may hold."""
+        if kind.kind == "velocity_equation":
+            return LINEAR_IN_VELOCITIES[self.dimensions]
+        parts = ["1.3"] + ["sin(2*t)"] * mark.time + [f"0.5*cos({v})^3 + sin({v})" for v in mark.variables]
+        parts += [OF_COORDINATES[self.dimensions]] * mark.coordinates + [
+            OF_VELOCITIES[self.dimensions]
+        ] * mark.velocities
+        return " + ".join(parts)
+
+
 def random_element(
-    kind: type[Element], rng: np.random.Generator, left_out: tuple[str, ...] = (), dimensions: int = 2
+    kind: type[Element], rng: np.random.Generator, form: Form = (frozenset(), ()), dimensions: int = 2
 ) -> Element:
-    """An element with random numbers, its markers on b0, b1, ... in order, its joints those of `add_joints`."""
-    fields: dict[str, object] = dict(WANTED.get(kind.kind, {}))
-    bodies = iter(("b0", "b1", "b2"))
-    for attribute, field in kind.model_fields.items():
-        name = field.alias or attribute
-        types = _types(field.annotation)
-        if typing.Literal in (typing.get_origin(part) for part in types) or name in left_out:
-            continue
-        if JointName in types:
-            fields[name] = REFERENCES.get(name, "pin")
-        elif any(isinstance(part, type) and issubclass(part, MarkerReference) for part in types):
-            fields[name] = _marker(next(bodies), rng, dimensions)
-        elif numbers := [mark for mark in field.metadata if isinstance(mark, Measured)]:
-            fields[name] = _number(numbers[0], rng)
-        elif marks := [mark for mark in _marks(field) if isinstance(mark, FormulaOf)]:
-            fields[name] = _formulas(marks[0], field, dimensions, kind.kind == "velocity_equation")
-        elif typing.get_origin(field.annotation) is tuple:
-            fields[name] = tuple(rng.uniform(0.5, 1.5, len(typing.get_args(field.annotation))))
-    return kind(**fields)
+    """An element with random numbers in a form, its joints those of `add_joints`."""
+    left_out, given = form
+    samples = RandomSamples(np.random.default_rng(3), dimensions)
+    samples.rng, samples.marker = rng, lambda k: _marker(f"b{k}", rng, dimensions)
+    return samples.made(kind, dict(given), left_out)
+
+
+def forms_of(kind: type[Element], dimensions: int) -> list[Form]:
+    """The forms of a class that cannot be had together: the fields that each leaves out, and its words and functions.
+
+    One form, of all fields, where these go together.
+    """
+    try:
+        random_element(kind, np.random.default_rng(0), dimensions=dimensions)
+        return [(frozenset(), ())]
+    except InputError:
+        names = {name for form in kind.forms for name in form}
+        fixed = [tuple((name, value) for name, value in form.items() if _is_fixed(kind, name)) for form in kind.forms]
+        return list(
+            dict.fromkeys((frozenset(names - {*form}), own) for form, own in zip(kind.forms, fixed, strict=True))
+        )
+
+
+def _is_fixed(kind: type[Element], name: str) -> bool:
+    """Whether a field takes words, or a Python function."""
+    types = list(types_in(kind.model_fields[name].annotation)) if name in kind.model_fields else []
+    return PythonFunction in types or typing.Literal in (typing.get_origin(part) for part in types)
 
 
 def _marker(body: str, rng: np.random.Generator, dimensions: int) -> MarkerReference:
@@ -114,37 +142,6 @@ def _turn(rng: np.random.Generator) -> tuple[float, ...]:
     """A random unit quaternion."""
     p = rng.normal(size=4)
     return tuple(p / np.linalg.norm(p))
-
-
-def _number(mark: Measured, rng: np.random.Generator) -> float:
-    """About one, within the bounds of the field."""
-    low = max(0.5, mark.above or 0.0, mark.at_least or 0.0)
-    high = low + 1.0 if mark.at_most is None else min(low + 1.0, mark.at_most)
-    return rng.uniform(low, high)
-
-
-def _types(annotation: object) -> list[object]:
-    """A type and all types that it is made of."""
-    return [annotation, *(part for inner in typing.get_args(annotation) for part in _types(inner))]
-
-
-def _marks(field: object) -> list[object]:
-    """The marks of a field, wherever in its type they stand."""
-
-    def inside(annotation: object) -> list[object]:
-        marks = list(getattr(annotation, "__metadata__", ()))
-        return marks + [mark for part in typing.get_args(annotation) for mark in inside(part)]
-
-    return [*field.metadata, *inside(field.annotation)]
-
-
-def _formulas(mark: FormulaOf, field: object, dimensions: int, linear: bool) -> object:
-    """A formula of all that a field may hold, as often as it wants it."""
-    parts = ["1.3"] + ["sin(2*t)"] * mark.time + [f"0.5*cos({v})^3 + sin({v})" for v in mark.variables]
-    parts += [OF_COORDINATES[dimensions]] * mark.coordinates + [OF_VELOCITIES[dimensions]] * mark.velocities
-    count = len([part for part in typing.get_args(field.annotation) if part is not Ellipsis and part is not type(None)])
-    formula = LINEAR_IN_VELOCITIES[dimensions] if linear else " + ".join(parts)
-    return (formula,) * count if typing.get_origin(field.annotation) is tuple else formula
 
 
 def three_bodies(rng: np.random.Generator, gravity: bool = True) -> Model:
@@ -183,3 +180,7 @@ def three_bodies_in_space(rng: np.random.Generator) -> spatial.Model:
             ),
         )
     return model
+
+
+CASES = [(dimensions, kind, form) for dimensions, kind in ALL_KINDS for form in forms_of(kind, dimensions)]
+"""Every kind, in each of its forms that cannot be had together."""

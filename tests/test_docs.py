@@ -2,6 +2,7 @@
 
 import contextlib
 import doctest
+import importlib
 import io
 import re
 import shlex
@@ -133,11 +134,16 @@ def test_examples_in_docstrings_run(module, workplace):
     assert results.attempted and not results.failed
 
 
-@pytest.mark.parametrize(("page", "described"), [("scenes", model), ("scenes_in_space", spatial_model)])
-def test_every_kind_stands_in_the_overview_of_scenes(page, described):
+@pytest.mark.parametrize(("page", "family"), [("scenes", ""), ("scenes_in_space", "spatial.")])
+def test_the_overview_of_scenes_is_made_of_all_kinds(page, family, monkeypatch):
+    pytest.importorskip("sphinx")
+    monkeypatch.syspath_prepend(str(HERE / "docs" / "extensions"))
+    made = importlib.import_module("kinds")
     text = (HERE / "docs" / "reference" / f"{page}.md").read_text(encoding="utf-8")
-    rows = {kind for row in re.findall(r"^\|([^|]*)\|", text, re.MULTILINE) for kind in re.findall(r"`(\w+)`", row)}
-    assert not {*described.JOINTS, *described.FORCES} - rows
+    for section in ("joints", "forces"):
+        assert f"```{{overview}} {family}{section}\n" in text
+        rows = "\n".join(made.overview(*made.SECTIONS[family + section]))
+        assert all(f"(``{kind}``)" in rows for kind in made.SECTIONS[family + section][1])
 
 
 def test_expected_output_is_compared():

@@ -1,6 +1,6 @@
 """Reference pages made from the classes: every kind of joint and force, every described class, the Python interface.
 
-Three directives: ``kinds`` (``joints``, ``forces``, or those of space, ``spatial.joints`` ...), ``fields`` (a described
+Directives: ``kinds`` and ``overview`` (``joints``, ``forces``, or those of space, ``spatial.joints`` ...), ``fields`` (a described
 class), ``interface`` (what a module's ``__all__`` lists besides elements).  A new kind appears by its existence.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from textwrap import dedent, indent
 from typing import Any
@@ -53,6 +53,15 @@ class Kinds(SphinxDirective):
         return self.parse_text_to_nodes(text, allow_section_headings=True)
 
 
+class Overview(SphinxDirective):
+    """A table of all kinds of joints or forces, a row each."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        return self.parse_text_to_nodes("\n".join(overview(*SECTIONS[self.arguments[0]])))
+
+
 class Fields(SphinxDirective):
     """The class of a description, with its fields."""
 
@@ -72,7 +81,9 @@ class Interface(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         module = importlib.import_module(self.arguments[0])
         elements = {element.__name__ for _, kinds in SECTIONS.values() for element in kinds.values()}
-        names = [name for name in module.__all__ if name not in elements]
+        names = [
+            name for name in module.__all__ if name not in elements and not inspect.ismodule(getattr(module, name))
+        ]
         text = "\n".join(line for name in sorted(names) for line in documented(module.__name__, name))
         return self.parse_text_to_nodes(text)
 
@@ -82,6 +93,8 @@ def documented(module: str, name: str) -> Iterator[str]:
     thing = getattr(importlib.import_module(module), name)
     if inspect.isclass(thing):
         yield f".. autoclass:: {module}.{name}"
+        if module != "stiffmbs" and getattr(stiffmbs, name, None) is thing:
+            yield "   :no-index:"
         if not issubclass(thing, Described | Exception):
             yield from ("   :members:", "   :inherited-members: Mapping", f"   :exclude-members: {INNER}")
         yield ""
@@ -91,9 +104,39 @@ def documented(module: str, name: str) -> Iterator[str]:
         yield from (f".. py:data:: {module}.{name}", f"   :value: {thing!r}", "")
 
 
+def overview(module: str, kinds: Mapping[str, type[Element]]) -> Iterator[str]:
+    """The table: what each kind is, its fields (those with a default in brackets), and the equations of joints."""
+    titles = (
+        "type",
+        "what it is",
+        "fields",
+        *(["equations"] if kinds is SECTIONS["joints"][1] or kinds is SECTIONS["spatial.joints"][1] else []),
+    )
+    yield from (".. list-table::", "   :header-rows: 1", "")
+    rows = (_row(module, kind, element) for kind, element in kinds.items())
+    for row in (titles, *(row[: len(titles)] for row in rows)):
+        yield from (f"   {'*' if k == 0 else ' '} - {cell}" for k, cell in enumerate(row))
+    yield ""
+
+
+def _row(module: str, kind: str, element: type[Element]) -> tuple[str, ...]:
+    fields = [
+        (field.alias or name, field.is_required()) for name, field in element.model_fields.items() if name != "type"
+    ]
+    needed = " ".join(name for name, required in fields if required)
+    others = " ".join(name for name, required in fields if not required)
+    words = inspect.cleandoc(element.__doc__ or "").split("\n\n")[0].replace("\n", " ")
+    first = words.split(":  ")[0]
+    listed = " ".join(([f"``{needed}``"] if needed else []) + ([f"[``{others}``]"] if others else []))
+    equations = " ".join(getattr(element, "equations", ()))
+    return f":ref:`{kind} <{module}.{kind}>` (``{kind}``)", first, listed, f"``{equations}``" if equations else ""
+
+
 def section(module: str, kind: str, element: type[Element]) -> Iterator[str]:
     """The section of one kind: its class, names of equations, fields, and its equations as they stand in the source."""
     yield from (f".. _{module}.{kind}:", "", kind, "-" * len(kind), "")
+    if element.__module__.partition(".")[0] != "stiffmbs":
+        module = element.__module__
     shared = module != "stiffmbs" and element in SECTIONS["joints"][1].values()
     yield from (f".. autoclass:: {module}.{element.__name__}", *(["   :no-index:"] if shared else []), "")
     if names := getattr(element, "equations", ()):
@@ -128,6 +171,7 @@ def write_schema(app: Sphinx, error: Exception | None) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("kinds", Kinds)
+    app.add_directive("overview", Overview)
     app.add_directive("fields", Fields)
     app.add_directive("interface", Interface)
     app.connect("autodoc-process-signature", without_signature)

@@ -73,7 +73,7 @@ def _sorted_elements(model: Compilable) -> dict[Kind, list[_Member]]:
     for name, element in model.elements():
         try:
             kind, data = sorted_out(element, model)
-        except FormulaError as error:
+        except (FormulaError, InputError) as error:
             raise InputError(f"{name}: {error}") from None
         sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
     return sorted_elements

@@ -18,7 +18,10 @@ from ..describe.formula.field import TIME, Formula, is_measure, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
+from ..describe.python_function import PythonFunction
 from ..describe.table import Table
+from ..errors import InputError
+from .callbacks import callback_of
 from .table_values import spline_data
 
 Shape = tuple[Any, ...]
@@ -141,6 +144,9 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             return ("number",)
         case Formula():
             return _FormulaShape(value, model, data).shape()
+        case PythonFunction():
+            data.numbers.append(float(callback_of(value).address))
+            return ("python",)
         case Table():
             data.tables.append((len(data.numbers), spline_data(value)))
             data.numbers.append(0.0)
@@ -148,7 +154,10 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
         case tuple():
             return ("several", tuple(_shape(item, model, data) for item in value))
         case _:
-            raise TypeError(f"a field of an element cannot hold {type(value).__name__}")
+            raise InputError(
+                f"found a field with {type(value).__name__}, expected markers, joints' names, numbers, formulas, tables, "
+                "words or Python functions"
+            )
 
 
 def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:

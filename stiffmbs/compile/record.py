@@ -143,8 +143,7 @@ def _entry(kind: Kind, *part: str) -> str | None:
     classes = [kind.element, *(shape[1] for _, shape in kind.fields if shape[0] == "joint")]
     bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element)]
     try:
-        texts = [Path(inspect.getfile(base)).read_text(encoding="utf-8") for base in bases]
-        texts += [path.read_text(encoding="utf-8") for path in sorted(_helpers(bases))]
+        texts = _files(bases) if all(map(_is_shipped, bases)) else _equations(kind)
     except (OSError, TypeError):
         return None
     return store.name_of(
@@ -155,6 +154,23 @@ def _entry(kind: Kind, *part: str) -> str | None:
         repr((kind.dimensions, kind.n_bodies, kind.n_joints, kind.fields)),
         *part,
     )
+
+
+def _is_shipped(element: type) -> bool:
+    return element.__module__.partition(".")[0] == __name__.partition(".")[0]
+
+
+def _files(elements: list[type]) -> list[str]:
+    """The text of the files of classes of this package, and of what their equations may call."""
+    paths = [*(Path(inspect.getfile(element)) for element in elements), *sorted(_helpers(elements))]
+    return [path.read_text(encoding="utf-8") for path in paths]
+
+
+def _equations(kind: Kind) -> list[str]:
+    """The equations of a user's own class as expressions: they may come from any module, variable or file of the user's."""
+    from .symbolic.stated import text_of
+
+    return [text_of(kind)]
 
 
 def _helpers(elements: list[type]) -> set[Path]:

@@ -8,19 +8,16 @@ fields, its equations and their names.
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
+import builtins
 from collections.abc import Iterator, Mapping
-from functools import reduce
-from operator import or_
-from types import ModuleType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import Field, WithJsonSchema
+from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
 
-from ..errors import InputError
 from .fields import Described
+from .files.quoted import quoted
 from .formula.field import Formula
+from .loads import Loads
 from .marker import MarkerReference
 
 if TYPE_CHECKING:
@@ -60,11 +57,44 @@ JointReference = Annotated[
 
 
 class Element(Described):
-    """Base of joints and forces.  A subclass in its own file in `joints` or `forces` is all that a new kind takes."""
+    """Base of joints and forces.  A subclass is all that a new kind takes: in its own file in `joints` or `forces`, or a user's own.
+
+    Attributes
+    ----------
+    kind : str
+        What scenes call it, as its `type`.
+    dimensions : tuple of int
+        In which models it can stand, 2 for the plane and 3 for space; () for those that its markers are of.
+    forms : tuple of mappings of str to Any
+        The fields that make the forms in which it is mostly used, where those that have no default are not enough: these are
+        compiled ahead (``stiffmbs cache warm``) and tested.
+    """
 
     kind: ClassVar[str] = ""
+    dimensions: ClassVar[tuple[int, ...]] = ()
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
 
-    def parts(self, part: type) -> Iterator[tuple[str, Any]]:
+    type: str = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_its_kind(cls, found: Any) -> Any:
+        """Let the type be the class's kind."""
+        if not isinstance(found, dict):
+            return found
+        if found.get("type", cls.kind) != cls.kind:
+            raise ValueError(f"found the type '{quoted(found['type'])}', expected '{cls.kind}'")
+        return {**found, "type": cls.kind}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        schema = handler(core_schema)
+        handler.resolve_ref_schema(schema)["properties"]["type"] = {
+            "const": cls.kind, "default": cls.kind, "title": "Type", "type": "string",
+        }  # fmt: skip
+        return schema
+
+    def parts(self, part: builtins.type) -> Iterator[tuple[str, Any]]:
         """The element's markers, formulas, or joint names: every value of a type, by field name, in order."""
         for name in type(self).model_fields:
             value = getattr(self, name)
@@ -91,6 +121,25 @@ class Element(Described):
         """Why the element cannot act where the bodies are drawn."""
         yield from ()
 
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        """The element as a scene in space writes it, in the x-y plane; of a class of the plane.
+
+        By default the kind of the same name in space, with fields that mean the same.
+
+        Parameters
+        ----------
+        angles : Angles
+            Of the planar model (`stiffmbs.describe.spatial.embedding.angles`).
+
+        Raises
+        ------
+        InputError
+            When there is none.
+        """
+        from .spatial.embedding.fields import namesake
+
+        return namesake(self, angles)
+
     def as_drawn(self, model: ModelData) -> Self:
         """The element with what it leaves open taken from the bodies' described poses."""
         return self
@@ -106,10 +155,21 @@ class Joint(Element):
     coordinates : tuple of str
         The names of its coordinates, for drives and couplers: ``angle``, ``displacement``.  A joint has a static
         function of `e` by the name of each.
+    transmits : tuple of str
+        In space what it transmits: forces ``fx fy fz`` along the axes of marker j, and torques ``tx ty tz`` about them at the
+        point of marker i.  What does not lie along one of them, as the torque of a universal joint, is left out.  A joint that
+        states it is advised in place of one that transmits more than is needed.
+    elastic : str
+        The kind of force that holds the same elastically.
+    keeps_in_plane : bool
+        Of a planar joint with two markers whether its namesake in space keeps a body in the plane of the other one.
     """
 
     equations: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
+    transmits: ClassVar[tuple[str, ...]] = ()
+    elastic: ClassVar[str] = ""
+    keeps_in_plane: ClassVar[bool] = False
 
     @staticmethod
     def position(e: Symbolic) -> Any:
@@ -125,6 +185,15 @@ class Joint(Element):
     def point(e: Symbolic) -> Any:
         """The joint's point, about which its torque is reported."""
         return e.i.point
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        """What presses its surfaces, from its multipliers ``e.lam``; a joint that states it can have friction.
+
+        With the coordinate ``angle`` it rubs as a pin, with ``displacement`` as a guide, with both as a sleeve, and in space
+        without coordinates as a ball.
+        """
+        raise NotImplementedError
 
     def equation_names(self) -> tuple[str, ...]:
         return self.equations
@@ -177,20 +246,3 @@ class Force(Element):
     def point(e: Symbolic) -> Any:
         """The point on the first body about which the force's torque is reported."""
         return e.i.point
-
-
-def kinds(package: ModuleType, base: type[Element]) -> dict[str, type[Any]]:
-    """The element classes found in the files of a package, by kind."""
-    found: dict[str, type[Any]] = {}
-    for module in pkgutil.iter_modules(package.__path__):
-        members = vars(importlib.import_module(f"{package.__name__}.{module.name}")).values()
-        for member in members:
-            named = isinstance(member, type) and issubclass(member, base) and member.kind
-            if named and found.setdefault(member.kind, member) is not member:
-                raise InputError(f"two classes of elements have the kind '{member.kind}'")
-    return found
-
-
-def any_of(found: Mapping[str, type[Element]]) -> Any:
-    """The type of a field that takes an element of any of the kinds, told apart by its ``type``."""
-    return Annotated[reduce(or_, found.values()), Field(discriminator="type")]

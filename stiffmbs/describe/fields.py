@@ -16,6 +16,7 @@ from pydantic import (
     ConfigDict,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    PydanticUserError,
     ValidationInfo,
     model_validator,
 )
@@ -32,7 +33,13 @@ NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 
 
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]
-    """Makes a direct construction fail with the package's own error."""
+    """Makes a direct construction, and a class that cannot be made, fail with the package's own error."""
+
+    def __new__(mcs, name: str, *arguments: Any, **options: Any) -> Any:
+        try:
+            return super().__new__(mcs, name, *arguments, **options)
+        except PydanticUserError as error:
+            raise InputError(f"{name}: {_first_line(error)}") from error
 
     def __call__(cls, *unnamed: Any, **fields: Any) -> Any:
         if unnamed:
@@ -43,6 +50,12 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
             return super().__call__(**fields)
         except PydanticError as error:
             raise InputError(f"{cls.__name__}: {sentence(error)}") from None
+        except PydanticUserError as error:  # a type that was not known where the class was made
+            raise InputError(f"{cls.__name__}: {_first_line(error)}") from error
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).splitlines()[0]
 
 
 if TYPE_CHECKING:
@@ -150,10 +163,8 @@ def sentence(error: PydanticError) -> str:
 
 
 def location(parts: tuple[Any, ...]) -> str:
-    """A fault's place as it is written with ``--set``: ``bodies.cart.mass``, without the kinds that validation adds."""
+    """A fault's place as it is written with ``--set``: ``bodies.cart.mass``, without the branches that validation adds."""
     named = [str(part) for part in parts]
-    if named[:1] in (["joints"], ["forces"]) and len(named) > 2:
-        del named[2]  # the element's type
     while named and ("[" in named[-1] or named[-1] in ("int", "float", "str")):
         named.pop()  # the branch of a union
     return ".".join(named)
@@ -169,10 +180,6 @@ def _reason(fault: Any) -> str:
         case "too_short" | "too_long":
             limit = context.get("min_length", context.get("max_length"))
             return f"found {context['actual_length']} values, expected {limit}"
-        case "union_tag_not_found":
-            return "found no 'type', expected one that the schema lists (stiffmbs schema)"
-        case "union_tag_invalid":
-            return f"found the type '{context['tag']}', expected one of {context['expected_tags']}"
         case "string_pattern_mismatch":
             return f"found '{quoted(found)}', expected a name of letters, digits and _ that does not start with a digit"
         case "literal_error" | "enum":

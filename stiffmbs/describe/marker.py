@@ -6,7 +6,7 @@ What a marker of the plane and one of space have in common is that they name a b
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, GetJsonSchemaHandler, model_validator
 
@@ -49,7 +49,14 @@ class MarkerReference(Described):
         The body, or ``"ground"``.
     marker : str, optional
         A marker that the body names.
+
+    Attributes
+    ----------
+    dimensions : int or None
+        2 or 3; None for one of either family.
     """
+
+    dimensions: ClassVar[int | None] = None
 
     body: str = Field(description="a body of the scene, or ground")
     marker: str | None = Field(None, pattern=NAME_PATTERN, description="a marker that the body names")
@@ -105,6 +112,8 @@ class Marker(MarkerReference):
     angle : float
         Direction of the marker's axis against the body's, rad.
     """
+
+    dimensions: ClassVar[int | None] = 2
 
     point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
     angle: si.Angle = Field(0.0, description="direction of the axis against the body's, rad")

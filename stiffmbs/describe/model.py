@@ -11,18 +11,19 @@ from pydantic import Field
 
 from . import forces, joints
 from .body import Body, BodyHandle
-from .element import Force, Joint, any_of, kinds
+from .element import Force, Joint
 from .forces.weight import weights
 from .formula.field import OfMotion
 from .given import Numbers
 from .initial_pose import DrawnMarker
+from .kinds import Kinds, any_of
 from .marker import GROUND, MarkerReference, Placement
 from .model_builder import ModelBuilder
 from .model_data import ModelData
 from .units import si
 
-JOINTS = kinds(joints, Joint)
-FORCES = kinds(forces, Force)
+JOINTS = Kinds(joints, Joint, 2)
+FORCES = Kinds(forces, Force, 2)
 
 AnyJoint: Any = any_of(JOINTS)
 AnyForce: Any = any_of(FORCES)
@@ -78,7 +79,7 @@ class Model(ModelBuilder[PlanarData, Body, BodyHandle]):
     data_type = PlanarData
     body_type = Body
     handle_type = BodyHandle
-    kinds = JOINTS | FORCES
+    kinds = JOINTS, FORCES
 
     def __init__(self, name: str = "", gravity: Numbers = (0.0, 0.0)) -> None:
         super().__init__(name, gravity)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack, overload
 
 from ..errors import InputError
@@ -12,8 +12,10 @@ from .fields import Described
 from .formula.names import NAMES
 from .given import Law
 from .handle import Handle
+from .kinds import Kinds
 from .marker import GROUND, MarkerReference
 from .model_data import RESERVED, ModelData, check_element, contents
+from .own_elements import check_class
 from .request import Request
 from .settings import RunSettings, Settings, takes_settings
 
@@ -33,14 +35,14 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
     ----------
     data_type, body_type, handle_type : types
         The class of what is built, of its bodies, and of what stands for a body that has been added.
-    kinds : mapping of str to type
-        The joints and forces of the family, by kind.
+    kinds : Kinds, Kinds
+        The joints and the forces of the family, by kind.
     """
 
     data_type: type[Data]
     body_type: type[Body]
     handle_type: type[BodyHandle]
-    kinds: ClassVar[Mapping[str, type[Element]]]
+    kinds: ClassVar[tuple[Kinds, Kinds]]
 
     def __init__(self, name: str, gravity: Any) -> None:
         self.name = name
@@ -154,7 +156,8 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
             return self.bodies
         if not isinstance(part, Joint | Force):
             raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
-        if type(part) not in self.kinds.values():
+        check_class(type(part))
+        if not any(kinds.fits(part) for kinds in self.kinds):
             raise InputError(f"{name}: found {part!r}, expected a joint or a force{self._of_the_family()}")
         return self.joints if isinstance(part, Joint) else self.forces
 

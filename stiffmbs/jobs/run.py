@@ -9,6 +9,7 @@ from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 
+from ..compile.callbacks import fault_of, notes_on_functions
 from ..compile.compile_model import compile_model
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
@@ -39,6 +40,7 @@ from ..structure.redundancy import Redundancy, examine
 from ..structure.told.unconnected import unconnected_sentence
 from .load_scene import load_scene
 from .presolve_report import presolve_sentences
+from .python_faults import told_faults
 from .settings_notes import settings_notes
 from .taken_again import Computed, seen_through
 
@@ -113,12 +115,13 @@ def prepare(model: Runnable, settings: RunSettings | None = None, **changes: Any
 
         refuse_contradictions(found.redundancy)
     mechanics = found.mechanics()
-    start = initial_values(mechanics, found.grid.start)
-    if isinstance(found.data, Scene) and found.data.start == "equilibrium":
-        from .settled import settled
+    with told_faults(mechanics.system):
+        start = initial_values(mechanics, found.grid.start)
+        if isinstance(found.data, Scene) and found.data.start == "equilibrium":
+            from .settled import settled
 
-        start = settled(mechanics, start, found.grid.start).start
-    pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+            start = settled(mechanics, start, found.grid.start).start
+        pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
     return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
 
 
@@ -159,7 +162,8 @@ def examined(model: Runnable, settings: RunSettings | None = None, **changes: An
     grid = output_grid(chosen)
     refuse_far_away(data)
     system = compile_model(data)
-    return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
+    with told_faults(system):
+        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
 
 
 @takes_settings
@@ -261,6 +265,9 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
         return trajectory.outcome, trajectory.message
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
     sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    fault = fault_of(job.mechanics.system)
+    if fault:
+        return Outcome.STOPPED, f"{sentence}; {fault.clause}"
     return Outcome.STOPPED, sentence + suspect(job.mechanics, t, q, u)
 
 
@@ -272,6 +279,7 @@ def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
         yield from note_sentences(job.redundancy)
     yield from unconnected_sentence(job.mechanics.system)
     yield from job.start.notes
+    yield from notes_on_functions(job.mechanics.system)
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:

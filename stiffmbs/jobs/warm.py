@@ -7,20 +7,13 @@ import pkgutil
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from pathlib import Path
 
 from .. import compile as compile_package
 from .. import solve as solve_package
 from ..compile.compile_model import kinds_of
 from ..compile.kernels import compile_usual
 from ..compile.machine.routines import Routine
-from .load_scene import load_scene
-
-USUAL = {
-    dimensions: Path(__file__).with_name(name)
-    for dimensions, name in ((2, "usual_elements.yaml"), (3, "usual_spatial_elements.yaml"))
-}
-"""Scenes of all kinds of elements in the forms in which they are mostly used, by their dimensions."""
+from .usual_elements import usual_elements
 
 
 def warm() -> None:
@@ -29,7 +22,7 @@ def warm() -> None:
     Formulas that stand in a scene make kinds of their own, which are compiled when they are first met, and so is what one
     formulation alone uses.
     """
-    kinds = [kind for path in USUAL.values() for kind in kinds_of(load_scene(path))]
+    kinds = [kind for dimensions in (2, 3) for kind in kinds_of(usual_elements(dimensions).data())]
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
         list(processes.map(compile_usual, kinds))
     for routine in routines():

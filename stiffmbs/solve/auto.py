@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..compile.callbacks import has_fault
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from . import bdf, cost
@@ -134,12 +135,12 @@ class _Shared:
         self._pace = _Pace(t)
         run = AdaptiveRun(DOP853, self._mechanics, start, self._rest(t), self._settings, self._watch)
         leg = run.integrate(Leaving(LOOK, self._should_try_implicit))
-        if run.left and leg.outcome is Outcome.STOPPED:
+        if run.left and leg.outcome is Outcome.STOPPED and not has_fault(self._mechanics.system):
             self._gave_up, self._legs = True, []
             self._told = [f"bdf, as explicit steps {leg.message}"]
             return self._grid.start
         self._legs.append(Leg(replace(leg, solver="projected"), TRAITS["dop853"]))
-        if not run.left:
+        if not run.left or leg.outcome is Outcome.STOPPED:
             return None
         self._state = run.work.q.copy(), run.work.u.copy()
         return run.work.t

@@ -9,7 +9,6 @@ import numpy as np
 
 from ..compile.quaternions import CONJUGATE, rotated, times
 from .loop_equations import LoopEquations, Pose
-from .transmitted import TRANSMITTED
 
 SAME_DIRECTION = 1e-5
 """Angle, rad, and part of a force across it, up to which a direction counts as the same."""
@@ -62,14 +61,12 @@ def directions(
     quantities = {"force": of_body.reactions[: of_body.linear]}
     if of_body.dimensions == 3:
         quantities["torque"] = of_body.reactions[of_body.linear :]
-    kind = next((joint.element.kind for joint in equations.loop.joints if joint.name == owner), "")
+    transmits = next((joint.element.transmits for joint in equations.loop.joints if joint.name == owner), ())
     for quantity, components in quantities.items():
         stacks = [np.array([change[f"{owner}.{name}"] for name in components]) for change in changes]
         parts = [_space(stack, negligible) for stack in stacks]
         rank = parts[0][0]
-        possible = (
-            [name for name in TRANSMITTED.get(kind, ()) if name[0] == quantity[0]] if len(components) == 3 else ()
-        )
+        possible = [name for name in transmits if name[0] == quantity[0]] if len(components) == 3 else ()
         if any(found != rank for found, _ in parts) or not 0 < rank < (len(possible) or len(components)):
             continue
         across = rank == 2

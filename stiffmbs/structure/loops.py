@@ -11,7 +11,7 @@ from ..compile.group import Group
 from ..compile.state import State
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
-from ..describe.element import Element
+from ..describe.element import Joint
 
 FULL_RANK = 1e-8
 """Determinant of the Gram matrix of scaled rows above which a joint surely holds a body with all its equations."""
@@ -30,7 +30,7 @@ class LoopJoint:
     """
 
     name: str
-    element: Element
+    element: Joint
     rows: np.ndarray
     bodies: tuple[int, ...]
 
@@ -106,11 +106,12 @@ def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tupl
         J /= np.where(norms > 0, norms, 1.0)
         parts = J.transpose(0, 2, 1, 3)
         independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > FULL_RANK
-    for e, name in enumerate(group.names):
+    for e, (name, joint) in enumerate(zip(group.names, group.elements, strict=True)):
+        assert isinstance(joint, Joint)
         on = [int(body) for body in group.bodies[e]]
         rows = group.first_row + e * count + np.arange(count)
         held = {body for body, alone in zip(on, independent[e], strict=True) if alone}
-        yield LoopJoint(name, group.elements[e], rows, tuple(b for b in on if b < len(system.bodies))), held
+        yield LoopJoint(name, joint, rows, tuple(b for b in on if b < len(system.bodies))), held
 
 
 def _connected(system: System, joints: list[LoopJoint], joints_of: list[set[int]]) -> Iterator[Loop]:

@@ -14,7 +14,7 @@ from .loop_equations import Pose
 from .loops import LoopJoint
 from .rank_result import LoopFinding
 from .redundancy import Redundancy
-from .sharing import ELASTIC, elastic_joints
+from .sharing import elastic_joints
 from .uniqueness import Undetermined, undetermined
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ def _remedies(finding: LoopFinding, space: np.ndarray, joints: list[LoopJoint]) 
     if alone:
         yield from ((joint,) for joint in alone)
         return
-    yield tuple(joints[k] for k in _together(space, own, [joint.element.kind in ELASTIC for joint in joints]))
+    yield tuple(joints[k] for k in _together(space, own, [bool(joint.element.elastic) for joint in joints]))
 
 
 def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> Iterator[int]:
@@ -209,7 +209,7 @@ def _remedy(
 ) -> str:
     """What makes reactions determinate by statics, and what lets stiffness decide."""
     ways = [f"with {kinds}" for kinds in _replaced(chosen)]
-    left_out = [joint.name for joint, *more in remedies if not more and joint.element.kind not in ELASTIC]
+    left_out = [joint.name for joint, *more in remedies if not more and not joint.element.elastic]
     if left_out or not (ways or elastic):
         ways.append(f"without {_one_of(left_out) if left_out else listed([joint.name for joint in remedies[0]])}")
     told = [f"{', or '.join(ways)}, {what} are statically determinate"] if ways else []
@@ -225,7 +225,7 @@ def _elastic_words(elastic: Sequence[LoopJoint]) -> str:
     """Bushings and springs in place of joints, in words."""
     of_kind: dict[str, list[str]] = {}
     for joint in elastic:
-        of_kind.setdefault(ELASTIC[joint.element.kind], []).append(joint.name)
+        of_kind.setdefault(joint.element.elastic, []).append(joint.name)
     return " and ".join(f"{kind}s in place of {_all_of(names)}" for kind, names in of_kind.items())
 
 

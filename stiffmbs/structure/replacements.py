@@ -7,7 +7,7 @@ as equations are redundant, and these independent along the null space of J^T, n
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from ..compile.placed_markers import marker_axes
 from .loop_equations import LoopEquations, Pose
 from .loops import LoopJoint
-from .transmitted import COMPONENTS, TRANSMITTED
+from .transmitted import COMPONENTS, transmitted
 from .uniqueness import changes_of
 
 CLEARLY = 1e-3
@@ -61,8 +61,13 @@ def replacements(
     """
     count, last = spaces[0][1].shape[1], joints[-MOST_JOINTS:]
     seen = [_in_marker_axes(equations, pose, space, last) for pose, space in spaces]
-    options = [list(_options(joint, [wrenches.get(joint.name) for wrenches in seen])) for joint in reversed(last)]
-    for kinds in (IDEAL, (*IDEAL, *(kind for kind in TRANSMITTED if kind not in IDEAL))):
+    if not any(seen):  # a planar model
+        return []
+    known = transmitted()
+    options = [
+        list(_options(joint, [wrenches.get(joint.name) for wrenches in seen], known)) for joint in reversed(last)
+    ]
+    for kinds in (IDEAL, (*IDEAL, *(kind for kind in known if kind not in IDEAL))):
         usable = [[option for kind in kinds for option in of_joint if option.kind == kind] for of_joint in options]
         alone = [(option,) for of_joint in usable for option in of_joint if _does((option,), count)]
         if alone:
@@ -86,9 +91,11 @@ def _in_marker_axes(
     return found
 
 
-def _options(joint: LoopJoint, wrenches: Sequence[np.ndarray | None]) -> Iterator[_Option]:
-    transmits = TRANSMITTED.get(joint.element.kind, ())
-    for kind, kept in TRANSMITTED.items():
+def _options(
+    joint: LoopJoint, wrenches: Sequence[np.ndarray | None], known: Mapping[str, tuple[str, ...]]
+) -> Iterator[_Option]:
+    transmits = joint.element.transmits
+    for kind, kept in known.items():
         weaker = set(kept) < set(transmits) or (kept == transmits and len(kept) < len(joint.rows))
         if weaker and all(wrench is not None for wrench in wrenches):
             rows = [k for k, name in enumerate(COMPONENTS) if name not in kept]

@@ -16,13 +16,6 @@ import numpy as np
 from .drop_first import TAKES_PART
 from .loops import LoopJoint
 
-BUSHING, SPRING = "bushing", "spring_damper"
-ELASTIC = dict.fromkeys(
-    ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "point_on_line", "point_on_plane", "orientation", "parallel"),
-    BUSHING,
-) | {"distance": SPRING}  # fmt: skip
-"""By kind of joint the element that holds the same elastically; the others have none."""
-
 
 def elastic_joints(joints: Sequence[LoopJoint], shares: Sequence[np.ndarray]) -> tuple[LoopJoint, ...]:
     """The joints that have to be elastic together; of those at both ends of one rod, where there are other paths, the last.
@@ -39,9 +32,7 @@ def elastic_joints(joints: Sequence[LoopJoint], shares: Sequence[np.ndarray]) ->
     tuple of LoopJoint
         Empty where joints take part that no elastic element can replace, and too few are left.
     """
-    usable = [
-        k for k, share in enumerate(shares) if joints[k].element.kind in ELASTIC and np.abs(share).max() > TAKES_PART
-    ]
+    usable = [k for k, share in enumerate(shares) if joints[k].element.elastic and np.abs(share).max() > TAKES_PART]
     for chosen in (_last_of_each_path(joints, usable), usable):
         if _decides([shares[k] for k in chosen]):
             return tuple(joints[k] for k in chosen)

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
-TRANSMITTED: dict[str, tuple[str, ...]] = {
-    "fixed": COMPONENTS,
-    "revolute": ("fx", "fy", "fz", "tx", "ty"),
-    "prismatic": ("fx", "fy", "tx", "ty", "tz"),
-    "cylindrical": ("fx", "fy", "tx", "ty"),
-    "spherical": ("fx", "fy", "fz"),
-    "universal": ("fx", "fy", "fz"),
-    "planar": ("fz", "tx", "ty"),
-    "point_on_line": ("fx", "fy"),
-    "point_on_plane": ("fz",),
-    "orientation": ("tx", "ty", "tz"),
-    "parallel": ("tx", "ty"),
-}
-"""By kind: forces along the axes of marker j, and torques about them at the point of marker i.  What does not lie along one
-of them, as the torque of a universal joint, is left out."""
+
+
+def transmitted() -> dict[str, tuple[str, ...]]:
+    """What each kind of joint in space transmits, of those that state it (`Joint.transmits`).
+
+    Kinds that transmit forces alone come first, and of these those that transmit most: guides by points are easier to make
+    than those by orientations.
+    """
+    from ..describe.spatial.model import JOINTS
+
+    found = [(kind, joint.transmits) for kind, joint in JOINTS.items() if joint.transmits]
+    return dict(sorted(found, key=lambda item: (any(name[0] == "t" for name in item[1]), -len(item[1]))))

@@ -20,7 +20,8 @@ from stiffmbs.compile.machine import compiler as machine
 from stiffmbs.compile.machine.cache_contents import OTHERS, clear, stored
 from stiffmbs.describe import model
 from stiffmbs.describe.spatial import model as spatial_model
-from stiffmbs.jobs.warm import USUAL, routines
+from stiffmbs.jobs.usual_elements import usual_elements
+from stiffmbs.jobs.warm import routines
 
 NAME = f"kernel-{'0' * 40}"
 SOURCE = "def twice(x):\n    return 2.0*x\n"
@@ -135,8 +136,7 @@ def test_the_command_shows_and_clears(directory):
 
 @pytest.mark.parametrize(("dimensions", "described"), [(2, model), (3, spatial_model)])
 def test_every_kind_of_element_is_among_the_usual_ones(dimensions, described):
-    scene = stiffmbs.load_scene(USUAL[dimensions])
-    found = {type(element) for _, element in scene.elements()}
+    found = {type(element) for _, element in usual_elements(dimensions).data().elements()}
     assert found >= {*described.JOINTS.values(), *described.FORCES.values()}
 
 

@@ -45,8 +45,11 @@ def assert_close(found, expected):
 
 
 def case_name(case):
-    dimensions, kind, left_out = case
-    return "-".join([*(["space"] if dimensions == 3 else []), kind.kind, *(f"no_{name}" for name in left_out)])
+    dimensions, kind, (left_out, given) = case
+    words = [str(value) for _, value in given if isinstance(value, str)]
+    return "-".join(
+        [*(["space"] if dimensions == 3 else []), kind.kind, *(f"no_{name}" for name in sorted(left_out)), *words]
+    )
 
 
 def takes_long(case):
@@ -60,10 +63,14 @@ def takes_long(case):
     ]
 )
 def state(request):
+    return state_with(*request.param)
+
+
+def state_with(dimensions, kind, form):
+    """A random state of three bodies with a random element of a class."""
     rng = np.random.default_rng(7)
-    dimensions, kind, left_out = request.param
     model = three_bodies(rng) if dimensions == 2 else three_bodies_in_space(rng)
-    element = random_element(kind, rng, left_out, dimensions)
+    element = random_element(kind, rng, form, dimensions)
     if refers_to_joints(element):
         add_joints(model)
     model.add("element", element)
@@ -145,6 +152,22 @@ def test_a_potential_gives_the_force_at_rest(state):
     if len(source) == len(system.bodies):
         pytest.skip("this force has no potential")
     assert_close(term(state, "motion", "f"), -derivative(potential, state.q)[0] @ rates_of_each_velocity(state))
+
+
+def test_power_is_what_a_force_brings_into_the_energy(state):
+    """Kinetic and potential energy together change by the work of the forces, and as the potentials do."""
+    if state.is_joint:
+        return
+    state.evaluate("output", T)
+    potential, power = (state.system.term("output", name).source for name in ("potential", "power"))
+    brought = state.values["output"][power].sum()
+
+    def stored():
+        state.evaluate("output", T)
+        return np.array([state.values["output"][potential].sum()])
+
+    changing = derivative(stored, state.q)[0] @ rates(state)
+    assert_close(term(state, "motion", "f") @ state.u + changing, brought)
 
 
 def test_counters_have_the_rates_of_their_angles(state):

@@ -159,7 +159,7 @@ def test_a_slider_crank_loses_what_its_joints_rub_away(settings):
         (
             Fixed,
             {"radius": 0.1},
-            "rubbing.joint: found 'joint', which is of type fixed, expected a revolute or prismatic",
+            "rubbing.joint: found 'joint', which is of type fixed, expected a prismatic or revolute",
         ),
         (Revolute, {}, "rubbing.radius: found none for the revolute joint 'joint', expected the radius of its pin"),
         (Prismatic, {"joint": "rail"}, "rubbing.joint: found the unknown joint 'rail'"),

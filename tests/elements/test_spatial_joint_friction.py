@@ -102,7 +102,7 @@ def test_derivatives_by_position_velocity_and_reaction(joint):
     ("joint", "fields", "message"),
     [
         (spatial.Revolute, {}, "radius: found none for the revolute joint 'joint', expected the radius of its pin"),
-        (spatial.Fixed, {"radius": 1}, "which is of type fixed, expected a revolute, cylindrical, prismatic or spherical joint"),
+        (spatial.Fixed, {"radius": 1}, "which is of type fixed, expected a cylindrical, prismatic, revolute or spherical joint"),
         (spatial.Prismatic, {"thrust_radius": 1}, "thrust_radius: found one for the prismatic joint 'joint', expected"),
         (spatial.Spherical, {"radius": 1, "length": 1}, "length: found one for the spherical joint 'joint', expected none"),
     ],

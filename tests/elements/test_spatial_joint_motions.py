@@ -297,5 +297,5 @@ def test_an_equation_that_is_not_linear_in_velocities_is_refused():
     model = stiffmbs.Model()
     model.add("sled", stiffmbs.Body(mass=1, inertia=1, velocity=(1, 0)))
     model.add("speed", stiffmbs.VelocityEquation(zero="sled.vx^2 + sled.vy^2 - 1"))
-    with pytest.raises(stiffmbs.InputError, match=r"speed: found .* expected one that is linear in velocities"):
+    with pytest.raises(stiffmbs.InputError, match=r"speed: .*found .* expected one that is linear in velocities"):
         stiffmbs.run(model, duration=0.1)

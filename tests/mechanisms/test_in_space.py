@@ -7,8 +7,10 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs import InputError, spatial
 from stiffmbs.commands.main import main
+from stiffmbs.describe.element import Element
 from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.describe.scene import read_scene
+from stiffmbs.describe.spatial import model as spatial_model
 from stiffmbs.jobs.run import prepare
 
 from ..conftest import EXAMPLES
@@ -234,8 +236,14 @@ def test_assembly_moves_bodies_as_in_the_plane(kind):
     np.testing.assert_allclose(np.sin(np.arctan2(there[:, 6], there[:, 3]) - place[:, 2] / 2), 0, atol=3e-4)
 
 
-def test_every_kind_is_among_them():
-    assert set(CASES) == {*JOINTS, *FORCES}
+@pytest.mark.parametrize(("plane", "space"), [(JOINTS, spatial_model.JOINTS), (FORCES, spatial_model.FORCES)])
+def test_a_kind_without_a_case_has_a_namesake_with_the_same_fields(plane, space):
+    """A Python function stands in no file; `tests/elements/test_python_functions.py` has its case."""
+    for kind, element in plane.items():
+        if element.in_space is Element.in_space and kind in space:
+            assert not {*element.model_fields} - {*space[kind].model_fields}
+        elif element.in_space is not Element.in_space:
+            assert kind in {*CASES, "python_force"}
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import stiffmbs
 from stiffmbs import spatial
 from stiffmbs.describe.model import FORCES
-from stiffmbs.structure.transmitted import COMPONENTS, TRANSMITTED
+from stiffmbs.structure.transmitted import COMPONENTS
 
 from ..spatial_loops import door, ground, parallelogram
 from . import test_redundancy as plane
@@ -33,7 +33,7 @@ def elastic(model, case, stiffness, damping=2e4):
         if name not in case.elastic:
             other.add(name, joint)
             continue
-        held = [c in TRANSMITTED[joint.kind] for c in COMPONENTS] if in_space else PLANAR[joint.kind]
+        held = [c in joint.transmits for c in COMPONENTS] if in_space else PLANAR[joint.kind]
         k, c = (tuple(float(h) * value for h in held) for value in (stiffness[name], damping))
         other.add(name, kind(i=joint.i, j=joint.j, stiffness=k, damping=c))
     return other

@@ -18,8 +18,7 @@ from ...compile.kind import sorted_out
 from ...compile.machine.cache import DIRECTORY_VARIABLE
 from ...compile.state import State
 from ...compile.system import System
-from ...jobs.load_scene import load_scene
-from ...jobs.warm import USUAL
+from ...jobs.usual_elements import usual_elements
 from ..benchmark import Row
 
 COPIES, ROUNDS = 1000, 50
@@ -31,7 +30,7 @@ def compile_first(element: str) -> float:
     import llvmlite.binding  # noqa: F401
     import sympy  # noqa: F401
 
-    scene = load_scene(USUAL[3])
+    scene = usual_elements(3).data()
     begun = time.process_time()
     kind, _ = sorted_out({**scene.joints, **scene.forces}[element].as_drawn(scene), scene)
     compile_usual(kind)
@@ -87,18 +86,18 @@ class ElementInSpace:
         return [self._row("")]
 
     def _row(self, told: str) -> Row:
-        state = State(_copied(compile_model(load_scene(USUAL[3])), self.element))
+        state = State(_copied(compile_model(usual_elements(3).data()), self.element))
         residual, jacobian = _each(state, "motion"), _each(state, "tangent")
         times = f"residual {residual * 1e6:.3f} us, Jacobian {jacobian * 1e6:.3f} us"
         return Row(self._kind(), times + told, 0.0, residual, False)
 
     def _kind(self) -> str:
-        scene = load_scene(USUAL[3])
+        scene = usual_elements(3).data()
         return {**scene.joints, **scene.forces}[self.element].kind
 
 
 def _elements() -> list[str]:
-    scene = load_scene(USUAL[3])
+    scene = usual_elements(3).data()
     return [*scene.joints, *scene.forces]
 
 

@@ -71,7 +71,7 @@ def _called_text() -> str:
     native = Path(__file__).parent / "native"
     return "\0".join(
         (native / f"{name}.py").read_text(encoding="utf-8")
-        for name in ("nonsmooth", "continuous_angle", "spline", "rotation_vector")
+        for name in ("nonsmooth", "continuous_angle", "spline", "rotation_vector", "python_call")
     )
 
 

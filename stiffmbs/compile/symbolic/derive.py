@@ -21,6 +21,7 @@ from ..kind import Kind
 from .continuous_angle import counting_rate
 from .frames import SymbolicElement
 from .losses import power_of_force, power_of_joint
+from .stated import Stated, stated_by_force, stated_by_joint
 from .symbols import Symbols, symbols_of
 from .variation import Summand, Variation
 
@@ -108,18 +109,19 @@ def derive(kind: Kind) -> Derived:
 
 
 def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
-    e = symbols.element
-    C = sp.Matrix([sp.sympify(equation) for equation in kind.element.position(e)])  # type: ignore[attr-defined]
-    rates = sp.Matrix([sp.sympify(equation) for equation in kind.element.velocity(e)])  # type: ignore[attr-defined]
+    e, stated = symbols.element, stated_by_joint(kind, symbols)
+    C, rates = sp.Matrix(stated.position), sp.Matrix(stated.velocity)
     C_q = e.by_coordinates(C)
     V = sp.Matrix([*(e.rate(equation) for equation in C), *rates])
     J = e.by_velocities(V)
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
-            raise InputError(f"found equation {row + 1} of {J.rows}, which depends on no coordinate of a body")
+            raise InputError(
+                f"{kind.element.__name__}: found equation {row + 1} of {J.rows}, which depends on no coordinate of a body"
+            )
         if any(e.depends(entry, e.velocities) for entry in J[row, :]):
             raise InputError(
-                f"found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
+                f"{kind.element.__name__}: found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
                 "in velocities"
             )
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
@@ -131,8 +133,8 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "gamma": -turning,
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_velocities(turning),
-        "reaction": _reaction(kind, e, -force),
-        "switch": sp.Matrix(symbols.switches), "power": sp.Matrix([power]),
+        "reaction": _reaction(stated, e, -force),
+        "switch": sp.Matrix(stated.switches), "power": sp.Matrix([power]),
         "argument": _arguments(symbols),
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
@@ -153,16 +155,15 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
-    e = symbols.element
-    f = e.work_by_velocities(kind.element.powers(e))  # type: ignore[attr-defined]
+    e, stated = symbols.element, stated_by_force(kind, symbols)
+    f = e.work_by_velocities(stated.powers)
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
-    power, losses = power_of_force(kind, symbols)
+    power, losses = power_of_force(stated, symbols)
     terms = {
         "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),
         "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
-        "reaction": _reaction(kind, e, f), "potential": sp.Matrix([kind.element.potential(e)]),  # type: ignore[attr-defined]
-        "switch": sp.Matrix([*symbols.switches, *kind.element.switches(e)]),  # type: ignore[attr-defined]
-        "limit": sp.Matrix(kind.element.limits(e)),  # type: ignore[attr-defined]
+        "reaction": _reaction(stated, e, f), "potential": sp.Matrix([stated.potential]),
+        "switch": sp.Matrix(stated.switches), "limit": sp.Matrix(stated.limits),
         "argument": _arguments(symbols), "power": sp.Matrix([power]),
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
@@ -200,10 +201,10 @@ def multipliers(name: str, count: int) -> sp.Matrix:
     return sp.Matrix([sp.Symbol(f"{name}{k}", real=True) for k in range(count)])
 
 
-def _reaction(kind: Kind, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
+def _reaction(stated: Stated, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
     """Force and torque about the element's point, of the generalised force on its first body."""
     first = e.frames[0]
-    return first.wrench(force[: len(first.u), :], sp.Matrix(kind.element.point(e)))  # type: ignore[attr-defined]
+    return first.wrench(force[: len(first.u), :], sp.Matrix(stated.point))
 
 
 def _symmetric(second: sp.Matrix) -> sp.Matrix:

@@ -39,6 +39,11 @@ class Derivatives:
         if meaning is not None:
             self.meanings[symbol] = meaning
 
+    def defined(self) -> frozenset[sp.Symbol]:
+        """The symbols that stand for something, and those that they change with."""
+        changing = (symbol for by in self._chain.values() for symbol in by)
+        return frozenset((*self._chain, *self.meanings, *changing))
+
     def named(self, x: sp.Expr) -> sp.Expr:
         """A symbol that stands for an expression, and is differentiated as that; numbers and symbols stay as they are.
 

@@ -10,12 +10,16 @@ import sympy as sp
 
 from .continuous_angle import CountedAngle, counter
 from .differentiate import Derivatives, Way
+from .read import read
 from .relative_rotation import Tilt, Turn, product
 from .spline import integral
 
 COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
 
+
+OF_ELEMENTS = ("type", "frames", "angles", "corners", "derivatives", "_turns", "kind", "_joint", "_coordinate", "lam")
+"""Attributes that are no fields."""
 
 Work = tuple[sp.Expr, sp.Expr]
 """An effort, and what it does work on: a function of the pose, or its rate."""
@@ -32,6 +36,8 @@ class SymbolicElement:
         The bodies, in the order of `Element.bodies`.
     angles : list of expressions
         Those that count whole turns, in the order of their counters.
+    corners : list of expressions
+        What changes its sign at corners of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
     derivatives : Derivatives
         Of expressions in its symbols.
     """
@@ -41,9 +47,14 @@ class SymbolicElement:
     def __init__(self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives) -> None:
         self.frames = frames
         self.angles: list[sp.Expr] = []
+        self.corners: list[sp.Expr] = []
         self.derivatives = derivatives
         self._turns: dict[tuple[Any, Any], Turn] = {}
         self.__dict__.update(fields)
+
+    def __getattr__(self, name: str) -> Any:
+        known = (*(own for own in self.__dict__ if own not in OF_ELEMENTS), "t", "rate", "distance", "angle", "named")
+        raise AttributeError(f"found e.{name}, expected one of e.{', e.'.join(known)}")
 
     @property
     def q(self) -> sp.Matrix:
@@ -62,11 +73,19 @@ class SymbolicElement:
         """By what functions of the velocities are differentiated."""
         return [symbol for frame in self.frames for symbol in frame.velocities]
 
+    def read(self, x: Any) -> sp.Expr:
+        """An expression of an element's equations as kernels can have it; its corners are noted."""
+        return read(x, self._note)
+
+    def _note(self, corner: sp.Expr) -> None:
+        if corner not in self.corners:
+            self.corners.append(corner)
+
     def rate(self, x: Any) -> Any:
         """Total time derivative of an expression, or of each in a matrix, at constant velocities."""
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
-        x = sp.sympify(x)
+        x = self.read(x)
         partial = self.derivatives.partial
         moving = (
             rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
@@ -79,7 +98,7 @@ class SymbolicElement:
         """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.named)
-        return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(sp.sympify(x))
+        return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(self.read(x))
 
     def turn(self, i: Any, j: Any) -> Turn:
         """How a marker is turned against another one, of another body in space."""
@@ -208,7 +227,17 @@ class ReferredJoint(SymbolicElement):
         self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
         count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
-        self.angles = of.angles
+        self.angles, self.corners = of.angles, of.corners
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The names of its coordinates."""
+        return tuple(self._joint.coordinates)
+
+    @cached_property
+    def loads(self) -> Any:
+        """What presses its surfaces."""
+        return self._joint.loads(self)
 
     @cached_property
     def coordinate(self) -> Any:

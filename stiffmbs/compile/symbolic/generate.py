@@ -13,6 +13,7 @@ from ..terms import KERNEL_ARGUMENTS, TERM_SETS
 from .continuous_angle import CountedAngle, counter
 from .derive import Derived
 from .nonsmooth import CorneredBase, Step
+from .python_call import PythonCall
 from .relative_rotation import Unwound
 from .spline import Spline
 
@@ -36,6 +37,8 @@ HEADER = (
     + "\n\n"
 )
 """What kernels may call."""
+PYTHON = "from stiffmbs.compile.machine.native.python_call import python_call\n"
+"""Before the header of kernels that call Python functions."""
 
 
 class _Printer(PythonCodePrinter):
@@ -63,6 +66,11 @@ class _Printer(PythonCodePrinter):
     def _print_Spline(self, expr: Spline) -> str:
         x, table, order = expr.args
         return f"spline(number, {self._print(table)}, {self._print(x)}, {int(order)})"
+
+    def _print_PythonCall(self, expr: PythonCall) -> str:
+        address, count, output, by, *arguments = expr.args
+        given = [f"{x}.0" if x.is_Integer else self._print(x) for x in arguments]
+        return f"python_call({address}, {int(count)}, {int(output)}, {int(by)}, {', '.join(given)})"
 
     def _print_Unwound(self, expr: Unwound) -> str:
         h, order = expr.args
@@ -161,4 +169,5 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
         for (k, entries, n, _), result in zip(outputs, results, strict=True)
     ]
     lines = [f"def {name}({KERNEL_ARGUMENTS}):", "    for e in range(count):", *(f"        {line}" for line in body)]
-    return HEADER + "\n".join(lines) + "\n"
+    header = PYTHON + HEADER if any("python_call(" in line for line in body) else HEADER
+    return header + "\n".join(lines) + "\n"

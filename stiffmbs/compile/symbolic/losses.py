@@ -12,8 +12,8 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from ..kind import Kind
 from .frames import SymbolicElement
+from .stated import Stated
 from .symbols import Symbols
 
 NO_VALUE = (sp.nan, sp.zoo, sp.oo, -sp.oo)
@@ -35,7 +35,7 @@ def power_of_joint(e: SymbolicElement, V: sp.Matrix, lam: sp.Matrix) -> sp.Expr:
     return sp.Add(*(factor * without(e, row, at_rest) for factor, row in zip(lam, V, strict=True)))
 
 
-def power_of_force(kind: Kind, symbols: Symbols) -> tuple[sp.Expr, list[int] | None]:
+def power_of_force(stated: Stated, symbols: Symbols) -> tuple[sp.Expr, list[int] | None]:
     """A force's power beyond the rate of its potential, and which of its numbers must be zero for it to be zero.
 
     Returns
@@ -45,9 +45,7 @@ def power_of_force(kind: Kind, symbols: Symbols) -> tuple[sp.Expr, list[int] | N
     losses : list of int or None
         Numbers of the element, in the order of `ElementData.numbers`; None where nothing makes it zero for certain.
     """
-    e, element = symbols.element, kind.element
-    powers = [(sp.sympify(Q), sp.sympify(v)) for Q, v in element.powers(e)]  # type: ignore[attr-defined]
-    potential = sp.sympify(element.potential(e))  # type: ignore[attr-defined]
+    e, powers, potential = symbols.element, stated.powers, stated.potential
     work = sp.Add(*(Q * v for Q, v in powers))
     if potential == 0:
         return (sp.Integer(0), []) if _vanishes(work) else (work, None)

@@ -15,9 +15,11 @@ from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Corners,
 from ...describe.formula.text import evaluate
 from ..kind import OWN, Kind, Shape
 from . import nonsmooth, planar_frames, spatial_frames
+from .continuous_angle import counter
 from .differentiate import Derivatives
 from .frames import ReferredJoint, SymbolicElement
 from .measures import measure, own_coordinate
+from .python_call import python_law
 from .spline import Spline
 
 NARROW: dict[type[sp.Basic], str] = {
@@ -68,6 +70,14 @@ class Symbols:
     joint_lam: list[list[sp.Symbol]] = field(default_factory=list)
     switches: list[sp.Expr] = field(default_factory=list)
     laws: list[Law] = field(default_factory=list)
+
+    def known(self) -> frozenset[sp.Symbol]:
+        """All symbols that mean something."""
+        e = self.element
+        of_bodies = (s for f in e.frames for s in (*f.q, *f.u, *f.a, *f.turn, *f.pose, *f.velocities))
+        of_joints = (symbol for lam in self.joint_lam for symbol in lam)
+        counters = map(counter, range(len(e.angles)))
+        return frozenset((e.t, *self.numbers, *of_bodies, *of_joints, *counters)) | e.derivatives.defined()
 
     def note_switch(self, corner: sp.Expr) -> None:
         """Note what changes its sign at a corner, if that is in the state."""
@@ -131,6 +141,8 @@ class _Builder:
             case ("table",):
                 offset = self.fresh(name, integer=True)
                 return lambda x: self.spline(offset, x)
+            case ("python",):
+                return python_law(self.fresh(name), self.symbols.element.read)
             case ("formula", text, counts, measures):
                 return self.formula(name, text, counts, measures)
             case ("joint", element, fields, slot, coordinate):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic, Literal, TypeVar
+from collections.abc import Mapping
+from typing import Any, ClassVar, Generic, TypeVar
 
 from pydantic import Field
 
@@ -18,7 +19,8 @@ M = TypeVar("M", bound=MarkerReference)
 class AngleSpring(Spring, Generic[M]):
     """Base of the torsion springs of the plane and of space (it has no kind: scenes name its subclasses)."""
 
-    type: Literal["torsion_spring"] = "torsion_spring"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"stiffness": 1, "damping": 1},)
+
     i: M = Field(description="marker of the first body, on which the torque is reported")
     j: M = Field(description="marker of the second body")
     stiffness: si.TorsionalStiffness = Field(0.0, description="k, N m/rad")

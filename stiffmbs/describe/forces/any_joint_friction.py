@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import Any
 
 from pydantic import Field
 
@@ -11,35 +11,46 @@ from ..element import Joint, JointReference, Symbolic
 from ..units import si
 from .friction import Friction
 
+PIN, GUIDE, SLEEVE, BALL = ("angle",), ("displacement",), ("displacement", "angle"), ()
+"""Sorts of joints, by their coordinates."""
+
 
 class RubbingJoint(Friction):
     """Base of the frictions in joints of the plane and of space (it has no kind: scenes name its subclasses).
 
     The multipliers that the pressure is made of are those of the same instant, friction included.
 
-    Attributes
-    ----------
-    rubbing, round : tuples of str
-        The kinds of joints that it is for, and those of them whose surfaces have a radius.
+    A joint is of a sort by its coordinates: a pin, guide, sleeve or ball.
     """
 
-    rubbing: ClassVar[tuple[str, ...]] = ()
-    round: ClassVar[tuple[str, ...]] = ()
-
-    type: Literal["joint_friction"] = "joint_friction"
     joint: JointReference = Field(description="the joint")
     friction: si.NumberOrZero = Field(description="mu_d, coefficient of friction when sliding fast")
     radius: si.LengthOrZero = Field(0.0, description="R of a pin or ball, m")
     length: si.PositiveLength | None = Field(None, description="of a guide or bearing, for its moment, m")
 
     def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        kind, known = joints[self.joint.joint].kind, self.rubbing
-        if kind not in known:
-            expected = f"{', '.join(known[:-1])} or {known[-1]}"
-            yield "joint", f"found '{self.joint}', which is of type {kind}, expected a {expected} joint"
-        if kind in self.round and self.radius == 0:
-            part = "ball" if kind == "spherical" else "pin"
-            yield "radius", f"found none for the {kind} joint '{self.joint}', expected the radius of its {part}"
+        joint = joints[self.joint.joint]
+        if type(joint).loads is Joint.loads:
+            *others, last = self.rubbing()
+            expected = f"{', '.join(others)} or {last}"
+            yield "joint", f"found '{self.joint}', which is of type {joint.kind}, expected a {expected} joint"
+        elif joint.coordinates in (PIN, BALL) and self.radius == 0:
+            part = "pin" if joint.coordinates == PIN else "ball"
+            yield "radius", f"found none for the {joint.kind} joint '{self.joint}', expected the radius of its {part}"
+
+    @classmethod
+    def known(cls) -> Mapping[str, Any]:
+        """The joints of its family, by kind."""
+        raise NotImplementedError
+
+    @classmethod
+    def rubbing(cls, *sorts: tuple[str, ...]) -> list[str]:
+        """The kinds of joints that can have friction, or those of them of some sorts."""
+        return [
+            kind
+            for kind, joint in cls.known().items()
+            if joint.loads is not Joint.loads and (not sorts or joint.coordinates in sorts)
+        ]
 
     @staticmethod
     def point(e: Symbolic) -> Any:

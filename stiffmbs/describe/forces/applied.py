@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field
@@ -9,6 +10,14 @@ from pydantic import Field
 from ..element import Force, Symbolic
 from ..formula.field import ForceOfMotion, TorqueOfMotion
 from ..marker import Marker
+
+
+def force_at(fx: Any, fy: Any, i: Any, j: Any = None) -> list[tuple[Any, Any]]:
+    """The efforts of a force on the body of i at i's point; with j the opposite one on j's body at the same point."""
+    if j is None:
+        return [(fx, i.point[0]), (fy, i.point[1])]
+    d = i.point - j.point
+    return [(fx * axis[0] + fy * axis[1], d.dot(axis)) for axis in (j.axis, j.normal)]
 
 
 class AppliedForce(Force):
@@ -30,8 +39,8 @@ class AppliedForce(Force):
     """
 
     kind: ClassVar[str] = "force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"axes": "body"}, {"j": "b"})
 
-    type: Literal["force"] = "force"
     i: Marker = Field(description="marker at which the force acts")
     j: Marker | None = Field(None, description="a second body, which takes the opposite force at the same point")
     force: tuple[ForceOfMotion, ForceOfMotion] = Field(description="components along x and y, N: numbers or formulas")
@@ -42,16 +51,18 @@ class AppliedForce(Force):
         """The components on the point's coordinates in ground axes, or relative to j along j's axes."""
         along, across = e.force
         fx, fy = along * e.i.axis + across * e.i.normal if e.axes == "body" else (along, across)
-        if e.j is None:
-            return [(fx, e.i.point[0]), (fy, e.i.point[1])]
-        d = e.i.point - e.j.point
-        return [(fx * axis[0] + fy * axis[1], d.dot(axis)) for axis in (e.j.axis, e.j.normal)]
+        return force_at(fx, fy, e.i, e.j)
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
         if e.j is not None or e.axes == "body" or not all(e.is_constant(component) for component in e.force):
             return 0
         return -e.force[0] * e.i.point[0] - e.force[1] * e.i.point[1]
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import force
+
+        return force(self, angles)
 
 
 class AppliedTorque(Force):
@@ -63,8 +74,8 @@ class AppliedTorque(Force):
     """
 
     kind: ClassVar[str] = "torque"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"j": "b"})
 
-    type: Literal["torque"] = "torque"
     i: Marker = Field(description="marker of the body on which the torque acts")
     j: Marker | None = Field(None, description="marker of a second body, which takes the opposite torque")
     torque: TorqueOfMotion = Field(description="about z, N m: a number or a formula")
@@ -81,3 +92,8 @@ class AppliedTorque(Force):
     def angle(e: Symbolic) -> Any:
         """The angle on which the torque does work."""
         return e.i.angle - (e.j.angle if e.j is not None else 0)
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import torque
+
+        return torque(self, angles)

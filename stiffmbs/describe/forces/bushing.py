@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, WithJsonSchema, field_validator
@@ -53,8 +54,11 @@ class Bushing(Force):
     """
 
     kind: ClassVar[str] = "bushing"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"stiffness": (1, 1, 1), "damping": (1, 1, 1)},
+        {"stiffness": (1, 1, 1), "damping": (1, 1, 1), "axes": "ground"},
+    )
 
-    type: Literal["bushing"] = "bushing"
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")
     j: Marker = Field(description="marker of the second body, whose direction orients the bushing")
     stiffness: Stiffness = Field(NONE, validate_default=True, description="K: x, y, angle, or a symmetric matrix")
@@ -102,6 +106,11 @@ class Bushing(Force):
         if None in of_laws:
             return 0
         return sum(elastic[k] * s[k] / 2 - e.preload[k] * s[k] for k in range(3)) + sum(of_laws)
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import bushing
+
+        return bushing(self, angles)
 
 
 def _laws(e: Symbolic) -> tuple[Any, Any, Any]:

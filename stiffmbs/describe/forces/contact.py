@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -30,8 +31,12 @@ class Contact(ContactLaw):
     """
 
     kind: ClassVar[str] = "contact"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"radius": 0.1},
+        {"radius": 0.1, "friction": 0.3},
+        {"radius": 0.1, "surface": "circle", "surface_radius": 0.1},
+    )
 
-    type: Literal["contact"] = "contact"
     i: Marker = Field(description="the point, or the circle's centre")
     j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")
     radius: si.LengthOrZero = Field(0.0, description="of the circle about i, m; 0 for a point")
@@ -80,3 +85,8 @@ class Contact(ContactLaw):
         arm = outward * distance - e.radius
         across = outward / distance
         return [(across * d[1], d[0]), (-across * d[0], d[1]), (e.radius, e.i.angle), (arm, e.j.angle)]
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import contact
+
+        return contact(self, angles)

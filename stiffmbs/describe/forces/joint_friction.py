@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from ..element import Symbolic
-from .any_joint_friction import RubbingJoint
-from .friction import Friction, magnitude
+from .any_joint_friction import PIN, RubbingJoint
+from .friction import Friction
 
 
 class JointFriction(RubbingJoint):
@@ -21,21 +22,29 @@ class JointFriction(RubbingJoint):
     """
 
     kind: ClassVar[str] = "joint_friction"
-    rubbing: ClassVar[tuple[str, ...]] = ("revolute", "prismatic")
-    round: ClassVar[tuple[str, ...]] = ("revolute",)
+    dimensions: ClassVar[tuple[int, ...]] = (2,)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"joint": "pin", "friction": 0.1, "radius": 0.01},
+        {"joint": "slider", "friction": 0.1},
+        {"joint": "slider", "friction": 0.1, "static_friction": 0.2},
+    )
+
+    @classmethod
+    def known(cls) -> Mapping[str, Any]:
+        from ..model import JOINTS
+
+        return JOINTS
 
     @classmethod
     def efforts(cls, e: Symbolic) -> list[tuple[Any, Any]]:
         """-mu(v) N, times R at a pin, on the joint's coordinate."""
         coordinate = e.joint.coordinate
-        arm = e.radius if e.joint.kind == "revolute" else 1
+        arm = e.radius if e.joint.coordinates == PIN else 1
         v = arm * e.rate(coordinate)
         return [(-Friction.coefficient(e, v) * cls.pressure(e) * arm, coordinate)]
 
     @classmethod
     def pressure(cls, e: Symbolic) -> Any:
         """N, the force that presses the rubbing surfaces."""
-        if e.joint.kind == "revolute":
-            return magnitude(*e.joint.lam)
-        normal, moment = e.joint.lam
-        return magnitude(normal) + (magnitude(moment) / (e.length / 2) if e.length is not None else 0)
+        load = e.joint.loads
+        return load.across + (load.bending / (e.length / 2) if e.length is not None else 0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from pydantic import Field
 
@@ -20,7 +20,6 @@ M = TypeVar("M", bound=MarkerReference)
 class ForceAlongLine(Force, Generic[M]):
     """Base of the line forces of the plane and of space (it has no kind: scenes name its subclasses)."""
 
-    type: Literal["line_force"] = "line_force"
     i: M = Field(description="marker of the first body, on which the force is reported")
     j: M = Field(description="marker of the second body")
     force: ForceOfMotion = Field(

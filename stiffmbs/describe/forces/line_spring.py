@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from pydantic import Field
 
@@ -22,7 +22,11 @@ M = TypeVar("M", bound=MarkerReference)
 class LineSpring(Spring, Generic[M]):
     """Base of the spring-dampers of the plane and of space (it has no kind: scenes name its subclasses)."""
 
-    type: Literal["spring_damper"] = "spring_damper"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"stiffness": 1, "damping": 1, "free_length": 1},
+        {"spring_law": {"table": [[-1, -1], [0, 0], [1, 1]]}, "damping": 1},
+    )
+
     i: M = Field(description="marker of the first body, on which the force is reported")
     j: M = Field(description="marker of the second body")
     stiffness: si.Stiffness = Field(0.0, description="k, N/m")

@@ -26,3 +26,8 @@ class TorsionSpring(AngleSpring[Marker]):
     @staticmethod
     def angle(e: Symbolic) -> Any:
         return e.i.angle - e.j.angle
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import torsion_spring
+
+        return torsion_spring(self, angles)

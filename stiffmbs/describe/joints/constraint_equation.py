@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -21,8 +22,8 @@ class ConstraintEquation(KeptAtZero):
     """
 
     kind: ClassVar[str] = "equation"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"zero": "a.x"},)
 
-    type: Literal["equation"] = "equation"
     zero: Annotated[tuple[OfPosition, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, that the joint keeps at zero"
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -24,8 +25,11 @@ class Coupler(Relation):
 
     kind: ClassVar[str] = "coupler"
     equations: ClassVar[tuple[str, ...]] = ("ratio",)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"joint_1": "pin", "joint_2": "second_pin"},
+        {"joint_1": "slider", "joint_2": "second_slider"},
+    )
 
-    type: Literal["coupler"] = "coupler"
     joint_1: JointReference = Field(description="joint with the coordinate s_1")
     joint_2: JointReference = Field(description="joint with the coordinate s_2")
     scale: si.ValueNotZero = Field(description="ds_1/ds_2, in units of s_1 over units of s_2 (m, rad)")

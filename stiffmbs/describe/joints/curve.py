@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Generic, Literal, Self, TypeVar
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
@@ -25,8 +26,11 @@ class Curve(Joint, Generic[M]):
     """Base of the points on curves of the plane and of space (it has no kind: scenes name its subclasses)."""
 
     equations: ClassVar[tuple[str, ...]] = ("normal",)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"y": {"table": [[0, 0], [1, 0.1], [2, 0]]}},
+        {"radius": {"table": [[0, 0.1], [3, 0.2], [TURN, 0.1]], "ends": "periodic"}},
+    )
 
-    type: Literal["point_on_curve"] = "point_on_curve"
     i: M = Field(description="marker of the body with the point, on which the reaction is reported")
     j: M = Field(description="marker in whose axes the curve is given")
     y: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(

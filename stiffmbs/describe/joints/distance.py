@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from ..marker import Marker
 from .rod import Rod
@@ -19,5 +19,4 @@ class Distance(Rod[Marker]):
     """
 
     kind: ClassVar[str] = "distance"
-
-    type: Literal["distance"] = "distance"
+    elastic: ClassVar[str] = "spring_damper"

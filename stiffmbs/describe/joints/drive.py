@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from types import FunctionType
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
@@ -44,8 +44,16 @@ class Drive(Joint):
 
     kind: ClassVar[str] = "drive"
     equations: ClassVar[tuple[str, ...]] = ("motion",)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        *({"joint": "pin", "position": law} for law in ("2*t", "0.1 + 2*t", "0.1 - 2*t", "0.1*sin(2*t)", "0.1")),
+        {"joint": "pin", "position": {"table": [[0, 0], [1, 0.1], [2, 0]]}},
+        {"joint": "pin", "velocity": "2"},
+        *({"joint": "slider", "position": law} for law in ("0.1*sin(2*t)", "2*t")),
+        {"joint": "slider", "velocity": "0.1"},
+        {"coordinate": "a.x", "i": "a", "j": "b", "position": "0.1*sin(2*t)"},
+        {"coordinate": "a.x", "i": "a", "j": "b", "velocity": "0.1"},
+    )
 
-    type: Literal["drive"] = "drive"
     i: MarkerReference | None = Field(
         None, description="marker of the body on which the action of a driven coordinate is reported"
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -18,8 +18,9 @@ class Fixed(Joint):
 
     kind: ClassVar[str] = "fixed"
     equations: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
+    elastic: ClassVar[str] = "bushing"
+    keeps_in_plane: ClassVar[bool] = True
 
-    type: Literal["fixed"] = "fixed"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -28,7 +28,6 @@ class Gear(Relation):
     wanted = {"joint_1": "angle", "joint_2": "angle"}
     carried: ClassVar[bool] = True
 
-    type: Literal["gear"] = "gear"
     joint_1: JointReference = Field(description="revolute joint of wheel 1 (marker i), on which the torque is reported")
     joint_2: JointReference = Field(description="revolute joint of wheel 2 (marker i), in the same carrier (marker j)")
     ratio: si.NumberNotZero = Field(description="teeth of wheel 2 over teeth of wheel 1, below zero for internal teeth")

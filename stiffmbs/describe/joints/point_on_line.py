@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -20,8 +20,8 @@ class PointOnLine(Joint):
     kind: ClassVar[str] = "point_on_line"
     equations: ClassVar[tuple[str, ...]] = ("normal",)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["point_on_line"] = "point_on_line"
     i: Marker = Field(description="marker of the body with the pin, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line")
 
@@ -33,3 +33,8 @@ class PointOnLine(Joint):
     def displacement(e: Symbolic) -> Any:
         """The displacement of the pin along the line, from marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.joints import point_on_line
+
+        return point_on_line(self, angles)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ..element import Joint, Symbolic
+from ..forces.friction import magnitude
+from ..loads import Loads
 from ..marker import Marker
 
 
@@ -22,8 +24,9 @@ class Prismatic(Joint):
     kind: ClassVar[str] = "prismatic"
     equations: ClassVar[tuple[str, ...]] = ("normal", "angle")
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+    elastic: ClassVar[str] = "bushing"
+    keeps_in_plane: ClassVar[bool] = True
 
-    type: Literal["prismatic"] = "prismatic"
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line to slide along")
 
@@ -35,3 +38,13 @@ class Prismatic(Joint):
     def displacement(e: Symbolic) -> Any:
         """The displacement of marker i along the axis of marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        normal, moment = e.lam
+        return Loads(across=magnitude(normal), bending=magnitude(moment))
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.joints import prismatic
+
+        return prismatic(self, angles)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -28,7 +28,6 @@ class RackAndPinion(Relation):
     wanted = {"rack": "displacement", "pinion": "angle"}
     carried: ClassVar[bool] = True
 
-    type: Literal["rack_and_pinion"] = "rack_and_pinion"
     rack: JointReference = Field(description="prismatic joint of the rack (marker i), on which the force is reported")
     pinion: JointReference = Field(
         description="revolute joint of the pinion (marker i), in the same housing (marker j)"

@@ -47,3 +47,8 @@ class Relation(KeptAsDrawn):
                 f"found marker j of '{second}' on '{other}' and that of '{first}' on '{carrier}', expected both "
                 "on the carrier, the body in which both turn or slide",
             )
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.joints import relation
+
+        return relation(self, angles)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ..element import Joint, Symbolic
+from ..forces.friction import magnitude
+from ..loads import Loads
 from ..marker import Marker
 
 
@@ -21,8 +23,9 @@ class Revolute(Joint):
     kind: ClassVar[str] = "revolute"
     equations: ClassVar[tuple[str, ...]] = ("x", "y")
     coordinates: ClassVar[tuple[str, ...]] = ("angle",)
+    elastic: ClassVar[str] = "bushing"
+    keeps_in_plane: ClassVar[bool] = True
 
-    type: Literal["revolute"] = "revolute"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
@@ -34,3 +37,7 @@ class Revolute(Joint):
     def angle(e: Symbolic) -> Any:
         """The angle of marker i against marker j."""
         return e.i.angle - e.j.angle
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        return Loads(across=magnitude(*e.lam))

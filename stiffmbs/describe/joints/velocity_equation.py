@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, field_validator
 
@@ -26,8 +27,8 @@ class VelocityEquation(KeptAtZero):
     """
 
     kind: ClassVar[str] = "velocity_equation"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"zero": "a.vy"},)
 
-    type: Literal["velocity_equation"] = "velocity_equation"
     zero: Annotated[tuple[OfMotion, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, linear in velocities, that the joint keeps at zero"
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import Field
 
@@ -51,6 +51,8 @@ class Marker(MarkerReference):
     orientation : Orientation
         Of the marker's axes against the body's.  The axis of a joint is z.
     """
+
+    dimensions: ClassVar[int | None] = 3
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(IDENTITY, description="of the axes against the body's; a joint's axis is z")

@@ -8,10 +8,11 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from ..element import Force, Joint, any_of, kinds
+from ..element import Force, Joint
 from ..fields import Described
 from ..forces.weight import weights
 from ..given import Law, Numbers
+from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
@@ -26,8 +27,8 @@ from .orientation import matrix, product, rotated
 from .output import COUNTED_ANGLES, Output, check_output
 from .output_field import Requested
 
-JOINTS = kinds(joints, Joint)
-FORCES = kinds(forces, Force)
+JOINTS = Kinds(joints, Joint, 3)
+FORCES = Kinds(forces, Force, 3)
 
 AnyJoint: Any = any_of(JOINTS)
 AnyForce: Any = any_of(FORCES)
@@ -115,7 +116,7 @@ class Model(ModelBuilder[SpatialData, Body, BodyHandle]):
     data_type = SpatialData
     body_type = Body
     handle_type = BodyHandle
-    kinds = JOINTS | FORCES
+    kinds = JOINTS, FORCES
 
     def __init__(self, name: str = "", gravity: Numbers = (0.0, 0.0, 0.0)) -> None:
         super().__init__(name, gravity)

@@ -99,6 +99,12 @@ class Code:
         self._entry.append(f"{name} = alloca {LLVM_TYPES[kind]}")
         return Value(kind, name)
 
+    def room(self, count: int) -> Value:
+        """Room for some doubles, as long as the function runs."""
+        name = f"%{self.name('room')}"
+        self._entry.append(f"{name} = alloca [{count} x double]")
+        return Value("floats", name)
+
     def load(self, variable: Value) -> Value:
         """The value of a variable."""
         return self.put_value(variable.kind, f"load {LLVM_TYPES[variable.kind]}, ptr {variable.text}")

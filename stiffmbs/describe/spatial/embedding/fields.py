@@ -6,9 +6,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ...element import Element, JointName
+from ....errors import InputError
+from ...element import Element, Joint, JointName
 from ...formula.field import Formula
 from ...marker import Marker
+from ..model import FORCES, JOINTS
 from .angles import Angles
 from .formulas import formula
 from .markers import Written, point, turned
@@ -32,6 +34,22 @@ def same(element: Element, angles: Angles, **others: Any) -> Written:
         if name != "type" and name not in others and value != field.default:
             written[field.alias or name] = plain(value, angles)
     return written | {name: value for name, value in others.items() if value is not None}
+
+
+def namesake(element: Element, angles: Angles) -> Written:
+    """The namesake in space.
+
+    Raises
+    ------
+    InputError
+        When there is none.
+    """
+    kinds = JOINTS if isinstance(element, Joint) else FORCES
+    if element.kind not in kinds:
+        raise InputError(
+            f"found the type {element.kind}, which has no counterpart in space, expected one of {', '.join(sorted(kinds))}"
+        )
+    return same(element, angles)
 
 
 def plain(value: Any, angles: Angles) -> Any:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from ....errors import InputError
+from ...python_function import PythonFunction
 from .angles import QUARTER, Angles
 from .fields import oriented, plain, same
 from .markers import Written, across, turned
@@ -81,12 +81,11 @@ def contact(element: Any, angles: Angles) -> Written:
     return written | {"type": "sphere_contact"}
 
 
-FORCES: dict[str, Callable[[Any, Angles], Written]] = {
-    **dict.fromkeys(("spring_damper", "line_force", "joint_friction"), same),
-    "force": force,
-    "torque": torque,
-    "torsion_spring": torsion_spring,
-    "bushing": bushing,
-    "contact": contact,
-}
-"""By the kind in the plane."""
+def python_force(element: Any, angles: Angles) -> Written:
+    """The function's three numbers among six."""
+    planar = element.function
+
+    def function(x: Any) -> list[Any]:
+        return _six(planar.function(x), 0.0)
+
+    return same(element, angles, function=PythonFunction(function, planar.derivatives))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from ....errors import InputError
@@ -40,19 +39,3 @@ def relation(joint: Relation, angles: Angles) -> Written:
         counted = name.coordinate_of(data.joints[name.joint]) == "angle"
         coordinate.coordinate = TURN * round(coordinate.coordinate / TURN) if counted else 0.0
     return same(joint, angles, offset=joint.offset - float(joint.relation(e)))
-
-
-JOINTS: dict[str, Callable[[Any, Angles], Written]] = {
-    **dict.fromkeys(
-        (
-            "revolute", "fixed", "distance", "point_on_curve", "drive", "equation", "velocity_equation",
-        ),
-        same,
-    ),
-    **dict.fromkeys(("gear", "rack_and_pinion", "coupler"), relation),
-    "prismatic": prismatic,
-    "point_on_line": point_on_line,
-}  # fmt: skip
-"""By the kind in the plane."""
-HOLDING = ("revolute", "prismatic", "fixed")
-"""Joints that hold a body in the plane of another one."""

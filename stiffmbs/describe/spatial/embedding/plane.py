@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 from ...marker import GROUND, MarkerReference
 from ...model import PlanarData
-from .joints import HOLDING
 
 
 def loose(data: PlanarData) -> Iterator[str]:
     """One body of each group of bodies that hold each other in a plane, but not in that of the ground."""
     leader = {body: body for body in (GROUND, *data.bodies)}
     for joint in data.joints.values():
-        if joint.kind in HOLDING:
+        if joint.keeps_in_plane:
             one, other = (leader[marker.body] for _, marker in joint.parts(MarkerReference))
             kept, dropped = (other, one) if other == GROUND else (one, other)
             leader = {body: kept if own == dropped else own for body, own in leader.items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from ....errors import InputError
@@ -14,9 +14,7 @@ from ...model_data import ModelData
 from ...scene import Scene
 from .angles import Angles
 from .fields import plain
-from .forces import FORCES
 from .formulas import formula
-from .joints import JOINTS
 from .markers import Written, placement, turned
 from .plane import loose
 
@@ -37,7 +35,7 @@ def scene_in_space(data: PlanarData) -> Written:
         For an element that has no counterpart in space; names it.
     """
     angles = Angles(data)
-    joints = _elements("joints", data.joints, JOINTS, angles)
+    joints = _elements("joints", data.joints, angles)
     joints |= {_free(f"{body}_in_plane", data): {"type": "planar", "i": body, "j": GROUND} for body in loose(data)}
     requests: Written = {name: formula(found, angles) for name, found in data.requests.items()}
     parts: Written = {
@@ -45,7 +43,7 @@ def scene_in_space(data: PlanarData) -> Written:
         "dimensions": 3,
         "gravity": [*data.gravity, 0] if any(data.gravity) else None,
         "joints": joints,
-        "forces": _elements("forces", data.forces, FORCES, angles),
+        "forces": _elements("forces", data.forces, angles),
         "requests": requests,
     }
     if isinstance(data, Scene):
@@ -83,18 +81,12 @@ def _markers(owner: str, own: Mapping[str, Any], angles: Angles) -> Written:
 def _elements(
     section: str,
     elements: Mapping[str, Element],
-    kinds: Mapping[str, Callable[[Any, Angles], Written]],
     angles: Angles,
 ) -> Written:
     found: Written = {}
     for name, element in elements.items():
-        if element.kind not in kinds:
-            raise InputError(
-                f"{section}.{name}: found the type {element.kind}, which has no counterpart in space, "
-                f"expected one of {', '.join(sorted(kinds))}"
-            )
         try:
-            found[name] = kinds[element.kind](element, angles)
+            found[name] = element.in_space(angles)
         except InputError as error:
             raise InputError(f"{section}.{name}: {error}") from None
     return found

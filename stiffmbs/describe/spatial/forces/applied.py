@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -52,8 +53,8 @@ class AppliedForce(Applied):
     """
 
     kind: ClassVar[str] = "force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"axes": "body"}, {"j": "b"})
 
-    type: Literal["force"] = "force"
     force: tuple[ForceOfMotion, ForceOfMotion, ForceOfMotion] = Field(
         description="components along x, y and z, N: numbers or formulas"
     )
@@ -82,8 +83,8 @@ class AppliedTorque(Applied):
     """
 
     kind: ClassVar[str] = "torque"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"j": "b"})
 
-    type: Literal["torque"] = "torque"
     torque: tuple[TorqueOfMotion, TorqueOfMotion, TorqueOfMotion] = Field(
         description="components along x, y and z, N m: numbers or formulas"
     )

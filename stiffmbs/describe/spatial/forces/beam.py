@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
@@ -35,7 +35,6 @@ class Beam(Elastic):
 
     kind: ClassVar[str] = "beam"
 
-    type: Literal["beam"] = "beam"
     length: si.PositiveLength = Field(description="L, without load, m")
     young: Modulus = Field(description="E, modulus of elasticity, N/m^2")
     shear_modulus: Modulus = Field(description="G, N/m^2")

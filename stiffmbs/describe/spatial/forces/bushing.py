@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field, field_validator
@@ -46,8 +47,11 @@ class Bushing(Elastic):
     """
 
     kind: ClassVar[str] = "bushing"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"stiffness": (1,) * 6, "damping": (1,) * 6},
+        {"stiffness": (1,) * 6, "damping": (1,) * 6, "axes": "ground"},
+    )
 
-    type: Literal["bushing"] = "bushing"
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     preload: Preload = Field(NOTHING, description="force and torque on i without deformation, N and N m")

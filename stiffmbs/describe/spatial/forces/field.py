@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 from pydantic import Field, field_validator
 
@@ -34,8 +35,11 @@ class FieldForce(Elastic):
     """
 
     kind: ClassVar[str] = "field"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"stiffness": (1,) * 6, "damping": (1,) * 6},
+        {"stiffness": ((1,) * 6,) * 6, "damping": ((1,) * 6,) * 6, "free": (1, 0, 0, 0, 0, 0)},
+    )
 
-    type: Literal["field"] = "field"
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     preload: Preload = Field(NOTHING, description="force and torque on i at s0, N and N m")

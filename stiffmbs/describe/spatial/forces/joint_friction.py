@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Joint, Symbolic
-from ...forces.any_joint_friction import RubbingJoint
+from ...forces.any_joint_friction import BALL, GUIDE, PIN, SLEEVE, RubbingJoint
 from ...units import si
-from ..loads import loads
 from ..wrench import Pairs, velocity
 
 
@@ -32,9 +31,13 @@ class JointFriction(RubbingJoint):
     """
 
     kind: ClassVar[str] = "joint_friction"
-
-    rubbing: ClassVar[tuple[str, ...]] = ("revolute", "cylindrical", "prismatic", "spherical")
-    round: ClassVar[tuple[str, ...]] = ("revolute", "spherical")
+    dimensions: ClassVar[tuple[int, ...]] = (3,)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"joint": "pin", "friction": 0.1, "radius": 0.01},
+        {"joint": "slider", "friction": 0.1},
+        {"joint": "ball", "friction": 0.1, "radius": 0.01},
+        {"joint": "sleeve", "friction": 0.1, "radius": 0.01},
+    )
 
     thrust_radius: si.PositiveLength | None = Field(
         None, description="of a revolute joint's collar, on which its thrust rubs, m"
@@ -45,35 +48,34 @@ class JointFriction(RubbingJoint):
 
     def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         yield from super().refused(joints)
-        kind = joints[self.joint.joint].kind
-        for field, fits in (
-            ("thrust_radius", ("revolute",)),
-            ("torsion_radius", ("prismatic",)),
-            ("length", ("revolute", "cylindrical", "prismatic")),
-        ):
-            if getattr(self, field) is not None and kind not in fits:
-                yield (
-                    field,
-                    f"found one for the {kind} joint '{self.joint}', expected none (for {', '.join(fits)} only)",
-                )
+        joint = joints[self.joint.joint]
+        for field, sorts in (("thrust_radius", (PIN,)), ("torsion_radius", (GUIDE,)), ("length", (PIN, SLEEVE, GUIDE))):
+            if getattr(self, field) is not None and joint.coordinates not in sorts:
+                fits = ", ".join(self.rubbing(*sorts))
+                yield field, f"found one for the {joint.kind} joint '{self.joint}', expected none (for {fits} only)"
+
+    @classmethod
+    def known(cls) -> Mapping[str, Any]:
+        from ..model import JOINTS
+
+        return JOINTS
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
         """Braking forces and torques on the rates of sliding."""
-        i, j, R, load = e.joint.i, e.joint.j, e.radius, loads(e.joint)
+        i, j, R, load = e.joint.i, e.joint.j, e.radius, e.joint.loads
         w = e.named(i.omega - j.omega)
-        if e.joint.kind == "spherical":
+        if e.joint.coordinates == BALL:
             drag = e.named(-cls.per_speed(e, *(R * w)) * load.across * R**2)
             return [(drag * part, part) for part in w]
         along, about = e.named((e.rate(i.point) - velocity(e, j, i.point)).dot(j.z)), e.named(w.dot(j.z))
         pressure = load.across + (load.bending / (e.length / 2) if e.length is not None else 0)
-        match e.joint.kind:
-            case "cylindrical":
-                drag = e.named(-cls.per_speed(e, R * about, along) * pressure)
-                return [(drag * along, along), (drag * R**2 * about, about)]
-            case "prismatic":
-                pressure += load.torsion / e.torsion_radius if e.torsion_radius is not None else 0
-                return [(-cls.coefficient(e, along) * pressure, along)]
+        if e.joint.coordinates == SLEEVE:
+            drag = e.named(-cls.per_speed(e, R * about, along) * pressure)
+            return [(drag * along, along), (drag * R**2 * about, about)]
+        if e.joint.coordinates == GUIDE:
+            pressure += load.torsion / e.torsion_radius if e.torsion_radius is not None else 0
+            return [(-cls.coefficient(e, along) * pressure, along)]
         braking = -cls.coefficient(e, R * about) * pressure * R
         if e.thrust_radius is not None:
             braking -= cls.coefficient(e, e.thrust_radius * about) * load.thrust * e.thrust_radius

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -28,8 +29,12 @@ class SphereContact(ContactLaw):
     """
 
     kind: ClassVar[str] = "sphere_contact"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"radius": 0.1},
+        {"radius": 0.1, "friction": 0.3},
+        {"radius": 0.1, "surface": "sphere", "surface_radius": 0.1, "friction": 0.3},
+    )
 
-    type: Literal["sphere_contact"] = "sphere_contact"
     i: Marker = Field(description="the point, or the sphere's centre")
     j: Marker = Field(description="on the plane, its z pointing out of the solid, or the surface's centre")
     radius: si.LengthOrZero = Field(0.0, description="of the sphere about i, m; 0 for a point")

@@ -31,7 +31,6 @@ class ConstantVelocity(Joint):
     kind: ClassVar[str] = "constant_velocity"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, "twist")
 
-    type: Literal["constant_velocity"] = "constant_velocity"
     i: Marker = Field(description="marker of the first shaft, z along it; the reaction is reported on it")
     j: Marker = Field(description="marker of the second shaft, z along it")
     axes: Literal["same", "opposite"] | None = Field(

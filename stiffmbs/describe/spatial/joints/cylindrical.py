@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Joint, Symbolic
+from ...forces.friction import magnitude
+from ...loads import Loads
 from ...model_data import ModelData
 from ..branches import drawn_apart
 from ..marker import Marker
@@ -26,8 +28,9 @@ class Cylindrical(Joint):
     kind: ClassVar[str] = "cylindrical"
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ALIGN)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement", "angle")
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "tx", "ty")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["cylindrical"] = "cylindrical"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along and to turn about")
 
@@ -47,3 +50,7 @@ class Cylindrical(Joint):
     def angle(e: Symbolic) -> Any:
         """The angle of marker i against marker j about z."""
         return angle_about_z(e)
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        return Loads(across=magnitude(*e.lam[:2]), bending=magnitude(*e.lam[2:]))

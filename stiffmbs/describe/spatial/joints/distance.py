@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from ...joints.rod import Rod
 from ..marker import Marker
@@ -18,5 +18,4 @@ class Distance(Rod[Marker]):
     """
 
     kind: ClassVar[str] = "distance"
-
-    type: Literal["distance"] = "distance"
+    elastic: ClassVar[str] = "spring_damper"

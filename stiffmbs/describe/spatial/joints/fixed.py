@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -25,8 +25,9 @@ class Fixed(Joint):
 
     kind: ClassVar[str] = "fixed"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ORIENT)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty", "tz")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["fixed"] = "fixed"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 

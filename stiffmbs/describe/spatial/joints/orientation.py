@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -27,8 +27,9 @@ class Orientation(Joint):
 
     kind: ClassVar[str] = "orientation"
     equations: ClassVar[tuple[str, ...]] = ORIENT
+    transmits: ClassVar[tuple[str, ...]] = ("tx", "ty", "tz")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["orientation"] = "orientation"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 

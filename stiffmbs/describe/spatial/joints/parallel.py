@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -24,8 +24,9 @@ class Parallel(Joint):
 
     kind: ClassVar[str] = "parallel"
     equations: ClassVar[tuple[str, ...]] = ALIGN
+    transmits: ClassVar[tuple[str, ...]] = ("tx", "ty")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["parallel"] = "parallel"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 

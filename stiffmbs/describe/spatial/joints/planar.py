@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -25,8 +25,9 @@ class Planar(Joint):
 
     kind: ClassVar[str] = "planar"
     equations: ClassVar[tuple[str, ...]] = (*IN_PLANE, *ALIGN)
+    transmits: ClassVar[tuple[str, ...]] = ("fz", "tx", "ty")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["planar"] = "planar"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the one to slide on")
 

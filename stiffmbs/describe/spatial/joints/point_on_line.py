@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -22,8 +22,9 @@ class PointOnLine(Joint):
     kind: ClassVar[str] = "point_on_line"
     equations: ClassVar[tuple[str, ...]] = ON_AXIS
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["point_on_line"] = "point_on_line"
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -21,8 +21,9 @@ class PointOnPlane(Joint):
 
     kind: ClassVar[str] = "point_on_plane"
     equations: ClassVar[tuple[str, ...]] = IN_PLANE
+    transmits: ClassVar[tuple[str, ...]] = ("fz",)
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["point_on_plane"] = "point_on_plane"
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the plane")
 

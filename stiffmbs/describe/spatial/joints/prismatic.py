@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Joint, Symbolic
+from ...forces.friction import magnitude
+from ...loads import Loads
 from ...model_data import ModelData
 from ..branches import drawn_askew
 from ..marker import Marker
@@ -25,8 +27,9 @@ class Prismatic(Joint):
     kind: ClassVar[str] = "prismatic"
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ORIENT)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "tx", "ty", "tz")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["prismatic"] = "prismatic"
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along")
 
@@ -41,3 +44,7 @@ class Prismatic(Joint):
     def displacement(e: Symbolic) -> Any:
         """The displacement of marker i along the z axis of marker j."""
         return along(e.i, e.j, e.j.z)
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        return Loads(across=magnitude(*e.lam[:2]), torsion=magnitude(e.lam[2]), bending=magnitude(*e.lam[3:]))

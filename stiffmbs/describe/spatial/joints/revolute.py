@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Joint, Symbolic
+from ...forces.friction import magnitude
+from ...loads import Loads
 from ...model_data import ModelData
 from ..branches import drawn_apart
 from ..marker import Marker
@@ -25,8 +27,9 @@ class Revolute(Joint):
     kind: ClassVar[str] = "revolute"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ALIGN)
     coordinates: ClassVar[tuple[str, ...]] = ("angle",)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["revolute"] = "revolute"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
@@ -41,3 +44,11 @@ class Revolute(Joint):
     def angle(e: Symbolic) -> Any:
         """The angle of marker i against marker j about z."""
         return angle_about_z(e)
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        from sympy import Matrix
+
+        force, z = Matrix(e.lam[:3]), e.j.z
+        along = force.dot(z)
+        return Loads(across=magnitude(*(force - along * z)), thrust=magnitude(along), bending=magnitude(*e.lam[3:]))

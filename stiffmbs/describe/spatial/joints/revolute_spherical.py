@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -25,7 +25,6 @@ class RevoluteSpherical(Rod[Marker]):
     kind: ClassVar[str] = "revolute_spherical"
     equations: ClassVar[tuple[str, ...]] = (*Rod.equations, *IN_PLANE)
 
-    type: Literal["revolute_spherical"] = "revolute_spherical"
     i: Marker = Field(description="marker of the body with the ball, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the hinge's")
 

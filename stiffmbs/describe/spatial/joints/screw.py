@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
-
-from pydantic import Field
+from typing import Any, ClassVar
 
 from ...element import Symbolic
 from ...model_data import ModelData
@@ -29,8 +27,6 @@ class Screw(Thread):
     kind: ClassVar[str] = "screw"
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ALIGN, *Thread.equations)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement", "angle")
-
-    type: Literal["screw"] = Field("screw")  # type: ignore[assignment]
 
     def misplaced(self, model: ModelData) -> Iterator[str]:
         yield from drawn_apart(model, self.i, self.j)

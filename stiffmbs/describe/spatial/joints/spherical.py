@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Joint, Symbolic
+from ...forces.friction import magnitude
+from ...loads import Loads
 from ..marker import Marker
 from ..primitives import COINCIDE, coincide
 
@@ -21,11 +23,16 @@ class Spherical(Joint):
 
     kind: ClassVar[str] = "spherical"
     equations: ClassVar[tuple[str, ...]] = COINCIDE
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz")
+    elastic: ClassVar[str] = "bushing"
 
-    type: Literal["spherical"] = "spherical"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
     @staticmethod
     def position(e: Symbolic) -> Any:
         return coincide(e.i, e.j)
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        return Loads(across=magnitude(*e.lam))

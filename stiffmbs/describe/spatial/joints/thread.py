@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -28,7 +28,6 @@ class Thread(KeptAsDrawn):
     kind: ClassVar[str] = "thread"
     equations: ClassVar[tuple[str, ...]] = ("pitch",)
 
-    type: Literal["thread"] = "thread"
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the thread's")
     pitch: si.LengthNotZero = Field(

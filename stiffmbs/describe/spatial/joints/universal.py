@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
 
 from pydantic import Field
 
@@ -25,8 +25,9 @@ class Universal(Joint):
 
     kind: ClassVar[str] = "universal"
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ACROSS)
+    transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz")
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
 
-    type: Literal["universal"] = "universal"
     i: Marker = Field(
         description="marker of the first body, z along its arm of the cross; the reaction is reported on it"
     )

@@ -17,7 +17,7 @@ from ....describe.model_builder import ModelBuilder
 from ....jobs.check import check
 from ....jobs.run import run
 from ....structure.overconstraint import Overconstraint
-from ....structure.transmitted import COMPONENTS, TRANSMITTED
+from ....structure.transmitted import COMPONENTS
 from ...case import Case, Outcome, Verdict, measured
 from ...pendulum import GRAVITY
 
@@ -79,7 +79,7 @@ def _advised(model: ModelBuilder, case: Overconstraint, stiffness: np.ndarray) -
         if name not in case.elastic:
             other.add(name, joint)
             continue
-        held = [float(c in TRANSMITTED[joint.kind]) for c in COMPONENTS] if in_space else HELD[joint.kind]
+        held = [float(c in joint.transmits) for c in COMPONENTS] if in_space else HELD[joint.kind]
         k = float(stiffness[case.elastic.index(name)])
         bushing = spatial.Bushing if in_space else FORCES["bushing"]
         springs, dampers = (tuple(much * part for part in held) for much in (k, DAMPING))

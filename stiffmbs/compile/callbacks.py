@@ -1,0 +1,156 @@
+"""Python functions that kernels call by address: their values, derivatives, and what they raise."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ..describe.element import Element
+from ..describe.python_function import PythonFunction
+
+if TYPE_CHECKING:
+    from .system import System
+
+_PROTOTYPE = ctypes.CFUNCTYPE(
+    ctypes.c_double, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p
+)
+DIFFERENCE, LEAST = 6e-6, 1e-3
+"""Step of central differences, in parts of an argument (the cube root of the rounding error), which counts as `LEAST` at least."""
+COMPLEX_STEP = 1e-30
+
+
+class Callback:
+    """A Python function as kernels call it.
+
+    Attributes
+    ----------
+    address : int
+        Of a C function of the number of values, the value's index, the argument to differentiate by (-1 for none), the number
+        of arguments, and their address.
+    fault : BaseException or None
+        What the function raised.  Nothing is called any more from then on, and all values are nan.
+    calls : int
+    """
+
+    def __init__(self, function: PythonFunction) -> None:
+        self.name, self._function, self._way = function.name, function.function, function.derivatives
+        self.fault: BaseException | None = None
+        self.calls = 0
+        self._given = b""
+        self._values: np.ndarray | None = None
+        self._slopes: np.ndarray | None = None
+        self._c_function = _PROTOTYPE(self._called)
+        self.address = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
+
+    def restart(self) -> None:
+        """Call the function again after a fault."""
+        self.fault, self._values = None, None
+
+    def _called(self, count: int, output: int, by: int, n: int, at: int) -> float:
+        if self.fault is not None:
+            return np.nan
+        try:  # an exception cannot pass through compiled code
+            given = ctypes.string_at(at, 8 * n)
+            if given != self._given or self._values is None:
+                self._given, self._slopes = given, None
+                self._values = self._value(np.frombuffer(given).copy(), count)
+            if by < 0:
+                return float(self._values[output])
+            if self._slopes is None:
+                self._slopes = self._derivatives(np.frombuffer(given), count)
+            return float(self._slopes[output, by])
+        except BaseException as fault:
+            self.fault = fault
+            return np.nan
+
+    def _value(self, x: np.ndarray, count: int) -> np.ndarray:
+        self.calls += 1
+        values = np.atleast_1d(np.asarray(self._function(x), dtype=x.dtype)).ravel()
+        if len(values) != count:
+            raise ValueError(f"found {len(values)} numbers, expected {count}")
+        if not np.isfinite(values).all():
+            raise ValueError(f"found {values[~np.isfinite(values)][0]}, expected finite numbers")
+        return values
+
+    def _derivatives(self, x: np.ndarray, count: int) -> np.ndarray:
+        """Shape (count, len(x))."""
+        return np.array([self._by(x, k, count) for k in range(len(x))]).T
+
+    def _by(self, x: np.ndarray, k: int, count: int) -> np.ndarray:
+        if self._way == "complex_step":
+            moved = x.astype(complex)
+            moved[k] += 1j * COMPLEX_STEP
+            return self._value(moved, count).imag / COMPLEX_STEP
+        above, below = x.copy(), x.copy()
+        step = DIFFERENCE * max(abs(x[k]), LEAST)
+        above[k], below[k] = x[k] + step, x[k] - step
+        return (self._value(above, count) - self._value(below, count)) / (above[k] - below[k])
+
+
+_KEPT: WeakKeyDictionary[PythonFunction, Callback] = WeakKeyDictionary()
+"""The callback of each function: compiled models hold its address, and through their elements the function."""
+
+
+def callback_of(function: PythonFunction) -> Callback:
+    """The callback of a function, the same each time."""
+    if function not in _KEPT:
+        _KEPT[function] = Callback(function)
+    return _KEPT[function]
+
+
+def callbacks(system: System) -> Iterator[tuple[str, Element, PythonFunction, Callback]]:
+    """The Python functions of a system's elements, with the elements and their names."""
+    for group in system.groups:
+        if _has_function(group.kind.fields):
+            for name, element in zip(group.names, group.elements, strict=True):
+                for _, function in element.parts(PythonFunction):
+                    yield name, element, function, callback_of(function)
+
+
+def _has_function(shape: object) -> bool:
+    return shape == ("python",) or (isinstance(shape, tuple) and any(map(_has_function, shape)))
+
+
+def has_fault(system: System) -> bool:
+    """Whether one of a system's functions has raised an exception."""
+    return any(callback.fault is not None for *_, callback in callbacks(system))
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What a Python function raised, and the clause on it, which names the element."""
+
+    raised: BaseException
+    clause: str
+
+
+def fault_of(system: System) -> Fault | None:
+    """The fault of one of a system's functions, None where there is none; they are called again from then on."""
+    found = None
+    for name, element, _, callback in callbacks(system):
+        if callback.fault is not None:
+            clause = (
+                f"the Python function {callback.name} of '{name}' ({element.kind}) raised {_raised(callback.fault)}"
+            )
+            found = found or Fault(callback.fault, clause)
+            callback.restart()
+    return found
+
+
+def notes_on_functions(system: System) -> Iterator[str]:
+    """What a user should know of elements whose law is a Python function."""
+    for name, _, function, callback in callbacks(system):
+        way = "a complex step" if function.derivatives == "complex_step" else "central differences"
+        yield (
+            f"the law of '{name}' is the Python function {callback.name} ({callback.calls} calls): its derivatives are by {way}, "
+            "and corners in it are not located"
+        )
+
+
+def _raised(fault: BaseException) -> str:
+    return f"{type(fault).__name__}: {fault}" if str(fault) else type(fault).__name__

@@ -1,0 +1,117 @@
+"""SymPy's functions in elements' equations as those of kernels.
+
+`Abs`, `sign`, `Max`, `Min` and `Heaviside` become the functions of `stiffmbs.compile.symbolic.nonsmooth`; what has no form in
+kernels is refused.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+from sympy.core.relational import Relational
+
+from ...errors import InputError
+from .nonsmooth import Chosen, CorneredBase, Magnitude, Sign, greater, less
+
+KNOWN: tuple[type[sp.Basic], ...] = (
+    sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.atan2, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log, sp.Piecewise,
+)  # fmt: skip
+"""Functions that kernels have as they are."""
+BY_OTHERS = (sp.cos, sp.cosh, sp.tanh, sp.log)
+"""Functions by which SymPy may write one that kernels do not have, tried in this order."""
+
+
+def _differences(x: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
+    return tuple(a - b for a, b in itertools.combinations(x, 2))
+
+
+CORNERED: dict[type[sp.Basic], Callable[..., tuple[sp.Expr, tuple[sp.Expr, ...]]]] = {
+    sp.Abs: lambda x: (Magnitude(x), (x,)),
+    sp.sign: lambda x: (Sign(x), (x,)),
+    sp.Max: lambda *x: (greater(*x), _differences(x)),
+    sp.Min: lambda *x: (less(*x), _differences(x)),
+    sp.Heaviside: lambda x, at: (Chosen(x, sp.Integer(0), at, sp.Integer(1)), (x,)),
+}
+"""Functions with corners: what each becomes, and what is zero at its corners."""
+NO_NUMBER = frozenset((sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I))
+UNDONE = (sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
+
+
+def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
+    """An expression as kernels can have it.
+
+    Parameters
+    ----------
+    x : Expr or number
+    note : callable
+        Called with what is zero at each corner.
+
+    Raises
+    ------
+    InputError
+        For what is no real expression, or holds a function that kernels do not have.
+    """
+    expression = sp.sympify(x)
+    if not isinstance(expression, sp.Expr):
+        raise InputError(f"found {x!r}, expected an expression of SymPy or a number")
+    other = False
+    for part in sp.preorder_traversal(expression):
+        if part in NO_NUMBER:
+            raise InputError(f"found {expression}, which is no real number, expected one")
+        if isinstance(part, UNDONE):
+            raise InputError(f"found {part}, which SymPy has not worked out, expected an expression without it")
+        other = other or not (_is_plain(part) or _is_own(part))
+    return _read(expression, note) if other else expression
+
+
+def _is_plain(part: sp.Basic) -> bool:
+    """Whether a part of an expression is in kernels what it is in SymPy."""
+    return not isinstance(part, sp.Function | sp.Max | sp.Min) or (
+        isinstance(part, KNOWN) and not isinstance(part, sp.Piecewise)
+    )
+
+
+def _functions(x: sp.Basic) -> Iterator[sp.Basic]:
+    """The functions in an expression that are SymPy's, from the outside in."""
+    for part in sp.preorder_traversal(x):
+        if isinstance(part, sp.Function | sp.Max | sp.Min) and not _is_own(part):
+            yield part
+
+
+def _is_own(part: sp.Basic) -> bool:
+    """Whether a function is one of this package."""
+    return isinstance(part, CorneredBase) or type(part).__module__.startswith("stiffmbs.")
+
+
+def _read(x: sp.Basic, note: Callable[[sp.Expr], None]) -> Any:
+    if not x.args:
+        return x
+    arguments = [_read(part, note) for part in x.args]
+    if type(x) in CORNERED:
+        value, corners = CORNERED[type(x)](*arguments)
+        for corner in corners:
+            note(corner)
+        return value
+    if isinstance(x, sp.Piecewise):
+        if x.args[-1].cond != True:  # noqa: E712 SymPy's own
+            raise InputError(f"found {x}, which has no value elsewhere, expected a last part (value, True)")
+        for relation in sp.Piecewise(*arguments).atoms(Relational):
+            note(relation.lhs - relation.rhs)
+    found = x.func(*arguments)
+    if not isinstance(x, sp.Function) or isinstance(found, KNOWN) or _is_own(x) or not isinstance(found, sp.Function):
+        return found
+    return _by_others(found, note)
+
+
+def _by_others(x: sp.Function, note: Callable[[sp.Expr], None]) -> sp.Expr:
+    """A function written by others that kernels have."""
+    for way in () if isinstance(x, AppliedUndef) else BY_OTHERS:
+        written = x.rewrite(way)
+        if not written.has(sp.I) and all(isinstance(part, (*KNOWN, *CORNERED)) for part in _functions(written)):
+            return _read(written, note)
+    names = ", ".join(sorted({part.__name__ for part in (*KNOWN, *CORNERED)}))
+    raise InputError(f"found the function {x.func}, expected one of {names}")

@@ -1,0 +1,55 @@
+"""A force and a torque by a Python function."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from ..element import Symbolic
+from ..marker import Marker
+from .any_python_force import ForceOfFunction
+from .applied import AppliedTorque, force_at
+
+
+def _example(x: Any) -> Any:
+    """Of one number."""
+    return [x[0] ** 2, math.sin(x[0]), math.cos(x[0])]
+
+
+class PythonForce(ForceOfFunction[Marker]):
+    """A force and a torque that a Python function gives, for laws that no formula can express.
+
+    The function takes an array of what the formulas `of` measure, in SI units, and returns three numbers: the force along
+    the ground's x and y (N) and the torque (N m) on body i at marker i.  With `j` a second body takes the opposite at the
+    same point of space.
+
+    Only a model built in Python can have it.  Each call takes some microseconds, and the derivatives for the Jacobian are
+    by central differences, or by a complex step (`stiffmbs.PythonFunction`).  It must give the same for the same numbers.
+    Its corners are not located, and it has no potential.  An exception ends the run, which keeps what was computed.
+
+    Examples
+    --------
+    Drag by an interpolated coefficient::
+
+        def drag(x):
+            speed = np.hypot(*x)
+            return *(-np.interp(speed, speeds, coefficients) * speed * x), 0.0
+
+        model.add("drag", PythonForce(i="ball", of=("ball.vx", "ball.vy"), function=drag))
+
+    Together with `AppliedForce` and `AppliedTorque` this is what Adams' GFOSUB is for.
+    """
+
+    kind: ClassVar[str] = "python_force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)
+
+    @staticmethod
+    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        fx, fy, torque = e.function(*e.of, count=3)
+        return [*force_at(fx, fy, e.i, e.j), (torque, AppliedTorque.angle(e))]
+
+    def in_space(self, angles: Any) -> dict[str, Any]:
+        from ..spatial.embedding.forces import python_force
+
+        return python_force(self, angles)

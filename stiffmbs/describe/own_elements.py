@@ -1,0 +1,197 @@
+"""Users' own classes of joints and forces: what a class must have, and the registry by which scenes know it."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from ..errors import InputError
+from .element import Element, Force, Joint
+from .fields import NAME_PATTERN
+from .marker import MarkerReference
+from .samples import types_in
+
+GROUP = "stiffmbs.elements"
+"""The entry point group under which a package offers its elements."""
+
+
+class Registry:
+    """The classes that scenes know besides those of this package; those of installed packages are read when first needed."""
+
+    def __init__(self) -> None:
+        self._classes: dict[tuple[type, int, str], type[Element]] = {}
+        self._installed_are_read = False
+
+    def add(self, element: type[Element]) -> None:
+        """Add a class; one of the same name and module, as of a cell that is run again, is replaced.
+
+        Raises
+        ------
+        InputError
+            When the kind is taken.
+        """
+        for key in _keys(element):
+            known = self._classes.get(key, element)
+            if (known.__module__, known.__qualname__) != (element.__module__, element.__qualname__):
+                raise InputError(
+                    f"{element.__name__}: found the kind '{element.kind}', which {known.__module__}.{known.__qualname__} has, "
+                    "expected another"
+                )
+        self._classes |= dict.fromkeys(_keys(element), element)
+
+    def remove(self, element: type[Element]) -> None:
+        """Take a class out again."""
+        for key in _keys(element):
+            self._classes.pop(key, None)
+
+    def kinds(self, base: type[Element], dimensions: int) -> dict[str, type[Any]]:
+        """The joints, or the forces, of the plane or of space, by kind."""
+        if not self._installed_are_read:
+            for element in _installed():
+                register(element)
+            self._installed_are_read = True
+        return {
+            kind: found for (sort, space, kind), found in self._classes.items() if (sort, space) == (base, dimensions)
+        }
+
+
+REGISTRY = Registry()
+"""Of this process."""
+
+
+def register(element: type[Any]) -> type[Any]:
+    """Make a class of joints or forces known to scenes, by its `kind`; serves as a decorator.
+
+    A model built in Python takes elements of a class that is not registered, too.
+
+    Parameters
+    ----------
+    element : type
+        A subclass of `stiffmbs.Joint` or `stiffmbs.Force`.
+
+    Returns
+    -------
+    type
+        The same class.
+
+    Raises
+    ------
+    InputError
+        When something is missing in the class, or its kind is taken; names the class.
+
+    Examples
+    --------
+    >>> import stiffmbs
+    >>> @stiffmbs.register
+    ... class Level(stiffmbs.Joint):
+    ...     kind = "level"
+    ...     equations = ("height",)
+    ...     i: stiffmbs.Marker
+    ...
+    ...     @staticmethod
+    ...     def position(e):
+    ...         return [e.i.point[1]]
+    """
+    check_class(element)
+    for dimensions in dimensions_of(element):
+        if element.kind in _shipped(dimensions, element):
+            raise InputError(
+                f"{element.__name__}: found the kind '{element.kind}', which stiffmbs has, expected another"
+            )
+    REGISTRY.add(element)
+    return element
+
+
+def check_class(element: object) -> None:
+    """Refuse a class that is no joint or force, or lacks what every one has.
+
+    Raises
+    ------
+    InputError
+        Names the class.
+    """
+    for reason in _lacks(element):
+        raise InputError(f"{getattr(element, '__name__', repr(element))}: {reason}")
+
+
+def _lacks(element: Any) -> Iterator[str]:
+    if not isinstance(element, type) or not issubclass(element, Joint | Force):
+        yield "found no subclass of Joint or Force, expected one"
+        return
+    if not re.match(NAME_PATTERN, element.kind):
+        found = f"the kind '{element.kind}'" if element.kind else "no kind"
+        yield f"found {found}, expected a name for scenes, such as kind = 'my_{_base(element).__name__.lower()}'"
+    if not dimensions_of(element):
+        yield "found markers of the plane and of space, expected markers of one of them"
+    yield from _not_static(element)
+    if issubclass(element, Joint):
+        if element.position is Joint.position and element.velocity is Joint.velocity:
+            yield "found no equations, expected a static method position(e) or velocity(e)"
+        if not element.equations and element.equation_names is Joint.equation_names:
+            yield "found no names of equations, expected one for each, such as equations = ('x', 'y')"
+        for name in element.coordinates:
+            if not hasattr(element, name):
+                yield f"found the coordinate '{name}' without a function, expected a static method {name}(e)"
+    elif element.efforts is Force.efforts and _is_inherited(element, "powers"):
+        yield "found no law, expected a static method efforts(e) or powers(e)"
+
+
+STATIC = ("position", "velocity", "point", "loads", "efforts", "powers", "potential", "switches", "limits")
+"""Functions of e alone."""
+
+
+def _not_static(element: type[Element]) -> Iterator[str]:
+    """Functions written as methods of an object, which there is none of when equations are derived."""
+    for name in STATIC:
+        found = inspect.getattr_static(element, name, None)
+        if inspect.isfunction(found) and len(inspect.signature(found).parameters) != 1:
+            yield f"found {name}{inspect.signature(found)}, expected a static method {name}(e)"
+
+
+def _is_inherited(element: type[Element], name: str) -> bool:
+    return all(name not in vars(owner) for owner in element.__mro__ if owner is not Force)
+
+
+def dimensions_of(element: type[Element]) -> tuple[int, ...]:
+    """In which models elements of a class can stand, 2 for the plane and 3 for space: those of its markers."""
+    if element.dimensions:
+        return element.dimensions
+    found = {
+        part.dimensions
+        for field in element.model_fields.values()
+        for part in types_in(field.annotation)
+        if isinstance(part, type) and issubclass(part, MarkerReference)
+    } - {None}
+    return tuple(family for family in (2, 3) if found <= {family})
+
+
+def _keys(element: type[Element]) -> list[tuple[type, int, str]]:
+    return [(_base(element), dimensions, element.kind) for dimensions in dimensions_of(element)]
+
+
+def _base(element: type[Element]) -> type[Element]:
+    return Joint if issubclass(element, Joint) else Force
+
+
+def _shipped(dimensions: int, element: type[Element]) -> Any:
+    """The kinds of this package among which a class would be."""
+    from importlib import import_module
+
+    family = import_module(".model" if dimensions == 2 else ".spatial.model", __package__)
+    return (family.JOINTS if issubclass(element, Joint) else family.FORCES).shipped
+
+
+def _installed() -> Iterator[type[Element]]:
+    """The classes that installed packages offer."""
+    from importlib.metadata import entry_points
+
+    for point in entry_points(group=GROUP):
+        try:
+            yield point.load()
+        except Exception as error:
+            raise InputError(
+                f"found the entry point '{point.name} = {point.value}' of {GROUP}, which does not load "
+                f"({type(error).__name__}: {error}), expected a class of joints or forces"
+            ) from error

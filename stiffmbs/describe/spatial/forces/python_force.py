@@ -1,0 +1,36 @@
+"""A force and a torque in space by a Python function."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from ...element import Symbolic
+from ...forces.any_python_force import ForceOfFunction
+from ..marker import Marker
+from ..wrench import Pairs, force_at, torque_on
+
+
+def _example(x: Any) -> Any:
+    """Of one number."""
+    return [x[0] ** 2, math.sin(x[0]), math.cos(x[0]), x[0], 1 - x[0], x[0] ** 3]
+
+
+class PythonForce(ForceOfFunction[Marker]):
+    """A force and a torque that a Python function gives, for laws that no formula can express.
+
+    The function takes an array of what the formulas `of` measure, in SI units, and returns six numbers: the force (N) and
+    the torque (N m) along the ground's x, y and z on body i at marker i.  With `j` a second body takes the opposite at the
+    same point of space.
+
+    What holds for its namesake in the plane (`stiffmbs.PythonForce`) holds here too.
+    """
+
+    kind: ClassVar[str] = "python_force"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        values = e.function(*e.of, count=6)
+        return [*force_at(e, values[:3], e.i, e.j), *torque_on(values[3:], e.i, e.j)]

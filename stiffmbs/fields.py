@@ -1,0 +1,45 @@
+"""The types of fields of own elements, besides `stiffmbs.Marker` and numbers with units (`stiffmbs.si`).
+
+Examples
+--------
+>>> import stiffmbs
+>>> from stiffmbs.fields import JointReference, OfMotion, OfTime
+>>> class Push(stiffmbs.Force):
+...     kind = "push"
+...     i: stiffmbs.Marker
+...     force: OfMotion  # a formula of coordinates, velocities, measures and time
+...
+...     @staticmethod
+...     def efforts(e):
+...         return [(e.force, e.i.point[0])]
+"""
+
+from .describe.element import JointReference
+from .describe.formula.field import (
+    ForceOfDeflection,
+    ForceOfMotion,
+    ForceOfRate,
+    OfMotion,
+    OfPosition,
+    OfTime,
+    TorqueOfDeflection,
+    TorqueOfMotion,
+    TorqueOfRate,
+)
+from .describe.loads import Loads
+from .describe.python_function import PythonFunction
+
+__all__ = [
+    "ForceOfDeflection",
+    "ForceOfMotion",
+    "ForceOfRate",
+    "JointReference",
+    "Loads",
+    "OfMotion",
+    "OfPosition",
+    "OfTime",
+    "PythonFunction",
+    "TorqueOfDeflection",
+    "TorqueOfMotion",
+    "TorqueOfRate",
+]

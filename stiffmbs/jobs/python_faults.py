@@ -1,0 +1,45 @@
+"""What Python functions of forces raise, told in one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+from ..compile.callbacks import fault_of
+from ..compile.system import System
+from ..errors import AssemblyError, StiffmbsError
+from ..solve.trajectory import Outcome, Trajectory
+
+
+@contextmanager
+def told_faults(system: System) -> Iterator[None]:
+    """Give an error that a function's fault brought about the words of that fault.
+
+    Raises
+    ------
+    AssemblyError
+    """
+    try:
+        yield
+    except (StiffmbsError, ArithmeticError, ValueError) as error:
+        fault = fault_of(system)
+        if fault is None:
+            raise
+        raise AssemblyError(f"the start cannot be computed: {fault.clause}") from error
+    fault = fault_of(system)
+    if fault and not isinstance(fault.raised, Exception):
+        raise fault.raised
+
+
+def up_to_a_fault(system: System, trajectory: Trajectory) -> Trajectory:
+    """A trajectory with the words of the fault that ended it, if one did."""
+    fault = fault_of(system)
+    if fault is None or trajectory.outcome is Outcome.DONE:
+        return trajectory
+    if isinstance(fault.raised, KeyboardInterrupt):
+        return replace(trajectory, outcome=Outcome.INTERRUPTED, message=Outcome.INTERRUPTED.value)
+    reached = trajectory.t[-1]
+    return replace(
+        trajectory, outcome=Outcome.STOPPED, message=f"stopped at t = {reached:.9g} s: {fault.clause}"
+    )  # fmt: skip

@@ -1,0 +1,65 @@
+"""Models of every kind of element in the forms in which it is mostly used: what `stiffmbs cache warm` compiles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..describe.body import Body
+from ..describe.joints.prismatic import Prismatic
+from ..describe.joints.revolute import Revolute
+from ..describe.model import Model
+from ..describe.model_builder import ModelBuilder
+from ..describe.samples import Samples
+
+BODIES = ("a", "b", "c")
+
+
+def usual_elements(dimensions: int) -> ModelBuilder:
+    """A model of all forms of all kinds, users' own that are registered among them; it is compiled, never solved.
+
+    Parameters
+    ----------
+    dimensions : int
+        2 or 3.
+    """
+    model = _in_plane() if dimensions == 2 else _in_space()
+    joints = dict(model.joints)
+    samples = Samples(lambda k: BODIES[k], joints)
+    for kinds in model.kinds:
+        for kind, element in kinds.items():
+            for k, form in enumerate(element.forms):
+                model.add(f"{kind}_{k}", samples.made(element, form))
+    return model
+
+
+def _in_plane() -> ModelBuilder:
+    model = Model(gravity=(0, -9.81))
+    for k, name in enumerate(BODIES):
+        model.add(name, Body(mass=1, inertia=1, position=(k, 0)))
+    _add_joints(model, Revolute, Prismatic)
+    return model
+
+
+def _in_space() -> ModelBuilder:
+    from ..describe.spatial.body import Body
+    from ..describe.spatial.joints.cylindrical import Cylindrical
+    from ..describe.spatial.joints.prismatic import Prismatic
+    from ..describe.spatial.joints.revolute import Revolute
+    from ..describe.spatial.joints.spherical import Spherical
+    from ..describe.spatial.model import Model
+
+    model = Model(gravity=(0, 0, -9.81))
+    for k, name in enumerate(BODIES):
+        model.add(name, Body(mass=1, inertia=(1, 1, 1), position=(k, 0, 0)))
+    _add_joints(model, Revolute, Prismatic)
+    model.add("ball", Spherical(i="a", j="ground"))  # type: ignore[arg-type]
+    model.add("sleeve", Cylindrical(i="a", j="ground"))  # type: ignore[arg-type]
+    return model
+
+
+def _add_joints(model: ModelBuilder, revolute: Any, prismatic: Any) -> None:
+    """Joints for others to refer to."""
+    model.add("pin", revolute(i="a", j="ground"))
+    model.add("second_pin", revolute(i="b", j="ground"))
+    model.add("slider", prismatic(i="c", j="ground"))
+    model.add("second_slider", prismatic(i="b", j="ground"))
