@@ -20,6 +20,7 @@ from stiffmbs.describe.element import Element, JointName
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.field import Formula
 from stiffmbs.describe.marker import MarkerReference
+from stiffmbs.describe.python_function import PythonFunction
 from stiffmbs.describe.spatial.orientation import OrientationField
 from stiffmbs.describe.table import Table
 
@@ -32,13 +33,18 @@ from . import spatial as spatial
 from .compile.compile_model import compile_model as compile_model
 from .describe import given
 from .describe.body import Body as Body
+from .describe.element import Force as Force
+from .describe.element import Joint as Joint
 from .describe.marker import Marker as Marker
 from .describe.model import Model as Model
+from .describe.own_elements import register as register
+from .describe.python_function import PythonFunction as PythonFunction
 from .describe.scene import Scene as Scene
 from .describe.scene import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.table import Table as Table
+from .describe.units import si as si
 from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
@@ -57,6 +63,8 @@ SPACE = """
 from typing import Literal
 
 from .describe import given
+from .describe.element import Force as Force
+from .describe.element import Joint as Joint
 from .describe.spatial.body import Body as Body
 from .describe.spatial.marker import Marker as Marker
 from .describe.spatial.model import Model as Model
@@ -122,6 +130,7 @@ TAKEN: Mapping[type, str] = {
     MarkerReference: "given.Marker",
     JointName: "str",
     Formula: "given.Law",
+    PythonFunction: "given.Function",
     Table: "given.Curve",
 }
 PLAIN = {bool: "bool", int: "int", str: "str", type(None): "None"}

@@ -8,6 +8,7 @@ from stiffmbs.describe.forces.bushing import Bushing as _Bushing
 from stiffmbs.describe.forces.contact import Contact as _Contact
 from stiffmbs.describe.forces.joint_friction import JointFriction as _JointFriction
 from stiffmbs.describe.forces.line_force import LineForce as _LineForce
+from stiffmbs.describe.forces.python_force import PythonForce as _PythonForce
 from stiffmbs.describe.forces.spring_damper import SpringDamper as _SpringDamper
 from stiffmbs.describe.forces.torsion_spring import TorsionSpring as _TorsionSpring
 from stiffmbs.describe.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
@@ -27,13 +28,18 @@ from . import spatial as spatial
 from .compile.compile_model import compile_model as compile_model
 from .describe import given
 from .describe.body import Body as Body
+from .describe.element import Force as Force
+from .describe.element import Joint as Joint
 from .describe.marker import Marker as Marker
 from .describe.model import Model as Model
+from .describe.own_elements import register as register
+from .describe.python_function import PythonFunction as PythonFunction
 from .describe.scene import Scene as Scene
 from .describe.scene import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.table import Table as Table
+from .describe.units import si as si
 from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
@@ -205,6 +211,18 @@ class PointOnLine(_PointOnLine):
 class Prismatic(_Prismatic):
     """Slider: marker i stays on the line through marker j along j's axis and keeps j's direction."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["prismatic"] = ...) -> None: ...
+
+class PythonForce(_PythonForce):
+    """A force and a torque that a Python function gives, for laws that no formula can express."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        of: given.Laws,
+        function: given.Function,
+        type: Literal["python_force"] = ...,
+    ) -> None: ...
 
 class RackAndPinion(_RackAndPinion):
     """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0."""

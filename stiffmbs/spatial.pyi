@@ -15,6 +15,7 @@ from stiffmbs.describe.spatial.forces.bushing import Bushing as _Bushing
 from stiffmbs.describe.spatial.forces.field import FieldForce as _FieldForce
 from stiffmbs.describe.spatial.forces.joint_friction import JointFriction as _JointFriction
 from stiffmbs.describe.spatial.forces.line_force import LineForce as _LineForce
+from stiffmbs.describe.spatial.forces.python_force import PythonForce as _PythonForce
 from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
 from stiffmbs.describe.spatial.forces.spring_damper import SpringDamper as _SpringDamper
 from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
@@ -38,6 +39,8 @@ from stiffmbs.describe.spatial.joints.thread import Thread as _Thread
 from stiffmbs.describe.spatial.joints.universal import Universal as _Universal
 
 from .describe import given
+from .describe.element import Force as Force
+from .describe.element import Joint as Joint
 from .describe.spatial.body import Body as Body
 from .describe.spatial.marker import Marker as Marker
 from .describe.spatial.model import Model as Model
@@ -260,6 +263,18 @@ class PointOnPlane(_PointOnPlane):
 class Prismatic(_Prismatic):
     """Slider: marker i stays on the z axis of marker j and keeps j's orientation."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["prismatic"] = ...) -> None: ...
+
+class PythonForce(_PythonForce):
+    """A force and a torque that a Python function gives, for laws that no formula can express."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        of: given.Laws,
+        function: given.Function,
+        type: Literal["python_force"] = ...,
+    ) -> None: ...
 
 class RackAndPinion(_RackAndPinion):
     """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0."""

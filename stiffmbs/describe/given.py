@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from .handle import Handle
     from .marker import MarkerReference
+    from .python_function import PythonFunction
     from .table import Table
 
 Number: TypeAlias = "float | np.number[Any] | str"
@@ -22,6 +23,7 @@ Law: TypeAlias = "float | np.number[Any] | str"
 Laws: TypeAlias = "Law | Sequence[Law]"
 Curve: TypeAlias = "Law | Table | Mapping[str, Any]"
 """A formula of one variable, or a table."""
+Function: TypeAlias = "Callable[..., Any] | PythonFunction"
 Marker: TypeAlias = "str | Handle | MarkerReference | Mapping[str, Any]"
 """A body or a marker of it by name, a body's handle, or a marker given on the spot."""
 Markers: TypeAlias = "Mapping[str, Any]"

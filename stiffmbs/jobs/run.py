@@ -40,7 +40,7 @@ from ..structure.redundancy import Redundancy, examine
 from ..structure.told.unconnected import unconnected_sentence
 from .load_scene import load_scene
 from .presolve_report import presolve_sentences
-from .python_faults import told_faults
+from .python_faults import told_faults, up_to_a_fault
 from .settings_notes import settings_notes
 from .taken_again import Computed, seen_through
 
@@ -228,7 +228,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
 
 def _computed(job: Job, watch: Watch | None) -> Computed:
     """Integrate a job and report it."""
-    trajectory = _sound_part(job, job.integrate(watch))
+    trajectory = _sound_part(job, up_to_a_fault(job.mechanics.system, job.integrate(watch)))
     return Computed(trajectory, *reported(job.mechanics, trajectory, near_constraints(job.settings)))
 
 
