@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ..element import JointName
@@ -94,7 +94,7 @@ class Output:
     terms: tuple[Term, ...]
     values: Mapping[str, float]
     tables: Mapping[str, Table]
-    parameters: Mapping[str, Quantity]
+    parameters: Mapping[str, Quantity] = field(default_factory=dict)
     expanded: str = ""
 
     def channels(self) -> Iterator[tuple[str, str]]:
