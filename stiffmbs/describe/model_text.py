@@ -9,10 +9,11 @@ from ..errors import InputError
 from .element import Element, JointName
 from .fields import Described
 from .files.scene_text import scene_text
-from .formula.field import Formula
+from .formula.dimension import Known
 from .marker import MarkerReference
 from .model_data import ModelData
-from .units.units import CONSTANTS, UNITS, in_text
+from .table import Table
+from .units.units import Quantity, in_text
 
 PLAIN = ("name", "dimensions", "gravity")
 SECTIONS = ("markers", "bodies", "joints", "forces", "requests")
@@ -28,7 +29,9 @@ def model_text(data: ModelData) -> str:
     """
     parts = {name: _written(getattr(data, name)) for name in (*PLAIN, *SECTIONS)}
     formulas = list(_formulas([getattr(data, section) for section in SECTIONS]))
-    parts["parameters"] = _agreed(pair for formula in formulas for pair in _parameters(formula))
+    parts["parameters"] = _agreed(
+        (name, in_text(value)) for formula in formulas for name, value in formula.parameters.items()
+    )
     parts["tables"] = _agreed((name, _written(table)) for formula in formulas for name, table in formula.tables.items())
     order = ("name", "dimensions", "parameters", "tables", "gravity", *SECTIONS)
     return scene_text({name: parts[name] for name in order if parts[name]})
@@ -39,6 +42,9 @@ def _written(value: Any) -> Any:
     match value:
         case MarkerReference():
             return _marker(value)
+        case Table():
+            rows = [[_quantity(*entry) for entry in zip(row, value.dimensions, strict=True)] for row in value.table]
+            return {**_fields(value), "table": rows}
         case Described():
             kind = {"type": value.kind} if isinstance(value, Element) else {}
             return {**kind, **_fields(value)}
@@ -48,15 +54,16 @@ def _written(value: Any) -> Any:
             return {name: _written(part) for name, part in value.items()}
         case tuple():
             return [_written(part) for part in value]
-    return _formula(value.text) if hasattr(value, "text") else value
+    return _formula(value) if hasattr(value, "expanded") else value
 
 
-def _formula(text: str) -> str | float:
-    """A formula's text, or the number that it was given as."""
+def _formula(formula: Any) -> str | float:
+    """A formula's text, with the scene's variables in their places; or the number that it was given as."""
+    text = str(formula.text)
     try:
         return float(text) if repr(float(text)) == text else text
     except ValueError:
-        return text
+        return formula.expanded or text
 
 
 def _fields(described: Described) -> dict[str, Any]:
@@ -70,7 +77,7 @@ def _marker(found: MarkerReference) -> Any:
 
 def _formulas(value: Any) -> Iterator[Any]:
     """The formulas in a value, however deep: those of elements, and of requests in space."""
-    if hasattr(value, "values") and hasattr(value, "tables") and hasattr(value, "text"):
+    if hasattr(value, "expanded"):
         yield value
     elif isinstance(value, Described):
         for name in type(value).model_fields:
@@ -80,14 +87,9 @@ def _formulas(value: Any) -> Iterator[Any]:
             yield from _formulas(part)
 
 
-def _parameters(formula: Any) -> Iterator[tuple[str, float | str]]:
-    """The names in a formula that are neither units nor constants, with their values and units."""
-    stated = formula.stated if isinstance(formula, Formula) else {}
-    units = {} if isinstance(formula, Formula) and formula.variables else UNITS
-    for name, value in formula.values.items():
-        known = units.get(name) or CONSTANTS.get(name)
-        if "." not in name and (known is None or known.value != value):
-            yield name, in_text(stated[name]) if name in stated else value
+def _quantity(value: float, known: Known) -> float | str:
+    """A number of a table, with its unit where the table has one."""
+    return in_text(Quantity(value, known.exponents)) if known.stated else value
 
 
 def _agreed(pairs: Iterator[tuple[str, Any]]) -> dict[str, Any]:

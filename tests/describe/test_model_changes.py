@@ -11,6 +11,7 @@ from stiffmbs import (
     Body,
     ConstraintEquation,
     Coupler,
+    Drive,
     Fixed,
     InputError,
     Marker,
@@ -180,6 +181,32 @@ def test_a_parameter_with_two_values_is_refused():
     model.add("a", Body(mass=1, inertia=1))
     with pytest.raises(InputError, match=r"c: found 1\.0 in one formula and 2\.0 in another"):
         model.to_scene()
+
+
+def test_units_of_parameters_and_tables_are_written():
+    """Formulas are checked by them; a scene's variables are written in their places."""
+    scene = stiffmbs.read_scene("""
+dimensions: 3
+parameters: {R: 20 cm}
+tables: {law: {table: [[0 s, 0 N], [1 s, 2 N]]}}
+variables: {reach: 2*R + dx(a)}
+bodies: {a: {mass: 1, inertia: [1, 1, 1]}}
+forces: {push: {type: force, i: a, force: [law(t), 3 N, 0]}}
+requests: {way: reach + a.x, off: a.y + R}
+run: {duration: 1}
+""")
+    model = spatial.Model()
+    for section in SECTIONS[2:]:
+        getattr(model, section).update(getattr(scene, section))
+    found = stiffmbs.read_scene(model.to_scene())
+    assert found.forces == scene.forces and found.requests["off"] == scene.requests["off"]
+    expected, again = stiffmbs.run(scene), stiffmbs.run(found, duration=1)
+    assert expected["way"][0] == 0.4
+    np.testing.assert_array_equal(again["way"], expected["way"])
+    curve = stiffmbs.Table(table=[[0, 0], [1, "2 rad"]])
+    pendulum, _, _ = cart_pendulum()
+    pendulum.add("motor", Drive(joint="hinge", position=curve))
+    assert stiffmbs.read_scene(pendulum.to_scene()).joints["motor"].prescribed_position == curve
 
 
 def test_objects_say_what_they_are(examples):

@@ -21,7 +21,7 @@ from .dimension import UNKNOWN, Known, measured_in
 from .functions import IN_FORMULAS, check_functions
 from .measured import dimension_within
 from .names import MEASURES
-from .text import UNIT, FormulaError, parse
+from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
 
 TIME = "t"
@@ -47,8 +47,10 @@ class Formula:
         The scene's tables that it calls as functions.
     dimension : Known
         Of its value.
-    stated : mapping of str to Quantity
-        What `values` holds, with dimensions.
+    parameters : mapping of str to Quantity
+        The scene's parameters among `values`, with their dimensions.
+    expanded : str
+        The text with the scene's variables in their places; empty where the scene has none.
     """
 
     text: str
@@ -58,7 +60,8 @@ class Formula:
     velocities: bool = False
     tables: Mapping[str, Table] = field(default_factory=dict)
     dimension: Known = UNKNOWN
-    stated: Mapping[str, Quantity] = field(default_factory=dict)
+    parameters: Mapping[str, Quantity] = field(default_factory=dict)
+    expanded: str = ""
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
@@ -196,6 +199,7 @@ class FormulaOf:
             allowed = "a formula or a table" if self.table else "a formula"
             raise FormulaError(f"found {written(found)}, expected {allowed}")
         tree = with_variables(parse(found), variables, self.variables)
+        expanded = as_written(tree) if variables else ""
         check_functions(
             tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
         )
@@ -203,7 +207,8 @@ class FormulaOf:
         values = {name: quantity.value for name, quantity in used.items()}
         called = called_tables(tree, tables)
         dimension = self.dimension_of(tree, used, called)
-        return Formula(found, tree, self.variables, values, self.velocities, called, dimension, used)
+        own = {name: quantity for name, quantity in used.items() if name in parameters}
+        return Formula(found, tree, self.variables, values, self.velocities, called, dimension, own, expanded)
 
     def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
         """The parameters, units and constants in a tree.

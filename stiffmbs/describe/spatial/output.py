@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ..element import JointName
@@ -17,6 +17,7 @@ from ..formula.names import SPACE
 from ..marker import MarkerReference
 from ..model_data import ModelData, check_marker
 from ..table import Table
+from ..units.units import Quantity
 
 ACCELERATIONS = ("accx", "accy", "accz", "accm", "wdtx", "wdty", "wdtz", "wdtm")
 ANGLES = ("psi", "theta", "phi", "q0", "q1", "q2", "q3")
@@ -82,6 +83,10 @@ class Output:
         The scene's parameters, units and constants that it uses, in SI units.
     tables : mapping of str to Table
         The scene's tables that it calls.
+    parameters : mapping of str to Quantity
+        The scene's parameters among `values`, with their dimensions.
+    expanded : str
+        The text with the scene's variables in their places; empty where the scene has none.
     """
 
     text: str
@@ -89,6 +94,8 @@ class Output:
     terms: tuple[Term, ...]
     values: Mapping[str, float]
     tables: Mapping[str, Table]
+    parameters: Mapping[str, Quantity] = field(default_factory=dict)
+    expanded: str = ""
 
     def channels(self) -> Iterator[tuple[str, str]]:
         """The channels that it reads, as (owner, component)."""

@@ -14,7 +14,7 @@ from ..files.quoted import written
 from ..formula import measured
 from ..formula.field import FormulaOf, called_tables
 from ..formula.functions import FUNCTIONS, check_functions
-from ..formula.text import FormulaError, parse
+from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
 from ..units.units import Quantity
@@ -85,7 +85,10 @@ class OutputField:
             raise FormulaError(f"found {written(found)}, expected a formula")
         terms = _Terms()
         context = info.context or {}
-        tree = terms.visit(with_variables(parse(found), context.get("variables") or {}))
+        variables = context.get("variables") or {}
+        whole = with_variables(parse(found), variables)
+        expanded = as_written(whole) if variables else ""
+        tree = terms.visit(whole)
         tables = context.get("tables") or {}
         check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*MEASURES, *ACTIONS))
         places = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(terms.found)}
@@ -95,7 +98,8 @@ class OutputField:
         called = called_tables(tree, tables)
         _NAMES.dimension_of(tree, used, called, places)
         values = {name: quantity.value for name, quantity in used.items()}
-        return Output(found, tree, tuple(terms.found), values, called)
+        own = {name: quantity for name, quantity in used.items() if name in parameters}
+        return Output(found, tree, tuple(terms.found), values, called, own, expanded)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
