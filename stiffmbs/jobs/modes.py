@@ -110,7 +110,8 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
         )
     rolling = state.n_poses - state.degrees_of_freedom
     if rolling:
-        yield f"{rolling} directions in which poses vary without a free velocity (rolling constraints) have no mode"
+        ways = "one direction" if rolling == 1 else f"{rolling} directions"
+        yield f"constraints of velocities alone, as of rolling, leave {ways} of poses without a free velocity, which have no mode"
     extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
     if extra > 0:
         yield f"the state is a singular pose: {extra} degrees of freedom more than in general"

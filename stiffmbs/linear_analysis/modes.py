@@ -59,7 +59,7 @@ class Mode:
     def damping_ratio(self) -> float:
         """Of the critical damping: -(s_1 + s_2)/2 over the undamped natural frequency; nan for a rigid body motion."""
         natural = 2 * np.pi * self.natural_frequency
-        return float(-sum(self.eigenvalues).real / 2 / natural) if natural else float("nan")
+        return float(0.0 - sum(self.eigenvalues).real / 2 / natural) if natural else float("nan")
 
     @property
     def is_stable(self) -> bool:
