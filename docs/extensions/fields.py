@@ -14,7 +14,7 @@ from stiffmbs.describe.formula.field import FormulaOf
 from stiffmbs.describe.marker import MarkerReference, Placement
 from stiffmbs.describe.spatial.marker import Placement as SpatialPlacement
 from stiffmbs.describe.spatial.orientation import OrientationField
-from stiffmbs.describe.units.units import DIMENSIONS
+from stiffmbs.describe.units.units import ANY, DIMENSIONS
 
 WORDS = {
     MarkerReference: "marker",
@@ -122,4 +122,5 @@ def _formula(mark: FormulaOf) -> str:
     names = [*mark.variables, *(["t"] if mark.time else [])]
     names += ["coordinates"] if mark.coordinates else []
     names += ["velocities"] if mark.velocities else []
-    return f"formula of {', '.join(names)}" + (" or table" if mark.table else "")
+    unit = "" if mark.dimension == ANY else f" ({DIMENSIONS[mark.dimension][1]})"
+    return f"formula of {', '.join(names)}" + (" or table" if mark.table else "") + unit

@@ -82,7 +82,8 @@ class ModelData(Described):
                 if used:
                     name = used.group()
                     raise ValueError(
-                        f"found '{name}' in '{quoted(text)}', which is a unit and a request, expected one or the other"
+                        f"found '{name}' in '{quoted(text)}', which is a unit and a request, expected one or the other: "
+                        "rename the request"
                     )
         return named
 

@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
 from .fields import sentence
 from .figure import Figure
-from .files.expand import read_parameters, read_tables, refuse_unused_parameters, repeat_entries, set_value
+from .files.expand import (
+    read_parameters,
+    read_tables,
+    refuse_unused_parameters,
+    repeat_entries,
+    replaced_parameters,
+    set_value,
+)
 from .files.quoted import written
 from .files.yaml_text import line_of, read_yaml
 from .model import PlanarData
 from .model_data import ModelData
 from .settings import RunSettings
 from .table import Table
+from .units.units import Quantity, in_text
 
 SECTIONS = ("bodies", "joints", "forces")
 
@@ -33,6 +41,11 @@ class Scene(ModelData):
     )
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
+    _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
+
+    def written_parameters(self) -> dict[str, float | str]:
+        """The parameters as a scene writes them, with their units."""
+        return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
@@ -106,11 +119,12 @@ def made_scene(
         When it is no valid scene.
     """
     refuse_unused_parameters(found, changes)
+    replaced = replaced_parameters(found, changes)
     for path, value in changes:
         set_value(found, path, read_yaml(value, f"--set {path}"))
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found)
+        return _validated(found, replaced)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
 
@@ -145,9 +159,9 @@ class _Located(Exception):
         self.path = path
 
 
-def _validated(found: dict[str, Any]) -> Scene:
+def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity]) -> Scene:
     try:
-        parameters = read_parameters(found.get("parameters"))
+        parameters = read_parameters(found.get("parameters"), replaced)
         tables = read_tables(found.get("tables"), parameters)
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
@@ -158,13 +172,15 @@ def _validated(found: dict[str, Any]) -> Scene:
     raw["tables"] = tables
     context = {"parameters": parameters, "tables": tables}
     try:
-        return _family(raw).model_validate(raw, context=context)
+        scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
         if "dimensions" not in raw and _right_in_space(raw, context):
             raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
         message = sentence(error)
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
+    scene._quantities = parameters
+    return scene
 
 
 def _family(raw: dict[str, Any]) -> type[Scene]:

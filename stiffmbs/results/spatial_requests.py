@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from ..compile.table_values import curve
 from ..describe.formula.field import TIME
+from ..describe.formula.functions import FUNCTIONS
 from ..describe.formula.text import evaluate
-from ..describe.formula.value import branch_value, step5_value, step_value
 from ..describe.spatial.output import ACTIONS, COUNTED_ANGLES, Output, Term, ends, placeholder
 from .marker_measures import MAGNITUDES, SCALARS, VECTORS
 from .marker_motion import Motions
@@ -103,21 +102,4 @@ class _Terms:
         return (axes[0].along(acting) if axes else acting)[:, AXES.index(term.function[1])]
 
 
-_SAME_NAME = (
-    "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "trunc", "floor", "ceil",
-)  # fmt: skip
-
-
-def _rounded(x: Any) -> Any:
-    """To the nearest whole number, halves away from zero as Fortran's ANINT takes them."""
-    return np.copysign(np.floor(np.abs(x) + 0.5), x)
-
-
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
-    **{name: getattr(np, name) for name in _SAME_NAME},
-    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "mod": np.fmod,
-    "round": _rounded,
-    "sign": lambda x: np.where(np.asarray(x) >= 0, 1.0, -1.0),
-    "min": lambda *values: reduce(np.minimum, values), "max": lambda *values: reduce(np.maximum, values),
-    "step": step_value, "step5": step5_value, "branch": branch_value,
-}  # fmt: skip
+_FUNCTIONS: dict[str, Callable[..., Any]] = {name: function.array for name, function in FUNCTIONS.items()}

@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from ...describe.formula.field import TIME, reading_order
+from ...describe.formula.functions import EACH, IN_FORMULAS, Corners
 from ...errors import InputError
 from .of_time import Input
 from .zeros import AT_ONCE, ZERO, TooMany, zeros
@@ -60,18 +61,24 @@ def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
 
 
 def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Iterator[tuple[ast.expr, np.ndarray]]:
-    """What passes a level at the corners of a function (as `stiffmbs.compile.symbolic.symbols.CORNERED` says for the state)."""
+    """What passes a level at the corners of a function or table."""
     match node:
-        case ast.Call(ast.Name("abs" | "sign"), [x]) | ast.Call(ast.Name("branch"), [x, _, _, _]):
-            yield x, ZERO
-        case ast.Call(ast.Name("min" | "max"), [first, *others]):
-            for k, other in enumerate(others):
-                before = ast.Call(node.func, [first, *others[:k]], []) if k else first
-                yield ast.BinOp(before, ast.Sub(), other), ZERO
-        case ast.Call(ast.Name("step" | "step5"), [x, x0, _, x1, _]):
-            yield from ((ast.BinOp(x, ast.Sub(), end_of_ramp), ZERO) for end_of_ramp in (x0, x1))
         case ast.Call(ast.Name(name), [argument]) if name in given.tables:
             yield argument, given.tables[name].corners_between(*_range(given, argument, start, end))
+        case ast.Call(ast.Name(name)):
+            yield from ((condition, ZERO) for condition in _corners(node, IN_FORMULAS[name].corners))
+
+
+def _corners(call: ast.Call, corners: Corners) -> Iterator[ast.expr]:
+    """What is zero at the corners of a function."""
+    first, *others = call.args
+    if corners == EACH:
+        for k, other in enumerate(others):
+            before = ast.Call(call.func, [first, *others[:k]], []) if k else first
+            yield ast.BinOp(before, ast.Sub(), other)
+        return
+    for i, j in corners:
+        yield call.args[i] if j is None else ast.BinOp(call.args[i], ast.Sub(), call.args[j])
 
 
 def _range(given: Input, part: ast.expr, start: float, end: float) -> tuple[float, float]:

@@ -7,8 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.formula.value import step5_value, step_value
-from .enclosure import Enclosure, absolute, atan2, branch, exp, log, maximum, minimum, scaled, sign
+from ...describe.formula.functions import IN_FORMULAS, FormulaFunction, step5_value, step_value
+from ...describe.formula.text import evaluate, parse
+from .enclosure import (  # noqa: F401 (the table of functions names them)
+    Enclosure,
+    absolute,
+    atan2,
+    branch,
+    exp,
+    log,
+    maximum,
+    minimum,
+    scaled,
+    sign,
+)
 from .ranges import EVERYWHERE, Range, between_turns, hull, power_range, product, real_power_range, wave
 
 FACTORIALS = (1.0, 1.0, 2.0, 6.0)
@@ -158,10 +170,50 @@ def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     return _step(x, x0, h0, x1, h1, step5_value, _quintic_ramp)
 
 
+def tan(x: Enclosure) -> Enclosure:
+    return sin(x) / cos(x)
+
+
+def sqrt(x: Enclosure) -> Enclosure:
+    return x**0.5
+
+
+def acos(x: Enclosure) -> Enclosure:
+    return np.pi / 2 - asin(x)
+
+
+sinh, cosh = _hyperbolic(False), _hyperbolic(True)
+
+
+def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure]:
+    """The interval form of a function of x from that of its derivative."""
+    tree = parse(function.derivative)
+
+    def of(x: Enclosure) -> Enclosure:
+        low, high = x.value
+        own = Enclosure.of_time(low, high, max(x.order - 1, 0))  # x as its own variable
+        names = {"x": own, "pi": np.pi}
+        slope = evaluate(tree, names.__getitem__, FUNCTIONS, np.float64)
+
+        def outer(k: int) -> Range:
+            return _mean_value(function.array, x.value, slope.value) if k == 0 else slope[k - 1] / k
+
+        return x.composed(outer)
+
+    return of
+
+
+def _mean_value(function: Callable[..., np.ndarray], x: Range, slope: Range) -> Range:
+    """The range of a function by that of its slope: its values at both ends where it is monotonic (mean value form)."""
+    low, high = x
+    middle, reach = function((low + high) / 2), (high - low) / 2 * np.abs(slope).max(axis=0)
+    ends = np.sort([function(low), function(high)], axis=0)
+    monotonic = (slope[0] >= 0) | (slope[1] <= 0)
+    return np.where(monotonic, ends, [middle - reach, middle + reach])
+
+
 FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "sin": sin, "cos": cos, "tan": lambda x: sin(x) / cos(x), "sqrt": lambda x: x**0.5, "exp": exp, "log": log,
-    "sinh": _hyperbolic(False), "cosh": _hyperbolic(True), "tanh": tanh, "atan": atan, "asin": asin,
-    "acos": lambda x: np.pi / 2 - asin(x), "atan2": atan2, "abs": absolute, "sign": sign,
-    "min": minimum, "max": maximum, "step": step, "step5": step5, "branch": branch,
-}  # fmt: skip
+    name: globals()[function.enclosure] if function.enclosure else _by_derivative(function)
+    for name, function in IN_FORMULAS.items()
+}
 """The functions of formulas."""

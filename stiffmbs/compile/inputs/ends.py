@@ -15,6 +15,7 @@ import numpy as np
 
 from ...describe.element import Element
 from ...describe.formula.field import TIME, Formula, is_measure, reading_order
+from ...describe.formula.functions import EVERYWHERE, IN_FORMULAS
 from ...describe.formula.text import UNIT, evaluate
 from ..system import System
 from .enclosed_functions import FUNCTIONS
@@ -31,9 +32,9 @@ GROWS = 3.0
 """Factor by which values must grow from the one distance to the other: that of a pole of order 1/8."""
 LARGEST, DISTANCES = 1e8, np.geomspace(0.1, NEAR, 16)
 """Growth towards a pole that solvers can follow, and distances at which it is looked for, in parts of the times themselves."""
-DOMAINS = {"sqrt": (0.0, np.inf), "log": (0.0, np.inf), "asin": (-1.0, 1.0), "acos": (-1.0, 1.0)}
+DOMAINS = {name: function.domain for name, function in IN_FORMULAS.items() if function.domain != EVERYWHERE}
 """Arguments for which a function has a value."""
-RISKY = (*DOMAINS, "tan", "exp", "sinh", "cosh")
+RISKY = (*DOMAINS, *(name for name, function in IN_FORMULAS.items() if function.poles))
 """Functions that some arguments leave without a finite value."""
 
 Values = Callable[[float], float | None]

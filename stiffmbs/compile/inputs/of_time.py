@@ -6,15 +6,14 @@ import ast
 import copy
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import reduce
 from typing import Any, get_args
 
 import numpy as np
 
 from ...describe.element import Element
 from ...describe.formula.field import TIME, Formula, FormulaOf, is_measure, reading_order
+from ...describe.formula.functions import IN_FORMULAS
 from ...describe.formula.text import BINARY, UNARY, UNIT
-from ...describe.formula.value import branch_value, step5_value, step_value
 from ...describe.table import Table
 from ..system import System
 from .enclosed_functions import FUNCTIONS as ENCLOSED
@@ -231,11 +230,5 @@ def _by_argument(of_numbers: Callable[..., Any], of_enclosures: Callable[..., An
     return lambda *x: (of_enclosures if any(isinstance(part, Enclosure) for part in x) else of_numbers)(*x)
 
 
-_SAME_NAME = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign")
-_OF_ARRAYS: dict[str, Callable[..., Any]] = {
-    **{name: getattr(np, name) for name in _SAME_NAME},
-    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2,
-    "min": lambda *values: reduce(np.minimum, values), "max": lambda *values: reduce(np.maximum, values),
-    "step": step_value, "step5": step5_value, "branch": branch_value,
-}  # fmt: skip
+_OF_ARRAYS: dict[str, Callable[..., Any]] = {name: function.array for name, function in IN_FORMULAS.items()}
 _OF_ENCLOSURES = {name: _by_argument(of_arrays, ENCLOSED[name]) for name, of_arrays in _OF_ARRAYS.items()}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
+from ...describe.formula.functions import FUNCTIONS
 from ..terms import KERNEL_ARGUMENTS, TERM_SETS
 from .continuous_angle import CountedAngle, counter
 from .derive import Derived
@@ -15,7 +16,26 @@ from .nonsmooth import CorneredBase, Step
 from .relative_rotation import Unwound
 from .spline import Spline
 
-HEADER = "from stiffmbs.compile.machine.native.nonsmooth import chosen, greater, inside, less, magnitude, sign, step, step5\nfrom stiffmbs.compile.machine.native.continuous_angle import counted_angle\nfrom stiffmbs.compile.machine.native.spline import spline\nfrom stiffmbs.compile.machine.native.rotation_vector import unwound\nfrom math import acos, asin, atan, atan2, copysign, cos, cosh, exp, log, sin, sinh, sqrt, tan, tanh\n\n\n"
+
+def _natives(base: type[CorneredBase]) -> set[str]:
+    """The native functions of the functions with corners."""
+    return {each.native for each in base.__subclasses__()}.union(*map(_natives, base.__subclasses__()))
+
+
+def _imported(module: str, names: Iterable[str]) -> str:
+    return f"from {module} import {', '.join(sorted(names))}\n"
+
+
+NATIVE = "stiffmbs.compile.machine.native"
+HEADER = (
+    _imported(f"{NATIVE}.nonsmooth", _natives(CorneredBase))
+    + _imported(f"{NATIVE}.continuous_angle", ["counted_angle"])
+    + _imported(f"{NATIVE}.spline", ["spline"])
+    + _imported(f"{NATIVE}.rotation_vector", ["unwound"])
+    + _imported("math", ["copysign", *(name for name, function in FUNCTIONS.items() if function.in_c)])
+    + "\n\n"
+)
+"""What kernels may call."""
 
 
 class _Printer(PythonCodePrinter):

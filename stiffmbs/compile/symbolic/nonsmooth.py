@@ -181,19 +181,3 @@ def less(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
     for other in others:
         first = Less(first, other)
     return first
-
-
-def _differences(first: sp.Expr, *others: sp.Expr) -> tuple[sp.Expr, ...]:
-    return tuple(first - other for other in others)
-
-
-CORNERED: dict[str, tuple[Callable[..., sp.Expr], Callable[..., tuple[sp.Expr, ...]]]] = {
-    "abs": (Magnitude, lambda x: (x,)),
-    "sign": (Sign, lambda x: (x,)),
-    "min": (less, _differences),
-    "max": (greater, _differences),
-    "step": (step, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
-    "step5": (step5, lambda x, x0, h0, x1, h1: (x - x0, x - x1)),
-    "branch": (Chosen, lambda x, below, at, above: (x,)),
-}
-"""Functions of formulas with corners, and what is zero there."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -11,18 +11,18 @@ from typing import Any
 import sympy as sp
 
 from ...describe.formula.field import TIME
+from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Corners, FormulaFunction
 from ...describe.formula.text import evaluate
 from ..kind import OWN, Kind, Shape
-from . import planar_frames, spatial_frames
+from . import nonsmooth, planar_frames, spatial_frames
 from .differentiate import Derivatives
 from .frames import ReferredJoint, SymbolicElement
 from .measures import measure, own_coordinate
-from .nonsmooth import CORNERED
 from .spline import Spline
 
 NARROW: dict[type[sp.Basic], str] = {
-    sp.exp: "exp", sp.cosh: "exp", sp.sinh: "exp", sp.tanh: "tanh", sp.atan: "atan",
-}  # fmt: skip
+    getattr(sp, name): function.zones for name, function in FUNCTIONS.items() if function.zones
+}
 """Functions whose features are narrow where their argument is steep, and the zones that they have."""
 
 
@@ -193,15 +193,15 @@ class _Builder:
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
         """The functions of formulas; those with corners note where they are, if it is in the state."""
 
-        def noting(function: Callable[..., sp.Expr], corners: Callable[..., tuple[sp.Expr, ...]]) -> Any:
+        def noting(name: str, function: FormulaFunction) -> Any:
             def called(*arguments: sp.Expr) -> sp.Expr:
-                for corner in corners(*arguments):
+                for corner in _corners(function, arguments):
                     self.symbols.note_switch(corner)
-                return function(*arguments)
+                return getattr(nonsmooth, function.symbolic)(*arguments)
 
-            return called
+            return SMOOTH.get(name, called)
 
-        return SMOOTH | {name: noting(function, corners) for name, (function, corners) in CORNERED.items()}
+        return {name: noting(name, function) for name, function in IN_FORMULAS.items()}
 
     def measure(self, name: str, markers: list[Any]) -> sp.Expr:
         """A measure between markers, or a coordinate of a spatial body in its own axes."""
@@ -215,9 +215,13 @@ class _Builder:
         return Spline(x, table, sp.Integer(0))
 
 
+def _corners(function: FormulaFunction, arguments: tuple[sp.Expr, ...]) -> Iterator[sp.Expr]:
+    """What is zero at a function's corners."""
+    each: Corners = tuple((0, k) for k in range(1, len(arguments)))
+    for i, k in each if function.corners == EACH else function.corners:
+        yield arguments[i] if k is None else arguments[i] - arguments[k]
+
+
 SMOOTH: dict[str, Callable[..., sp.Expr]] = {
-    name: getattr(sp, name)
-    for name in (
-        "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
-    )
-}  # fmt: skip
+    name: getattr(sp, name) for name, function in FUNCTIONS.items() if function.in_c
+}

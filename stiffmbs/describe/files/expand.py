@@ -15,12 +15,12 @@ from pydantic import ValidationError as PydanticError
 
 from ...errors import InputError
 from ..fields import NAME_PATTERN, sentence
-from ..formula.field import FUNCTIONS as FORMULA_FUNCTIONS
 from ..formula.field import TIME
+from ..formula.functions import IN_FORMULAS, IN_NUMBERS
 from ..formula.names import MEASURES
 from ..formula.text import UNIT, FormulaError
 from ..table import Table
-from ..units.quantity import FUNCTIONS, in_si, quantity
+from ..units.quantity import in_si, quantity
 from ..units.units import CONSTANTS, Quantity
 from .quoted import written
 
@@ -75,8 +75,14 @@ def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str,
             )
 
 
-def read_parameters(found: Any) -> dict[str, Quantity]:
+def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) -> dict[str, Quantity]:
     """The scene's own names; one may use those above it.
+
+    Parameters
+    ----------
+    found : mapping of str to number or text
+    replaced : mapping of str to Quantity, optional
+        What some of them were before they were set from outside: a plain number takes the SI unit of what it replaces.
 
     Raises
     ------
@@ -91,7 +97,7 @@ def read_parameters(found: Any) -> dict[str, Quantity]:
     for name, value in found.items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             raise InputError(f"parameters: found the name {written(name)}, expected letters, digits and _")
-        if name in CONSTANTS or name in FUNCTIONS or name in (TIME, UNIT):
+        if name in CONSTANTS or name in IN_NUMBERS or name in (TIME, UNIT):
             raise InputError(f"parameters.{name}: found the name of a constant or function, expected another")
         try:
             parameters[name] = (
@@ -99,7 +105,18 @@ def read_parameters(found: Any) -> dict[str, Quantity]:
             )
         except FormulaError as error:
             raise InputError(f"parameters.{name}: {error}") from None
+        if replaced and name in replaced and parameters[name].dimension is None:
+            parameters[name] = Quantity(parameters[name].value, replaced[name].dimension)
     return parameters
+
+
+def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, str]]) -> dict[str, Quantity]:
+    """The parameters that changes replace, as the scene has them; none where it cannot be read."""
+    changed = {path.removeprefix("parameters.") for path, _ in changes}
+    try:
+        return {name: value for name, value in read_parameters(scene.get("parameters")).items() if name in changed}
+    except InputError:
+        return {}
 
 
 def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
@@ -118,7 +135,7 @@ def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Tab
     for name, table in found.items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             raise InputError(f"tables: found the name {written(name)}, expected letters, digits and _")
-        if name in (*FUNCTIONS, *FORMULA_FUNCTIONS, *MEASURES, *parameters):
+        if name in (*IN_FORMULAS, *MEASURES, *parameters):
             raise InputError(f"tables.{name}: found the name of a function or parameter, expected another")
         try:
             tables[name] = Table.model_validate(table, context={"parameters": parameters})
@@ -161,7 +178,7 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
     if match is None:
         raise InputError(f"{where}.for: found {written(text)}, expected a loop such as 'k in 1..N'")
     variable = match[1]
-    if variable in parameters or variable in FUNCTIONS:
+    if variable in parameters or variable in IN_NUMBERS:
         raise InputError(f"{where}.for: found the loop variable '{variable}', which has a meaning already")
     try:
         first, last = (quantity(bound, parameters).value for bound in (match[2], match[3]))

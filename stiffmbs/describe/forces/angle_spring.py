@@ -7,7 +7,7 @@ from typing import Any, Generic, Literal, TypeVar
 from pydantic import Field
 
 from ..element import Symbolic
-from ..formula.field import OfDeflection, OfRate
+from ..formula.field import TorqueOfDeflection, TorqueOfRate
 from ..marker import MarkerReference
 from ..units import si
 from .spring import Spring
@@ -25,8 +25,10 @@ class AngleSpring(Spring, Generic[M]):
     damping: si.TorsionalDamping = Field(0.0, description="c, N m s/rad")
     free_angle: si.Angle = Field(0.0, description="angle of i against j without moment of the spring, rad")
     preload: si.Torque = Field(0.0, description="moment added at every angle, N m")
-    spring_law: OfDeflection | None = Field(None, description="moment added over s = angle - free_angle (rad), N m")
-    damper_law: OfRate | None = Field(None, description="moment added over v = angle' (rad/s), N m")
+    spring_law: TorqueOfDeflection | None = Field(
+        None, description="moment added over s = angle - free_angle (rad), N m"
+    )
+    damper_law: TorqueOfRate | None = Field(None, description="moment added over v = angle' (rad/s), N m")
 
     @staticmethod
     def angle(e: Symbolic) -> Any:

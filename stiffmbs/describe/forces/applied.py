@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field
 
 from ..element import Force, Symbolic
-from ..formula.field import OfMotion
+from ..formula.field import ForceOfMotion, TorqueOfMotion
 from ..marker import Marker
 
 
@@ -34,7 +34,7 @@ class AppliedForce(Force):
     type: Literal["force"] = "force"
     i: Marker = Field(description="marker at which the force acts")
     j: Marker | None = Field(None, description="a second body, which takes the opposite force at the same point")
-    force: tuple[OfMotion, OfMotion] = Field(description="components along x and y, N: numbers or formulas")
+    force: tuple[ForceOfMotion, ForceOfMotion] = Field(description="components along x and y, N: numbers or formulas")
     axes: Literal["ground", "body"] = Field("ground", description="whether x and y are the ground's or marker i's axes")
 
     @staticmethod
@@ -67,7 +67,7 @@ class AppliedTorque(Force):
     type: Literal["torque"] = "torque"
     i: Marker = Field(description="marker of the body on which the torque acts")
     j: Marker | None = Field(None, description="marker of a second body, which takes the opposite torque")
-    torque: OfMotion = Field(description="about z, N m: a number or a formula")
+    torque: TorqueOfMotion = Field(description="about z, N m: a number or a formula")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:

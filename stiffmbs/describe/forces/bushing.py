@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, WithJsonSchema, field_validator
 
 from ..element import Force, Symbolic
-from ..formula.field import OfDeflection
+from ..formula.field import ForceOfDeflection, TorqueOfDeflection
 from ..marker import Marker
 from ..units import si
 from .matrix import check_symmetric, from_diagonal, product
@@ -62,9 +62,11 @@ class Bushing(Force):
     preload: tuple[si.Force, si.Force, si.Torque] = Field(
         NONE, description="force and torque on i without deformation, N, N, N m"
     )
-    law_x: OfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
-    law_y: OfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
-    law_angle: OfDeflection | None = Field(None, description="moment against the rotation added over s (rad), N m")
+    law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
+    law_y: ForceOfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
+    law_angle: TorqueOfDeflection | None = Field(
+        None, description="moment against the rotation added over s (rad), N m"
+    )
     axes: Literal["j", "ground"] = Field("j", description="whether x and y are marker j's or the ground's axes")
 
     _symmetric = field_validator("stiffness", "damping")(check_symmetric)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 from pydantic import Field
 
 from ..element import Force, Symbolic
-from ..formula.field import OfMotion
+from ..formula.field import ForceOfMotion
 from ..marker import Marker, MarkerReference
 
 if TYPE_CHECKING:
@@ -23,7 +23,9 @@ class ForceAlongLine(Force, Generic[M]):
     type: Literal["line_force"] = "line_force"
     i: M = Field(description="marker of the first body, on which the force is reported")
     j: M = Field(description="marker of the second body")
-    force: OfMotion = Field(description="N, pushing the points apart where it is above zero: a number or a formula")
+    force: ForceOfMotion = Field(
+        description="N, pushing the points apart where it is above zero: a number or a formula"
+    )
 
     def misplaced(self, model: ModelData) -> Iterator[str]:
         """Points at one place give the force no direction."""

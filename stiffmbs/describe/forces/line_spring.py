@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 from pydantic import Field
 
 from ..element import Symbolic
-from ..formula.field import OfDeflection, OfRate
+from ..formula.field import ForceOfDeflection, ForceOfRate
 from ..marker import MarkerReference
 from ..units import si
 from .spring import Spring
@@ -29,8 +29,8 @@ class LineSpring(Spring, Generic[M]):
     damping: si.Damping = Field(0.0, description="c, N s/m")
     free_length: si.LengthOrZero = Field(0.0, description="L0, the length without tension of the spring, m")
     preload: si.Force = Field(0.0, description="tension added at every length, N")
-    spring_law: OfDeflection | None = Field(None, description="tension added over s = L - L0 (m), N")
-    damper_law: OfRate | None = Field(None, description="tension added over v = L' (m/s), N")
+    spring_law: ForceOfDeflection | None = Field(None, description="tension added over s = L - L0 (m), N")
+    damper_law: ForceOfRate | None = Field(None, description="tension added over v = L' (m/s), N")
 
     def misplaced(self, model: ModelData) -> Iterator[str]:
         """Points at one place give the spring's force no direction."""

@@ -14,9 +14,12 @@ from pydantic_core import core_schema
 from ..files.quoted import quoted, written
 from ..marker import GROUND, MarkerReference
 from ..table import Table
-from ..units.quantity import as_float
-from ..units.units import CONSTANTS, UNITS, Quantity
-from .functions import FUNCTIONS, OF_TABLE, check_functions
+from ..units.quantity import as_float, is_unit, of_name
+from ..units.units import ANY, CONSTANTS, UNITS, Quantity
+from . import measured
+from .check_dimensions import check_dimension, dimension_of
+from .dimension import UNKNOWN, Known, measured_in
+from .functions import FUNCTIONS, IN_FORMULAS, check_functions
 from .names import MEASURES
 from .text import UNIT, FormulaError, parse
 
@@ -41,6 +44,8 @@ class Formula:
         Whether it may hold velocities.
     tables : mapping of str to Table
         The scene's tables that it calls as functions.
+    dimension : Known
+        Of its value.
     """
 
     text: str
@@ -49,6 +54,7 @@ class Formula:
     values: dict[str, float]
     velocities: bool = False
     tables: Mapping[str, Table] = field(default_factory=dict)
+    dimension: Known = UNKNOWN
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
@@ -128,17 +134,23 @@ def called_tables(tree: ast.expr, tables: Mapping[str, Table]) -> dict[str, Tabl
 
 @dataclass(frozen=True)
 class FormulaOf:
-    """Marks a field as a formula: ``Annotated[Formula, FormulaOf(("s",), time=False)]``.
+    """Marks a field as a formula: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
 
     Parameters
     ----------
     variables : tuple of str
         Names with a meaning of the field's own.
+    measured_in : tuple of str
+        Their dimensions, of `stiffmbs.describe.units.units.DIMENSIONS`.
+    dimension : str
+        That of the value; `ANY` where every one will do.
     time, coordinates, velocities, table : bool
         Whether t, body coordinates and measures, and their rates may occur, and a table may stand in its place.
     """
 
     variables: tuple[str, ...] = ()
+    measured_in: tuple[str, ...] = ()
+    dimension: str = ANY
     time: bool = True
     coordinates: bool = False
     velocities: bool = False
@@ -146,18 +158,17 @@ class FormulaOf:
 
     def read(self, found: Any, info: ValidationInfo) -> Formula | Table:
         """The checked formula or table of what stands in the scene."""
-        parameters: dict[str, Quantity] = (info.context or {}).get("parameters") or {}
         if isinstance(found, Formula):
             self._check(found)
             return found
         if isinstance(found, Table | dict) and self.table:
             return found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
-        known = {name: value.value for name, value in parameters.items()}
-        formula = self._made(found, known, (info.context or {}).get("tables") or {})
+        context = info.context or {}
+        formula = self._made(found, context.get("parameters") or {}, context.get("tables") or {})
         self._check(formula)
         return formula
 
-    def _made(self, found: Any, parameters: dict[str, float], tables: Mapping[str, Table]) -> Formula:
+    def _made(self, found: Any, parameters: Mapping[str, Quantity], tables: Mapping[str, Table]) -> Formula:
         if isinstance(found, Real) and not isinstance(found, bool):
             found = repr(as_float(found))
         elif hasattr(found, "free_symbols"):
@@ -168,39 +179,72 @@ class FormulaOf:
             allowed = "a formula or a table" if self.table else "a formula"
             raise FormulaError(f"found {written(found)}, expected {allowed}")
         tree = parse(found)
-        known = FUNCTIONS | dict.fromkeys(tables, OF_TABLE)
-        check_functions(tree, known, MEASURES, (*known, *MEASURES) if self.coordinates else tuple(known))
-        values = dict(self.values(found, tree, parameters))
-        return Formula(found, tree, self.variables, values, self.velocities, called_tables(tree, tables))
+        check_functions(
+            tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
+        )
+        used = dict(self.quantities(found, tree, parameters))
+        values = {name: quantity.value for name, quantity in used.items()}
+        dimension = self.dimension_of(tree, used)
+        return Formula(found, tree, self.variables, values, self.velocities, called_tables(tree, tables), dimension)
 
-    def values(self, text: str, tree: ast.expr, known: Mapping[str, float]) -> Iterator[tuple[str, float]]:
-        """The parameters, units and constants in a tree with their values in SI units.
+    def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
+        """The parameters, units and constants in a tree.
 
         Raises
         ------
         FormulaError
-            For a name without a meaning.
+            For a name without a meaning, or with two.
         """
         for node in reading_order(tree):
             match node:
                 case ast.Attribute(ast.Name(owner), name) if owner == UNIT:
                     if name not in UNITS:
                         raise FormulaError(f"found '{name}' after a number in '{quoted(text)}', expected a unit")
-                    yield f"{UNIT}.{name}", UNITS[name].value
+                    yield f"{UNIT}.{name}", UNITS[name]
                 case ast.Name(name) if name != TIME and name not in self.variables:
-                    yield name, self._value(text, name, known)
+                    yield name, self._quantity(name, text, tree, known)
 
-    def _value(self, text: str, name: str, known: Mapping[str, float]) -> float:
-        if name in known:
-            return known[name]
-        units = {} if self.variables else UNITS  # a lone s in a law of v would be a second
-        for table in (units, CONSTANTS):
-            if name in table:
-                return table[name].value
+    def _quantity(self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Quantity:
+        stated = not self.variables or any(map(is_unit, ast.walk(tree)))
+        units = UNITS if stated else {}  # a lone s in a law of v would be a second
+        if name in known or name in units or name in CONSTANTS:
+            return of_name(name, text, tree, known, units)
         meanings = [*self.variables, *(["t"] if self.time else [])]
         meanings += ["a body's coordinate such as cart.x"] if self.coordinates else []
         expected = ", ".join([*meanings, "a parameter of the scene"])
         raise FormulaError(f"found the unknown name '{name}' in '{quoted(text)}', expected {expected}")
+
+    def dimension_of(
+        self, tree: ast.expr, used: Mapping[str, Quantity], terms: Mapping[str, Known] | None = None
+    ) -> Known:
+        """The dimension of a formula's value.
+
+        Parameters
+        ----------
+        tree : ast.expr
+        used : mapping of str to Quantity
+            As `quantities` finds them.
+        terms : mapping of str to Known, optional
+            Other names in the tree.
+
+        Raises
+        ------
+        FormulaError
+            When a unit stands in it and dimensions do not fit; without any it is in SI units as it stands.
+        """
+        own = zip(self.variables, map(measured_in, self.measured_in), strict=False)
+        names: dict[str, Quantity | Known] = {TIME: measured.TIME, **dict(own), **used, **(terms or {})}
+
+        def called(call: ast.Call) -> Known | None:
+            name = call.func.id  # type: ignore[attr-defined]
+            return measured.MEASURES.get(name, UNKNOWN) if is_measure(call) or name not in FUNCTIONS else None
+
+        try:
+            return dimension_of(tree, lambda name: names.get(name) or measured.of_coordinate(name), called)
+        except FormulaError:
+            if any(quantity.dimension is not None for quantity in used.values()):
+                raise
+            return UNKNOWN
 
     def _check(self, formula: Formula) -> None:
         if not self.time and any(isinstance(n, ast.Name) and n.id == TIME for n in reading_order(formula.tree)):
@@ -209,6 +253,7 @@ class FormulaOf:
         used += [f"{name}(...)" for name, _ in formula.measures()]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
+        check_dimension(formula.text, formula.dimension, self.dimension)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
@@ -226,7 +271,12 @@ OfPosition = Annotated[Formula, FormulaOf(coordinates=True)]
 """A formula of coordinates and time."""
 OfMotion = Annotated[Formula, FormulaOf(coordinates=True, velocities=True)]
 """A formula of coordinates, velocities and time."""
-OfDeflection = Annotated[Formula | Table, FormulaOf(("s",), time=False, table=True)]
+ForceOfMotion = Annotated[Formula, FormulaOf(dimension="force", coordinates=True, velocities=True)]
+TorqueOfMotion = Annotated[Formula, FormulaOf(dimension="torque", coordinates=True, velocities=True)]
+"""The same for a force, and for a torque."""
+ForceOfDeflection = Annotated[Formula | Table, FormulaOf(("s",), ("length",), "force", time=False, table=True)]
+TorqueOfDeflection = Annotated[Formula | Table, FormulaOf(("s",), ("angle",), "torque", time=False, table=True)]
 """A formula or a table of a deflection s."""
-OfRate = Annotated[Formula | Table, FormulaOf(("v",), time=False, table=True)]
+ForceOfRate = Annotated[Formula | Table, FormulaOf(("v",), ("velocity",), "force", time=False, table=True)]
+TorqueOfRate = Annotated[Formula | Table, FormulaOf(("v",), ("angular velocity",), "torque", time=False, table=True)]
 """A formula or a table of a rate v."""

@@ -1,12 +1,22 @@
-"""The functions that formulas may call, and how many arguments each of them takes."""
+"""The functions that formulas may call, one entry each: what every part of the program knows of them.
+
+A new function is one entry here, and nothing else for one of SymPy's functions of one number, such as ``asinh``: SymPy
+differentiates it, kernels call it by its name in C's library, and its interval form follows from its derivative.
+"""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Mapping
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial, reduce
+from typing import Any
 
-from .text import FormulaError
+import numpy as np
+
+from .dimension import Known, Part, alike, of_angle, of_branch, of_first, of_numbers, of_root, of_step, plain_always
+from .text import FormulaError, real_power
 
 
 @dataclass(frozen=True)
@@ -24,34 +34,184 @@ class Takes:
 
 
 ONE = Takes(1)
-FUNCTIONS: dict[str, Takes] = {
-    **dict.fromkeys(
-        ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign"), ONE
-    ),
-    "atan2": Takes(2), "min": Takes(1, True), "max": Takes(1, True), "step": Takes(5), "step5": Takes(5),
-    "branch": Takes(4),
-}  # fmt: skip
-"""What all formulas may call.  ``step(x, x0, h0, x1, h1)`` goes from h0 to h1 by a cubic, ``step5`` by a quintic;
-``branch(x, below, at, above)`` is the second, third or fourth for an x below, at or above zero."""
-ROUNDING: dict[str, Takes] = {"mod": Takes(2), **dict.fromkeys(("trunc", "round", "floor", "ceil"), ONE)}
-"""What formulas that are only reported may call too: steps, which no integrator could follow."""
 OF_TABLE = ONE
+Corners = tuple[tuple[int, int | None], ...]
+"""The arguments whose difference passes zero at a function's corners; None for zero itself."""
+EACH: Corners = ((0, -1),)
+"""Where the first argument, or the one chosen before, passes each of the others."""
+EVERYWHERE = (-math.inf, math.inf)
+Rule = Callable[[Sequence[Part], ast.expr], Known]
+"""From the dimensions of a function's arguments, and the call for messages, to that of its value."""
+
+
+@dataclass(frozen=True)
+class FormulaFunction:
+    """A function of formulas: all that the program knows of it, or where that is.
+
+    Attributes
+    ----------
+    takes : Takes
+    dimension : Rule
+    value : callable
+        Of numbers.
+    array : callable
+        Of NumPy's arrays.
+    symbolic : str
+        What stands for it in equations, and in kernels: ``sympy.sin``, which is also called so in C's library, or a class or
+        function of `stiffmbs.compile.symbolic.nonsmooth`.  Empty for a function whose value jumps, so that no integrator could
+        follow it: only formulas that are reported may call it.
+    enclosure : str
+        Its interval form, of `stiffmbs.compile.inputs.enclosed_functions`; empty where that follows from the derivative.
+    derivative : str
+        By x, of a function of x, as a formula.
+    corners : Corners
+    domain : (float, float)
+        Arguments for which it has a value.
+    poles : bool
+        Whether it grows beyond all bounds within its domain.
+    zones : str
+        The zones of `stiffmbs.compile.law_zones` in which its features are narrow where the argument is steep.
+    in_numbers : bool
+        Whether numbers may call it, and not only formulas.
+    """
+
+    takes: Takes
+    dimension: Rule
+    value: Callable[..., float]
+    array: Callable[..., Any]
+    symbolic: str = ""
+    enclosure: str = ""
+    derivative: str = ""
+    corners: Corners = ()
+    domain: tuple[float, float] = EVERYWHERE
+    poles: bool = False
+    zones: str = ""
+    in_numbers: bool = False
+
+    @property
+    def in_c(self) -> bool:
+        """Whether kernels call it by the name that it has in C's library."""
+        return self.symbolic.startswith("sympy.")
+
+
+def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    """Adams' STEP, of numbers or arrays: from h0 at x0 to h1 at x1 by a cubic that is flat at both ends."""
+    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
+    return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
+
+
+def step5_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+    """Adams' STEP5, of numbers or arrays: from h0 at x0 to h1 at x1 by a quintic without slope and curvature at both ends."""
+    z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
+    return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
+
+
+def branch_value(x: Any, below: Any, at: Any, above: Any) -> Any:
+    """One of three, of numbers or arrays, by the sign of the first (Adams' IF)."""
+    return np.select([np.less(x, 0), np.greater(x, 0)], [below, above], at)
+
+
+def rounded(x: Any) -> Any:
+    """To the nearest whole number, halves away from zero as Fortran's ANINT takes them."""
+    return np.copysign(np.floor(np.abs(x) + 0.5), x)
+
+
+def _greatest(*values: Any) -> Any:
+    return reduce(np.maximum, values)
+
+
+def _least(*values: Any) -> Any:
+    return reduce(np.minimum, values)
+
+
+def _sign(x: Any) -> Any:
+    return np.where(np.asarray(x) >= 0, 1.0, -1.0)
+
+
+def _smooth(value: Callable[[float], float], array: Callable[..., Any], **others: Any) -> FormulaFunction:
+    """A function of a plain number or an angle."""
+    name = value.__name__
+    enclosure = "" if "derivative" in others else name
+    return FormulaFunction(
+        ONE, of_numbers, value, array, symbolic=f"sympy.{name}", enclosure=enclosure, in_numbers=True, **others
+    )
+
+
+FUNCTIONS: dict[str, FormulaFunction] = {
+    "sin": _smooth(math.sin, np.sin),
+    "cos": _smooth(math.cos, np.cos),
+    "tan": _smooth(math.tan, np.tan, poles=True),
+    "asin": _smooth(math.asin, np.arcsin, domain=(-1.0, 1.0)),
+    "acos": _smooth(math.acos, np.arccos, domain=(-1.0, 1.0)),
+    "atan": _smooth(math.atan, np.arctan, zones="atan"),
+    "sinh": _smooth(math.sinh, np.sinh, poles=True, zones="exp"),
+    "cosh": _smooth(math.cosh, np.cosh, poles=True, zones="exp"),
+    "tanh": _smooth(math.tanh, np.tanh, zones="tanh"),
+    "asinh": _smooth(math.asinh, np.arcsinh, derivative="1/sqrt(1 + x^2)"),
+    "exp": _smooth(math.exp, np.exp, poles=True, zones="exp"),
+    "log": _smooth(math.log, np.log, domain=(0.0, math.inf)),
+    "sqrt": FormulaFunction(
+        ONE, of_root, partial(real_power, exponent=0.5), np.sqrt, symbolic="sympy.sqrt", enclosure="sqrt",
+        domain=(0.0, math.inf), in_numbers=True,
+    ),
+    "atan2": FormulaFunction(
+        Takes(2), of_angle, math.atan2, np.arctan2, symbolic="sympy.atan2", enclosure="atan2", in_numbers=True
+    ),
+    "abs": FormulaFunction(
+        ONE, of_first, abs, np.abs, symbolic="Magnitude", enclosure="absolute", corners=((0, None),), in_numbers=True
+    ),
+    "min": FormulaFunction(
+        Takes(1, True), alike, lambda *values: min(values), _least, symbolic="less", enclosure="minimum", corners=EACH,
+        in_numbers=True,
+    ),
+    "max": FormulaFunction(
+        Takes(1, True), alike, lambda *values: max(values), _greatest, symbolic="greater", enclosure="maximum", corners=EACH,
+        in_numbers=True,
+    ),
+    "sign": FormulaFunction(
+        ONE, plain_always, partial(math.copysign, 1.0), _sign, symbolic="Sign", enclosure="sign", corners=((0, None),)
+    ),
+    "step": FormulaFunction(
+        Takes(5), of_step, step_value, step_value, symbolic="step", enclosure="step", corners=((0, 1), (0, 3))
+    ),
+    "step5": FormulaFunction(
+        Takes(5), of_step, step5_value, step5_value, symbolic="step5", enclosure="step5", corners=((0, 1), (0, 3))
+    ),
+    "branch": FormulaFunction(
+        Takes(4), of_branch, branch_value, branch_value, symbolic="Chosen", enclosure="branch", corners=((0, None),)
+    ),
+    "mod": FormulaFunction(Takes(2), alike, math.fmod, np.fmod),
+    "trunc": FormulaFunction(ONE, of_numbers, math.trunc, np.trunc),
+    "round": FormulaFunction(ONE, of_numbers, rounded, rounded),
+    "floor": FormulaFunction(ONE, of_numbers, math.floor, np.floor),
+    "ceil": FormulaFunction(ONE, of_numbers, math.ceil, np.ceil),
+}  # fmt: skip
+"""``step(x, x0, h0, x1, h1)`` goes from h0 to h1 by a cubic, ``step5`` by a quintic; ``branch(x, below, at, above)`` is the
+second, third or fourth for an x below, at or above zero; ``mod`` has the sign of its first argument."""
+IN_NUMBERS = {name: function for name, function in FUNCTIONS.items() if function.in_numbers}
+IN_FORMULAS = {name: function for name, function in FUNCTIONS.items() if function.symbolic}
 
 
 def check_functions(
-    tree: ast.expr, known: Mapping[str, Takes], measures: Collection[str], listed: Collection[str]
+    tree: ast.expr,
+    known: Mapping[str, FormulaFunction],
+    *,
+    tables: Collection[str] = (),
+    measures: Collection[str] = (),
+    listed: Collection[str] = (),
 ) -> None:
     """Refuse calls of unknown functions, with a list of those that are expected, and calls with too few or too many arguments.
 
     Parameters
     ----------
     tree : ast.expr
-    known : mapping of str to Takes
-        The functions by name.
+    known : mapping of str to FormulaFunction
+    tables : collection of str
+        Tables that may be called.
     measures : collection of str
         What is called with markers, which are counted elsewhere.
     listed : collection of str
-        The names in the list.
+        Measures and the like in the list of what is expected.
 
     Raises
     ------
@@ -60,9 +220,9 @@ def check_functions(
     for node in ast.walk(tree):
         match node:
             case ast.Call(ast.Name(name), arguments) if name not in measures:
-                if name not in known:
-                    raise FormulaError(f"found the unknown function '{name}', expected one of {', '.join(listed)}")
-                if len(arguments) not in known[name]:
-                    raise FormulaError(
-                        f"found {len(arguments)} arguments in '{ast.unparse(node)}', expected {known[name]}"
-                    )
+                if name not in known and name not in tables:
+                    expected = ", ".join((*known, *tables, *listed))
+                    raise FormulaError(f"found the unknown function '{name}', expected one of {expected}")
+                takes = OF_TABLE if name in tables else known[name].takes
+                if len(arguments) not in takes:
+                    raise FormulaError(f"found {len(arguments)} arguments in '{ast.unparse(node)}', expected {takes}")

@@ -25,6 +25,9 @@ LONGEST = 2000
 DEEPEST = 60
 LARGEST_LITERAL = 1e300
 
+UNIT_BY_KEYWORD = {"in": "inch"}
+"""Units whose names Python keeps to itself."""
+
 BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -73,16 +76,19 @@ def _python_spelling(text: str) -> str:
     k = 0
     while k < len(tokens):
         if _is_number(tokens[k]) and k + 1 < len(tokens) and tokens[k + 1].isidentifier():
-            end = k + 1
-            while end < len(tokens) and tokens[end].isidentifier():
-                end += _factor_length(tokens, end)
-            words += ["(", tokens[k], *_joined(tokens[k + 1 : end]), ")"]
-            k = end
-            continue
-        if words and tokens[k].isidentifier() and (words[-1].isidentifier() or words[-1] == ")"):
-            words += ["*", UNIT, "."]
-        words.append(tokens[k])
-        k += 1
+            words += ["(", tokens[k]]
+            k += 1
+            while k < len(tokens) and tokens[k].isidentifier():
+                end = k + _factor_length(tokens, k)
+                words += [*_times_unit(tokens[k]), *tokens[k + 1 : end]]
+                k = end
+            words.append(")")
+        elif words and tokens[k].isidentifier() and (words[-1].isidentifier() or words[-1] == ")"):
+            words += _times_unit(tokens[k])
+            k += 1
+        else:
+            words.append(tokens[k])
+            k += 1
     return " ".join(words)
 
 
@@ -91,20 +97,31 @@ def _is_number(token: str) -> bool:
 
 
 def _factor_length(tokens: list[str], at: int) -> int:
-    """How many tokens the unit at `at` takes with its power: ``mm``, ``mm ** 2``, ``s ** - 1``."""
-    rest = tokens[at + 1 : at + 4]
-    if rest[:1] == ["**"]:
-        return 4 if rest[1:2] == ["-"] else 3
-    return 1
+    """How many tokens the unit at `at` takes with its power: ``mm``, ``mm ** 2``, ``s ** - 1``, ``m ** ( 1 / 2 )``.
+
+    Powers bind from the right, as everywhere: ``m ** 2 ** 2`` is ``m ** 4``.
+    """
+    end = at + 1
+    while tokens[end : end + 1] == ["**"]:
+        end += 1
+        while tokens[end : end + 1] in (["-"], ["+"]):
+            end += 1
+        end = _closing(tokens, end) if tokens[end : end + 1] == ["("] else end + 1
+    return end - at
 
 
-def _joined(tokens: list[str]) -> list[str]:
-    words: list[str] = []
-    for token in tokens:
-        if token.isidentifier():
-            words += ["*", UNIT, "."]
-        words.append(token)
-    return words
+def _closing(tokens: list[str], at: int) -> int:
+    """The place behind the parenthesis that closes the one at `at`."""
+    depth = 0
+    for end in range(at, len(tokens)):
+        depth += (tokens[end] == "(") - (tokens[end] == ")")
+        if not depth:
+            return end + 1
+    return len(tokens)
+
+
+def _times_unit(name: str) -> list[str]:
+    return ["*", UNIT, ".", UNIT_BY_KEYWORD.get(name, name)]
 
 
 def _check(node: ast.AST, text: str, depth: int) -> None:
@@ -131,13 +148,32 @@ def _check(node: ast.AST, text: str, depth: int) -> None:
         _check(child, text, depth + 1)
 
 
+def real_power(base: float, exponent: float) -> float:
+    """A power of numbers.
+
+    Raises
+    ------
+    FormulaError
+        When it is not real.
+    """
+    value = base**exponent
+    if isinstance(value, complex):
+        raise FormulaError("found a fractional power of a negative number")
+    return value
+
+
+OF_NUMBERS = BINARY | {ast.Pow: real_power}
+"""The operators of real numbers."""
+
+
 def evaluate(
     tree: ast.expr,
     names: Callable[[str], Any],
     functions: Mapping[str, Callable[..., Any]],
     number: Callable[[int | float], Any] = float,
+    binary: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = BINARY,
 ) -> Any:
-    """Evaluate a checked tree in any algebra (plain numbers with dimensions, SymPy expressions).
+    """Evaluate a checked tree in any algebra (numbers, arrays, SymPy expressions).
 
     Parameters
     ----------
@@ -149,12 +185,18 @@ def evaluate(
         The functions that may be called, by name.
     number : callable
         Turns a literal into a value of the algebra.
+    binary : mapping
+        The operators.
     """
+
+    def of(node: ast.expr) -> Any:
+        return evaluate(node, names, functions, number, binary)
+
     match tree:
         case ast.BinOp(left, op, right):
-            return BINARY[type(op)](evaluate(left, names, functions, number), evaluate(right, names, functions, number))
+            return binary[type(op)](of(left), of(right))
         case ast.UnaryOp(op, operand):
-            return UNARY[type(op)](evaluate(operand, names, functions, number))
+            return UNARY[type(op)](of(operand))
         case ast.Constant(int() | float() as value):
             return number(value)
         case ast.Name(name):
@@ -165,10 +207,16 @@ def evaluate(
             if name not in functions:
                 raise FormulaError(f"found the function '{name}', expected one of {', '.join(sorted(functions))}")
             try:
-                return functions[name](*(evaluate(a, names, functions, number) for a in arguments))
+                return functions[name](*map(of, arguments))
             except TypeError:
                 raise FormulaError(
                     f"found {len(arguments)} arguments of '{name}', expected more or fewer of them"
                 ) from None
         case _:
             raise FormulaError("found something that is no arithmetic")
+
+
+def as_written(node: ast.expr) -> str:
+    """A part of a formula for messages, spelt as in scenes: ``3 kg`` and ``x^2``."""
+    text = re.sub(rf" \* {UNIT}\.", " ", ast.unparse(node))
+    return text.replace(f"{UNIT}.", "").replace(" ** ", "^").replace("**", "^")

@@ -29,11 +29,13 @@ class Curve(Joint, Generic[M]):
     type: Literal["point_on_curve"] = "point_on_curve"
     i: M = Field(description="marker of the body with the point, on which the reaction is reported")
     j: M = Field(description="marker in whose axes the curve is given")
-    y: Annotated[Formula | Table, FormulaOf(("x",), time=False, table=True)] | None = Field(
+    y: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
         None, description="Y(x), m: a formula of x or a table"
     )
-    radius: Annotated[Formula | Table, FormulaOf(("angle",), time=False, table=True)] | None = Field(
-        None, description="R(theta), m: a formula of sin(angle) and cos(angle), or a periodic table over one turn"
+    radius: Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)] | None = (
+        Field(
+            None, description="R(theta), m: a formula of sin(angle) and cos(angle), or a periodic table over one turn"
+        )
     )
 
     @field_validator("radius")

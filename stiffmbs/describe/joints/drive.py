@@ -10,9 +10,18 @@ from pydantic import Field, field_validator, model_validator
 
 from ..element import Joint, JointReference, Symbolic
 from ..exactly_one import exactly_one
+from ..files.quoted import quoted
+from ..formula.dimension import UNKNOWN, Known, measured_in, product
 from ..formula.field import Formula, OfPosition, OfTime
+from ..formula.text import FormulaError
 from ..joint_reference import unfit_joints
 from ..marker import MarkerReference
+from ..units.quantity import refuse_cycles
+from ..units.units import NONE, named_unit
+
+SORTS = {"angle": "angle", "displacement": "length", None: "value"}
+"""The dimensions of joint coordinates by name."""
+ANGULAR_VELOCITY = measured_in("angular velocity")
 
 
 class Drive(Joint):
@@ -67,7 +76,20 @@ class Drive(Joint):
         return self
 
     def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        yield from unfit_joints(self, joints)
+        unfit = list(unfit_joints(self, joints))
+        yield from unfit or self._of_another_dimension(joints)
+
+    def _of_another_dimension(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """A prescribed motion in a unit that the driven coordinate, or its rate, does not have."""
+        driven = UNKNOWN if self.driven is None else self.driven.dimension
+        if self.joint is not None:
+            driven = measured_in(SORTS[self.joint.coordinate_of(joints[self.joint.joint])])
+        rate = product(driven, measured_in("time"), -1)
+        for field, law, expected in (
+            ("position", self.prescribed_position, driven), ("velocity", self.prescribed_velocity, rate),
+        ):  # fmt: skip
+            if isinstance(law, Formula) and (reason := _unfit(field, law, expected)):
+                yield field, reason
 
     @staticmethod
     def position(e: Symbolic) -> Any:
@@ -85,6 +107,22 @@ class Drive(Joint):
         if e.joint is not None:
             return e.joint.i.point
         return e.frames[0].origin if e.i is None else e.i.point
+
+
+def _unfit(field: str, law: Formula, expected: Known) -> str:
+    """Why a law of time has not the expected dimension; empty where it has, or carries no unit."""
+    if not law.dimension.agrees_with(expected):
+        assert law.dimension.exponents is not None and expected.exponents is not None
+        found, unit = named_unit(law.dimension.exponents), named_unit(expected.exponents)
+        return (
+            f"found '{quoted(law.text)}', which is in {found}, expected a {field} in {unit if unit != NONE else 'rad'}"
+        )
+    if expected.exponents == ANGULAR_VELOCITY.exponents:
+        try:
+            refuse_cycles(law.text, law.tree)
+        except FormulaError as error:
+            return str(error)
+    return ""
 
 
 def _driven(e: Symbolic) -> Any:

@@ -11,10 +11,12 @@ from pydantic_core import core_schema
 
 from ..body import check_names
 from ..files.quoted import written
+from ..formula import measured
 from ..formula.field import FormulaOf, called_tables
-from ..formula.functions import FUNCTIONS, OF_TABLE, ROUNDING, check_functions
+from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, parse
 from ..marker import GROUND, MarkerReference
+from ..units.units import Quantity
 from .output import ACTIONS, ALONG_AXES, MEASURES, Output, Term, placeholder
 
 
@@ -83,18 +85,14 @@ class _OutputField:
         terms = _Terms()
         tree = terms.visit(parse(found))
         tables = (info.context or {}).get("tables") or {}
-        known = FUNCTIONS | ROUNDING | dict.fromkeys(tables, OF_TABLE)
-        check_functions(tree, known, (), (*known, *MEASURES, *ACTIONS))
-        places = {placeholder(k): 0.0 for k in range(len(terms.found))}
-        parameters = {name: value.value for name, value in ((info.context or {}).get("parameters") or {}).items()}
-        values = _NAMES.values(found, tree, parameters | places)
-        return Output(
-            found,
-            tree,
-            tuple(terms.found),
-            {name: v for name, v in values if name not in places},
-            called_tables(tree, tables),
-        )
+        check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*MEASURES, *ACTIONS))
+        places = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(terms.found)}
+        parameters = (info.context or {}).get("parameters") or {}
+        named = _NAMES.quantities(found, tree, parameters | dict.fromkeys(places, Quantity(0.0)))
+        used = {name: quantity for name, quantity in named if name not in places}
+        _NAMES.dimension_of(tree, used, places)
+        values = {name: quantity.value for name, quantity in used.items()}
+        return Output(found, tree, tuple(terms.found), values, called_tables(tree, tables))
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)

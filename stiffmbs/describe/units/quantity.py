@@ -8,67 +8,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..files.quoted import quoted, written
-from ..formula.text import UNIT, FormulaError, evaluate, parse
-from .units import ANY, CONSTANTS, DIMENSIONS, NUMBER, UNITS, Quantity, in_units, one
+from ..formula.check_dimensions import dimension_of
+from ..formula.functions import FUNCTIONS, IN_NUMBERS, check_functions
+from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
+from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one
 
 LARGEST = 1e100
 """In SI units; products of three such numbers overflow."""
-
-
-def _of_number(function: Callable[..., float]) -> Callable[..., Quantity]:
-    def call(*arguments: Quantity) -> Quantity:
-        if any(a.dimension not in (None, NUMBER) for a in arguments):
-            raise FormulaError(
-                f"found {function.__name__} of a quantity with a unit, expected a plain number or an angle"
-            )
-        return Quantity(function(*(a.value for a in arguments)))
-
-    return call
-
-
-def _sqrt(a: Quantity) -> Quantity:
-    return a ** Quantity(0.5)
-
-
-def _abs(a: Quantity) -> Quantity:
-    return Quantity(abs(a.value), a.dimension)
-
-
-def _of_same(choose: Callable[..., float]) -> Callable[..., Quantity]:
-    def call(first: Quantity, *others: Quantity) -> Quantity:
-        total = first
-        for other in others:
-            total = total + other  # refuses mixed units
-        return Quantity(choose(*(a.value for a in (first, *others))), total.dimension)
-
-    return call
-
-
-def _atan2(y: Quantity, x: Quantity) -> Quantity:
-    return Quantity(math.atan2(y.value, x.value), (y - x).dimension and NUMBER)
-
-
-_PLAIN = (
-    math.sin,
-    math.cos,
-    math.tan,
-    math.asin,
-    math.acos,
-    math.atan,
-    math.sinh,
-    math.cosh,
-    math.tanh,
-    math.exp,
-    math.log,
-)
-FUNCTIONS: dict[str, Callable[..., Quantity]] = {
-    **{f.__name__: _of_number(f) for f in _PLAIN},
-    "sqrt": _sqrt,
-    "atan2": _atan2,
-    "abs": _abs,
-    "min": _of_same(lambda *values: min(values)),
-    "max": _of_same(lambda *values: max(values)),
-}
 
 
 def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Quantity:
@@ -88,36 +34,72 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
     """
     known = parameters or {}
     tree = parse(text)
-    with_units = any(isinstance(node, ast.Attribute) for node in ast.walk(tree))
+    check_functions(tree, IN_NUMBERS)
 
-    def names(name: str) -> Quantity:
-        owner, _, unit = name.rpartition(".")
-        if owner == UNIT and unit in UNITS:
-            return UNITS[unit]
-        name = unit if owner == UNIT else name
-        if name in known and name in UNITS and with_units:
-            raise FormulaError(
-                f"found '{name}' in '{quoted(text)}', which is a unit and a parameter of the scene, expected one or the other"
-            )
-        for table in (known, UNITS, CONSTANTS):
-            if name in table:
-                return table[name]
-        listed = ", ".join(known) if known else "none"
-        raise FormulaError(
-            f"found the unknown name '{name}', expected a unit, pi or a parameter of the scene ({listed})"
-        )
+    def named(name: str) -> Quantity:
+        owner, _, last = name.rpartition(".")
+        if owner == UNIT:
+            for table in (UNITS, known, CONSTANTS):
+                if last in table:
+                    return table[last]
+        return of_name(last if owner == UNIT else name, text, tree, known)
 
+    dimension = dimension_of(tree, named, lambda call: None)
     try:
-        result: Quantity = evaluate(tree, names, FUNCTIONS, lambda value: Quantity(float(value)))
+        value = evaluate(tree, lambda name: named(name).value, VALUES, float, OF_NUMBERS)
     except ArithmeticError:
         raise FormulaError(f"found '{quoted(text)}', which divides by zero or overflows") from None
     except ValueError as error:
         if isinstance(error, FormulaError):
             raise
         raise FormulaError(f"found '{quoted(text)}', which has no real value") from None
-    if not math.isfinite(result.value):
+    if not math.isfinite(value):
         raise FormulaError(f"found '{quoted(text)}', which is not a finite number")
-    return result
+    return Quantity(float(value), dimension.exponents if dimension.stated else None)
+
+
+def is_unit(node: ast.AST) -> bool:
+    """Whether a part of a formula is a name after a number."""
+    return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == UNIT
+
+
+def of_name(
+    name: str, text: str, tree: ast.expr, parameters: Mapping[str, Quantity], units: Mapping[str, Quantity] = UNITS
+) -> Quantity:
+    """What a name that stands alone means in a formula: a parameter, a unit or a constant.
+
+    Raises
+    ------
+    FormulaError
+        For a name without a meaning, and for a parameter that could be meant for a unit.
+    """
+    if name in parameters and name in UNITS and any(map(is_unit, ast.walk(tree))):
+        raise FormulaError(
+            f"found '{name}' in '{quoted(text)}', which is a unit and a parameter of the scene, expected one or the other: "
+            "rename the parameter"
+        )
+    for table in (parameters, units, CONSTANTS):
+        if name in table:
+            return table[name]
+    listed = ", ".join(parameters) if parameters else "none"
+    raise FormulaError(f"found the unknown name '{name}', expected a unit, pi or a parameter of the scene ({listed})")
+
+
+VALUES: dict[str, Callable[..., float]] = {name: function.value for name, function in FUNCTIONS.items()}
+"""Of the functions, of plain numbers."""
+
+
+def refuse_cycles(text: str, tree: ast.expr) -> None:
+    """Refuse an angular velocity in Hz, which is 1/s: 50 Hz would be 50 rad/s.
+
+    Raises
+    ------
+    FormulaError
+    """
+    words = {part.id for part in ast.walk(tree) if isinstance(part, ast.Name)}
+    words |= {part.attr for part in ast.walk(tree) if is_unit(part)}  # type: ignore[attr-defined]
+    if words & {"Hz", "kHz"} and not words & {"pi", "rev", "rad", "deg"}:
+        raise FormulaError(f"found Hz in '{quoted(text)}', which is 1/s, expected rad/s, rpm, or Hz times 2*pi")
 
 
 def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | None = None) -> float:
@@ -125,6 +107,8 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
     expected, unit = DIMENSIONS[dimension]
     if isinstance(found, str):
         result = quantity(found, parameters)
+        if dimension == "angular velocity":
+            refuse_cycles(found, parse(found))
         if dimension != ANY and result.dimension is not None and result.dimension != expected:
             raise FormulaError(
                 f"found '{quoted(found)}', which is in {in_units(result.dimension)}, expected {one(dimension)} in {unit}"

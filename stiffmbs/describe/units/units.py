@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..formula.text import FormulaError
-
 Dimension = tuple[float, float, float]  # exponents of kg, m, s; angles have none
 
 NUMBER: Dimension = (0, 0, 0)
@@ -22,6 +20,7 @@ DIMENSIONS: dict[str, tuple[Dimension, str]] = {
     "velocity": ((0, 1, -1), "m/s"),
     "angular velocity": ((0, 0, -1), "rad/s"),
     "acceleration": ((0, 1, -2), "m/s^2"),
+    "angular acceleration": ((0, 0, -2), "rad/s^2"),
     "area": ((0, 2, 0), "m^2"),
     "second moment of area": ((0, 4, 0), "m^4"),
     "force": ((1, 1, -2), "N"),
@@ -38,70 +37,41 @@ DIMENSIONS: dict[str, tuple[Dimension, str]] = {
 
 @dataclass(frozen=True)
 class Quantity:
-    """A value in SI units and its dimension; a bare number (`dimension` None) fits every dimension."""
+    """A value in SI units and its dimension; a plain number (`dimension` None) fits every dimension."""
 
     value: float
     dimension: Dimension | None = None
-
-    def _sum(self, other: Quantity, sign: float) -> Quantity:
-        if None not in (self.dimension, other.dimension) and self.dimension != other.dimension:
-            raise FormulaError("found a sum of quantities with different units")
-        dimension = self.dimension if self.dimension is not None else other.dimension
-        return Quantity(self.value + sign * other.value, dimension)
-
-    def __add__(self, other: Quantity) -> Quantity:
-        return self._sum(other, 1.0)
-
-    def __sub__(self, other: Quantity) -> Quantity:
-        return self._sum(other, -1.0)
-
-    def _product(self, other: Quantity, value: float, sign: float) -> Quantity:
-        if self.dimension is None and other.dimension is None:
-            return Quantity(value)
-        a, b = self.dimension or NUMBER, other.dimension or NUMBER
-        return Quantity(value, (a[0] + sign * b[0], a[1] + sign * b[1], a[2] + sign * b[2]))
-
-    def __mul__(self, other: Quantity) -> Quantity:
-        return self._product(other, self.value * other.value, 1.0)
-
-    def __truediv__(self, other: Quantity) -> Quantity:
-        return self._product(other, self.value / other.value, -1.0)
-
-    def __pow__(self, other: Quantity) -> Quantity:
-        if other.dimension not in (None, NUMBER):
-            raise FormulaError("found an exponent with a unit, expected a plain number")
-        value = self.value**other.value
-        if isinstance(value, complex):
-            raise FormulaError("found a fractional power of a negative number")
-        if self.dimension is None:
-            return Quantity(value)
-        a, b, c = self.dimension
-        return Quantity(value, (a * other.value, b * other.value, c * other.value))
-
-    def __neg__(self) -> Quantity:
-        return Quantity(-self.value, self.dimension)
-
-    def __pos__(self) -> Quantity:
-        return self
 
 
 def _units() -> dict[str, Quantity]:
     length, time, mass = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
     force, energy, power = (1.0, 1.0, -2.0), (1.0, 2.0, -2.0), (1.0, 2.0, -3.0)
+    speed, acceleration, pressure, rate = (0.0, 1.0, -1.0), (0.0, 1.0, -2.0), (1.0, -1.0, -2.0), (0.0, 0.0, -1.0)
     table: dict[Dimension, dict[str, float]] = {
-        length: {"m": 1, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3, "inch": 0.0254, "ft": 0.3048},
-        time: {"s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600},
-        mass: {"kg": 1, "g": 1e-3, "mg": 1e-6, "tonne": 1e3, "lb": 0.45359237},
-        force: {"N": 1, "mN": 1e-3, "kN": 1e3, "MN": 1e6, "lbf": 4.4482216152605},
-        energy: {"J": 1, "kJ": 1e3},
-        power: {"W": 1, "kW": 1e3},
-        NUMBER: {"rad": 1, "deg": math.pi / 180, "rev": 2 * math.pi},
-        (0.0, 0.0, -1.0): {"rpm": math.pi / 30},
-    }
+        length: {
+            "m": 1, "um": 1e-6, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "inch": 0.0254, "ft": 0.3048, "yd": 0.9144,
+            "mile": 1609.344,
+        },
+        time: {"s": 1, "us": 1e-6, "ms": 1e-3, "min": 60, "h": 3600, "day": 86400},
+        mass: {"kg": 1, "g": 1e-3, "mg": 1e-6, "tonne": 1e3, "lb": POUND, "oz": POUND / 16, "slug": POUND * G0 / 0.3048},
+        force: {
+            "N": 1, "mN": 1e-3, "cN": 1e-2, "daN": 10, "kN": 1e3, "MN": 1e6, "kgf": G0, "lbf": 4.4482216152605,
+        },
+        energy: {"J": 1, "mJ": 1e-3, "kJ": 1e3, "MJ": 1e6},
+        power: {"W": 1, "mW": 1e-3, "kW": 1e3, "MW": 1e6},
+        speed: {"mph": 0.44704},
+        acceleration: {"g0": G0},
+        pressure: {"Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 4.4482216152605 / 0.0254**2},
+        NUMBER: {"rad": 1, "mrad": 1e-3, "deg": math.pi / 180, "rev": 2 * math.pi},
+        rate: {"rpm": math.pi / 30, "Hz": 1, "kHz": 1e3},
+    }  # fmt: skip
     return {name: Quantity(value, dim) for dim, names in table.items() for name, value in names.items()}
 
 
+POUND, G0 = 0.45359237, 9.80665
+"""kg, and standard gravity, m/s^2."""
 UNITS = _units()
+NONE = "no unit"
 CONSTANTS = {"pi": Quantity(math.pi)}
 
 
@@ -113,4 +83,20 @@ def one(dimension: str) -> str:
 def in_units(dimension: Dimension) -> str:
     """A dimension as powers of SI units, for sentences: ``kg m^2``."""
     powers = [(name, power) for name, power in zip(("kg", "m", "s"), dimension, strict=True) if power]
-    return " ".join(name if power == 1 else f"{name}^{power:g}" for name, power in powers) or "no unit"
+    return " ".join(name if power == 1 else f"{name}^{power:g}" for name, power in powers) or NONE
+
+
+def named_unit(dimension: Dimension) -> str:
+    """A dimension by the unit that has a name, for sentences: ``N m``; else as `in_units`."""
+    if any(dimension):
+        for known, unit in DIMENSIONS.values():
+            if known == dimension and "/rad" not in unit:
+                return unit
+    return in_units(dimension)
+
+
+def in_text(quantity: Quantity) -> float | str:
+    """A quantity as a scene writes it, in SI units: its number, or text with its unit."""
+    if quantity.dimension is None:
+        return quantity.value
+    return f"{quantity.value!r} {in_units(quantity.dimension) if any(quantity.dimension) else 'rad'}"

@@ -7,13 +7,14 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from ....describe.formula.functions import FUNCTIONS as FORMULA_FUNCTIONS
 from .arithmetic import compared, negated, number, selected
 from .code import Code
 from .values import Builtin, Operand, Value, builtin
 
 INTRINSICS = ("sqrt", "sin", "cos", "exp", "log")
 """What LLVM knows by itself; the others are called in the C library that the process has."""
-OF_THE_LIBRARY = ("acos", "asin", "atan", "cosh", "sinh", "tan", "tanh")
+OF_THE_LIBRARY = tuple(name for name, function in FORMULA_FUNCTIONS.items() if function.in_c and name not in INTRINSICS)
 
 
 def _library(name: str, *symbols: str) -> dict[Any, Builtin]:
@@ -70,6 +71,4 @@ for _name in INTRINSICS:
     FUNCTIONS |= _library(_name, f"llvm.{_name}.f64")
 for _name in OF_THE_LIBRARY:
     FUNCTIONS |= _library(_name, _name)
-FUNCTIONS |= (
-    _library("atan2", "atan2") | _library("copysign", "llvm.copysign.f64") | _library("floor", "llvm.floor.f64")
-)
+FUNCTIONS |= _library("copysign", "llvm.copysign.f64") | _library("floor", "llvm.floor.f64")

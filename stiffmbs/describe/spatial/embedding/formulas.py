@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 
 from ...formula.field import Formula, is_measure, measured_markers
-from ...formula.text import UNIT
+from ...formula.text import UNIT, as_written
 from ...marker import GROUND, MarkerReference
 from .angles import Angles
 
@@ -17,7 +17,7 @@ def formula(found: Formula, angles: Angles) -> str | float:
     except ValueError:
         renamed = _Renamed(angles)
         tree = renamed.visit(ast.parse(ast.unparse(found.tree), mode="eval").body)
-        return ast.unparse(tree) if renamed.any else found.text
+        return as_written(tree) if renamed.any else found.text
 
 
 class _Renamed(ast.NodeTransformer):

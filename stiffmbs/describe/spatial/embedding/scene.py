@@ -50,7 +50,7 @@ def scene_in_space(data: PlanarData) -> Written:
     }
     if isinstance(data, Scene):
         parts |= {
-            "parameters": data.parameters,
+            "parameters": data.written_parameters(),
             "figure": _figure(data, requests, angles),
             "run": plain(data.run.model_dump(exclude_unset=True), angles),
             "notes": list(data.notes),

@@ -7,11 +7,9 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...element import Force, Symbolic
-from ...formula.field import OfMotion
+from ...formula.field import ForceOfMotion, TorqueOfMotion
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on
-
-Components = tuple[OfMotion, OfMotion, OfMotion]
 
 
 class Applied(Force):
@@ -56,7 +54,9 @@ class AppliedForce(Applied):
     kind: ClassVar[str] = "force"
 
     type: Literal["force"] = "force"
-    force: Components = Field(description="components along x, y and z, N: numbers or formulas")
+    force: tuple[ForceOfMotion, ForceOfMotion, ForceOfMotion] = Field(
+        description="components along x, y and z, N: numbers or formulas"
+    )
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
@@ -84,7 +84,9 @@ class AppliedTorque(Applied):
     kind: ClassVar[str] = "torque"
 
     type: Literal["torque"] = "torque"
-    torque: Components = Field(description="components along x, y and z, N m: numbers or formulas")
+    torque: tuple[TorqueOfMotion, TorqueOfMotion, TorqueOfMotion] = Field(
+        description="components along x, y and z, N m: numbers or formulas"
+    )
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

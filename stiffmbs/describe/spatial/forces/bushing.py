@@ -8,7 +8,7 @@ from pydantic import Field, field_validator
 
 from ...element import Symbolic
 from ...forces.matrix import check_symmetric
-from ...formula.field import OfDeflection
+from ...formula.field import ForceOfDeflection, TorqueOfDeflection
 from .elastic import (
     NONE,
     NOTHING,
@@ -51,12 +51,18 @@ class Bushing(Elastic):
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     preload: Preload = Field(NOTHING, description="force and torque on i without deformation, N and N m")
-    law_x: OfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
-    law_y: OfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
-    law_z: OfDeflection | None = Field(None, description="force against the deformation in z added over s (m), N")
-    law_about_x: OfDeflection | None = Field(None, description="moment against the rotation about x over s (rad), N m")
-    law_about_y: OfDeflection | None = Field(None, description="moment against the rotation about y over s (rad), N m")
-    law_about_z: OfDeflection | None = Field(None, description="moment against the rotation about z over s (rad), N m")
+    law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
+    law_y: ForceOfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
+    law_z: ForceOfDeflection | None = Field(None, description="force against the deformation in z added over s (m), N")
+    law_about_x: TorqueOfDeflection | None = Field(
+        None, description="moment against the rotation about x over s (rad), N m"
+    )
+    law_about_y: TorqueOfDeflection | None = Field(
+        None, description="moment against the rotation about y over s (rad), N m"
+    )
+    law_about_z: TorqueOfDeflection | None = Field(
+        None, description="moment against the rotation about z over s (rad), N m"
+    )
 
     axes: Literal["j", "ground"] = Field(
         "j", description="whether x, y and z of the force are marker j's or the ground's"

@@ -1,0 +1,32 @@
+"""What dimensions have the things that formulas call by name: t, coordinates of bodies, measures between markers."""
+
+from __future__ import annotations
+
+from .dimension import UNKNOWN, Known, measured_in
+
+_COORDINATES = {
+    "length": "x y z", "angle": "angle q0 q1 q2 q3", "velocity": "vx vy vz", "angular velocity": "omega wx wy wz",
+    "acceleration": "ax ay az", "angular acceleration": "alpha wdx wdy wdz",
+    "force": "fx fy fz", "torque": "tx ty tz torque",
+}  # fmt: skip
+"""Of bodies, and the channels of joints and forces that requests may read."""
+_MEASURES = {
+    "length": "dx dy dz dm", "angle": "ax ay az psi theta phi q0 q1 q2 q3", "velocity": "vx vy vz vm vr",
+    "angular velocity": "wx wy wz wm", "acceleration": "accx accy accz accm",
+    "angular acceleration": "wdtx wdty wdtz wdtm", "force": "fx fy fz fm", "torque": "tx ty tz tm",
+}  # fmt: skip
+"""Between markers, and what joints and forces do."""
+
+
+def _by_name(dimensions: dict[str, str]) -> dict[str, Known]:
+    return {name: measured_in(dimension) for dimension, names in dimensions.items() for name in names.split()}
+
+
+COORDINATES, MEASURES = _by_name(_COORDINATES), _by_name(_MEASURES)
+TIME = measured_in("time")
+
+
+def of_coordinate(name: str) -> Known:
+    """The dimension of ``body.name``."""
+    owner, _, coordinate = name.rpartition(".")
+    return COORDINATES.get(coordinate, UNKNOWN) if owner else UNKNOWN
