@@ -12,12 +12,14 @@ from pydantic import Field
 from . import forces, joints
 from .body import Body, BodyHandle
 from .element import Force, Joint, any_of, kinds
+from .fields import Described
 from .forces.weight import weights
-from .formula.field import OfMotion
 from .initial_pose import DrawnMarker
 from .marker import GROUND, MarkerReference, Placement
 from .model_builder import ModelBuilder
 from .model_data import ModelData
+from .requests.names import OF_PLANE
+from .requests.output_field import PlanarRequest
 from .units import si
 
 JOINTS = kinds(joints, Joint)
@@ -31,6 +33,7 @@ class PlanarData(ModelData):
     """What a model in the plane holds."""
 
     origin = Placement()
+    output_names = OF_PLANE
 
     dimensions: Literal[2] = Field(2, description="of the model: the plane")
     gravity: tuple[si.Acceleration, si.Acceleration] = Field(
@@ -41,7 +44,9 @@ class PlanarData(ModelData):
     joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
     forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
 
-    requests: dict[str, OfMotion] = Field(default_factory=dict, description="formulas to report, by channel name")
+    requests: dict[str, PlanarRequest] = Field(
+        default_factory=dict, description="formulas to report, by channel name; or several by name under one"
+    )
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights."""
@@ -61,6 +66,12 @@ class PlanarData(ModelData):
         return marker.body, self.place(marker)
 
 
+class Requests(Described):
+    """Requests before they stand in a model."""
+
+    requests: dict[str, PlanarRequest]
+
+
 class Model(ModelBuilder):
     """A model built in Python, piece by piece.
 
@@ -75,6 +86,7 @@ class Model(ModelBuilder):
     """
 
     data_type = PlanarData
+    requests_type = Requests
     body_type = Body
     handle_type = BodyHandle
     kinds = JOINTS | FORCES

@@ -12,7 +12,8 @@ from .fields import Described
 from .formula.names import NAMES
 from .marker import GROUND, MarkerReference
 from .model_data import RESERVED, check_element
-from .request import Request
+from .requests.check import by_channel, check_output
+from .requests.order import dimensions
 
 
 class ModelBuilder:
@@ -20,8 +21,8 @@ class ModelBuilder:
 
     Attributes
     ----------
-    data_type, body_type, handle_type : types
-        The class of what is built, of its bodies, and of what stands for a body that has been added.
+    data_type, body_type, handle_type, requests_type : types
+        The class of what is built, of its bodies, of what stands for a body that has been added, and of requests by name.
     kinds : mapping of str to type
         The joints and forces of the family, by kind.
     """
@@ -29,6 +30,7 @@ class ModelBuilder:
     data_type: ClassVar[type[Any]]
     body_type: ClassVar[type[Described]]
     handle_type: ClassVar[type[Any]]
+    requests_type: ClassVar[type[Any]]
     kinds: ClassVar[Mapping[str, type[Element]]]
 
     def __init__(self, name: str, gravity: tuple[float | str, ...]) -> None:
@@ -94,23 +96,32 @@ class ModelBuilder:
         self.markers[name] = placement
 
     def request(self, name: str, formula: Any) -> None:
-        """Report a formula of coordinates, velocities, measures and time as a channel of the given name.
+        """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
 
         Parameters
         ----------
         name : str
             Of the channel.
-        formula : str or float
-            In SI units, such as ``"0.6*abs(bar.omega)"``.
+        formula : str, float or mapping of str to these
+            In SI units, such as ``"0.6*abs(bar.omega)"`` or ``"fx(hinge) + tip_speed"``, of parts and requests that have been
+            added; several by the names of their components.
 
         Raises
         ------
         InputError
             As for `add`, and for a formula that cannot be read.
         """
-        request = Request(formula=formula)  # type: ignore[arg-type]
-        self._check(name, request)
-        self.requests[name] = request.formula
+        self._check_name(name)
+        read = self.requests_type(requests={name: formula}).requests[name]
+        requests = {**self.requests, name: read}
+        outputs = dict(by_channel(requests))
+        try:
+            for channel, output in by_channel({name: read}):
+                check_output(f"requests.{channel}", output, self, self.data_type.output_names, outputs)
+            dimensions(outputs)
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        self.requests = requests
 
     @staticmethod
     def _check_spelling(name: object, what: str) -> None:

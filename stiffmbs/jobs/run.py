@@ -193,7 +193,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
-        requested=frozenset(job.data.requested_channels()),
+        requested=frozenset(job.data.outputs()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
 

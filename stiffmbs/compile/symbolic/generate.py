@@ -19,7 +19,7 @@ from .spline import Spline
 
 def _natives(base: type[CorneredBase]) -> set[str]:
     """The native functions of the functions with corners."""
-    return {each.native for each in base.__subclasses__()}.union(*map(_natives, base.__subclasses__()))
+    return {each.native for each in base.__subclasses__() if each.native}.union(*map(_natives, base.__subclasses__()))
 
 
 def _imported(module: str, names: Iterable[str]) -> str:

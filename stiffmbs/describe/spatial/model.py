@@ -14,7 +14,10 @@ from ..forces.weight import weights
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
-from ..request import Request
+from ..requests.angle_counter import AngleCounter
+from ..requests.names import OF_SPACE
+from ..requests.output import CONTINUOUS_ANGLES
+from ..requests.output_field import SpatialRequest
 from ..units import si
 from . import forces, joints
 from .body import Body, BodyHandle
@@ -22,8 +25,6 @@ from .forces.gyroscopic_torque import turnings
 from .initial_pose import DrawnMarker
 from .marker import Placement
 from .orientation import matrix, product, rotated
-from .output import COUNTED_ANGLES, Output, check_output
-from .output_field import Requested
 
 JOINTS = kinds(joints, Joint)
 FORCES = kinds(forces, Force)
@@ -36,6 +37,7 @@ class SpatialData(ModelData):
     """What a model in space holds."""
 
     origin = Placement()
+    output_names = OF_SPACE
 
     dimensions: Literal[3] = Field(3, description="of the model: space")
     gravity: tuple[si.Acceleration, si.Acceleration, si.Acceleration] = Field(
@@ -46,32 +48,17 @@ class SpatialData(ModelData):
     joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
     forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
 
-    requests: dict[str, Requested] = Field(
+    requests: dict[str, SpatialRequest] = Field(
         default_factory=dict, description="formulas to report, by channel name; or several by name under one"
     )
 
-    def check_requests(self) -> None:
-        """Refuse requests that name what the model does not have."""
-        for channel, output in self.outputs():
-            check_output(f"requests.{channel}", output, self)
-
-    def requested(self) -> Iterator[tuple[str, Request]]:
-        """None: what is reported in space is evaluated after the run."""
-        yield from ()
-
-    def outputs(self) -> Iterator[tuple[str, Output]]:
-        """The requests by channel: a name, or ``name.component``."""
-        for name, formula in self.requests.items():
-            if isinstance(formula, Output):
-                yield name, formula
-            else:
-                yield from ((f"{name}.{component}", output) for component, output in formula.items())
-
-    def counted_angles(self) -> Iterator[tuple[str, Request]]:
-        """The angles az(i, j) in requests: only the integration sees every turn, however far apart output points are."""
-        angles = (term for _, output in self.outputs() for term in output.terms if term.function in COUNTED_ANGLES)
+    def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
+        """Of the angles az(i, j) in requests: only the integration sees every turn, however far apart output points are."""
+        angles = (
+            term for output in self.outputs().values() for term in output.terms if term.function in CONTINUOUS_ANGLES
+        )
         for term in dict.fromkeys(angles):
-            yield str(term), Request(formula=str(term))  # type: ignore[arg-type]
+            yield str(term), AngleCounter(angle=str(term))  # type: ignore[arg-type]
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights and the gyroscopic torques of their turning."""
@@ -96,7 +83,7 @@ class SpatialData(ModelData):
 class Requests(Described):
     """Requests before they stand in a model."""
 
-    requested: dict[str, Requested]
+    requests: dict[str, SpatialRequest]
 
 
 class Model(ModelBuilder):
@@ -112,6 +99,7 @@ class Model(ModelBuilder):
     """
 
     data_type = SpatialData
+    requests_type = Requests
     body_type = Body
     handle_type = BodyHandle
     kinds = JOINTS | FORCES
@@ -145,26 +133,6 @@ class Model(ModelBuilder):
             When the name is taken, reserved or no identifier, or the part names an unknown body.
         """
         return super().add(name, part)
-
-    def request(self, name: str, formula: str | float | Mapping[str, str | float]) -> None:
-        """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
-
-        Parameters
-        ----------
-        name : str
-            Of the channel.
-        formula : str, float or mapping of str to these
-            In SI units, such as ``"dm(bar.end, ground)"``; several by the names of their components.
-
-        Raises
-        ------
-        InputError
-            When the name is taken, reserved or no identifier, or a formula cannot be read.
-        """
-        self._check_name(name)
-        self.requests[name] = Requests(
-            requested={name: dict(formula) if isinstance(formula, Mapping) else formula}
-        ).requested[name]
 
     def data(self) -> SpatialData:
         """The model as it would stand in a scene, checked."""
