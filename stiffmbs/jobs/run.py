@@ -11,6 +11,7 @@ import numpy as np
 from ..compile.compile_model import compile_model
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
+from ..describe.requests.order import units
 from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings
 from ..diagnostics.far_away import refuse_far_away
@@ -193,7 +194,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
-        requested=frozenset(job.data.outputs()),
+        requested=units(job.data.outputs()),
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
 

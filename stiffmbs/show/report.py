@@ -105,7 +105,7 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
         rows.append(
             {
                 "name": name,
-                "unit": UNITS.get(kind_of(name), ""),
+                "unit": solution.requested[name] if name in solution.requested else UNITS.get(kind_of(name), ""),
                 "min": with_bar(cell["min"], bar.least, noise) if verified else f"{cell['min']:.6g}",
                 "max": with_bar(cell["max"], bar.greatest, noise) if verified else f"{cell['max']:.6g}",
                 "t_min": f"{cell['t_min']:.6g}",

@@ -7,6 +7,7 @@ They are evaluated after the run, from its channels, so that none of them is com
 from __future__ import annotations
 
 import ast
+import copy
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -75,6 +76,11 @@ class Output:
     quantities: Mapping[str, Quantity] = field(default_factory=dict)
     tables: Mapping[str, Table] = field(default_factory=dict)
 
+    def written_tree(self) -> ast.expr:
+        """Its tree with the terms in their places."""
+        terms = {placeholder(k): str(term) for k, term in enumerate(self.terms)}
+        return _InPlace(terms).visit(copy.deepcopy(self.tree))  # type: ignore[no-any-return]
+
     def channels(self) -> Iterator[tuple[str, str]]:
         """The channels that it reads, as (owner, component); other requests without components as (owner, "")."""
         places = {placeholder(k) for k in range(len(self.terms))}
@@ -101,6 +107,16 @@ class Output:
 
     def __repr__(self) -> str:
         return f"Output({self.text!r})"
+
+
+class _InPlace(ast.NodeTransformer):
+    """Puts terms in the places of their names."""
+
+    def __init__(self, terms: Mapping[str, str]) -> None:
+        self._terms = terms
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return ast.parse(self._terms[node.id], mode="eval").body if node.id in self._terms else node
 
 
 def channel(owner: str, component: str) -> str:
