@@ -46,7 +46,8 @@ def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: 
     if not outputs:
         return {}
     functions = {
-        name: _FUNCTIONS | {of: curve(t) for of, t in output.tables.items()} for name, output in outputs.items()
+        name: {**_FUNCTIONS, **{called: curve(table) for called, table in output.tables.items()}}
+        for name, output in outputs.items()
     }
     order = in_order(outputs)
     found = {name: room(len(time)) for name in outputs}

@@ -13,6 +13,7 @@ from ..solve.storage import release
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
+from .scales import UNITS, kind_of
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,6 +66,10 @@ class Solution(Mapping[str, np.ndarray]):
     presolve: tuple[str, ...] = ()
     errors: Mapping[str, ErrorBar] = field(default_factory=dict)
     verification: tuple[str, ...] = ()
+
+    def unit(self, channel: str) -> str:
+        """The SI unit of a channel; empty for plain numbers, and where nothing tells it."""
+        return self.requested[channel] if channel in self.requested else UNITS.get(kind_of(channel), "")
 
     @property
     def step_times(self) -> np.ndarray:

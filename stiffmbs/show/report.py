@@ -20,7 +20,7 @@ from ..jobs.check import check
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import refuse_path, written_whole
-from ..results.scales import UNITS, kind_of, scales
+from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from .counters import solver_words
 from .digits import with_bar
@@ -105,7 +105,7 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
         rows.append(
             {
                 "name": name,
-                "unit": solution.requested[name] if name in solution.requested else UNITS.get(kind_of(name), ""),
+                "unit": solution.unit(name),
                 "min": with_bar(cell["min"], bar.least, noise) if verified else f"{cell['min']:.6g}",
                 "max": with_bar(cell["max"], bar.greatest, noise) if verified else f"{cell['max']:.6g}",
                 "t_min": f"{cell['t_min']:.6g}",

@@ -13,7 +13,6 @@ import numpy as np
 from ..diagnostics.singular_poses import SingularPose
 from ..jobs.run import Job
 from ..results.error_bars import ErrorBar, Fine
-from ..results.scales import UNITS, kind_of
 from ..results.solution import Solution
 from ..solve.explicit import ADAPTIVE
 from .dense_sampling import Between
@@ -164,7 +163,7 @@ def _peak(comparison: Comparison, name: str) -> str:
     bar, values = comparison.bars[name], comparison.first[name]
     low = bar.least - bar.sampled_least > bar.greatest - bar.sampled_greatest
     value, half = (np.nanmin(values), bar.least) if low else (np.nanmax(values), bar.greatest)
-    unit = UNITS.get(kind_of(name), "")
+    unit = comparison.first.unit(name)
     return f"{name} {value:.3g} ± {half:.1g} {unit}".rstrip()
 
 

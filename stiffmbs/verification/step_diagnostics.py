@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from ..results.scales import UNITS, kind_of
+from ..results.scales import kind_of
 from .diagnostics import Comparison
 from .parting import distance, parting
 from .solve_again import Again
@@ -89,7 +89,7 @@ def _off(comparison: Comparison, shorter: Again | None) -> str:
     name = max(parts, key=lambda each: parts[each], default="")
     if not name:
         return ""
-    unit = UNITS.get(kind_of(name), "")
+    unit = comparison.first.unit(name)
     return f"{name} is off by up to {parts[name] * comparison.sizes[name]:.3g} {unit} ({shorter.name})"
 
 

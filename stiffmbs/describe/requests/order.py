@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 
 from ..formula import measured
@@ -12,7 +12,7 @@ from ..formula.field import FormulaOf
 from ..formula.text import FormulaError
 from ..units.units import NUMBER, named_unit
 from .names import OF_RUN
-from .output import Output, channel, placeholder
+from .output import Output, Term, channel, placeholder
 
 ALIKE: dict[str, slice] = {"abs": slice(1), "min": slice(None), "max": slice(None), "mod": slice(None),
                            "step": slice(2, 5, 2), "step5": slice(2, 5, 2), "branch": slice(1, 4)}  # fmt: skip
@@ -66,6 +66,16 @@ def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
             found[name] = _ANYTHING.dimension_of(output.tree, output.quantities, {**_ENERGIES, **found, **terms})
         except FormulaError as error:
             raise ValueError(f"requests.{name}: {error}") from None
+    return found
+
+
+def reading(outputs: Mapping[str, Output], channels: Container[str], measured_so: Callable[[Term], bool]) -> set[str]:
+    """The requests that read some channels or terms, themselves or through others."""
+    found: set[str] = set()
+    for name in in_order(outputs):
+        read = {channel(*parts) for parts in outputs[name].channels()}
+        if read & found or any(of in channels for of in read) or any(map(measured_so, outputs[name].terms)):
+            found.add(name)
     return found
 
 
