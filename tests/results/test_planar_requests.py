@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import InputError, spatial
+from stiffmbs.results.scales import scales
 
 SCENE = """
 gravity: [0, -9.81]
@@ -234,6 +235,29 @@ def test_requests_that_cannot_be_are_told(requests, words):
     head = SCENE.partition("requests:")[0]
     with pytest.raises(InputError, match=words):
         stiffmbs.read_scene(f"{head}requests: {requests}\n")
+
+
+def test_what_acts_on_more_than_two_bodies_has_no_second_one():
+    text = """
+bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1, position: [1, 0]}}
+joints:
+  pin_a: {type: revolute, i: a, j: ground}
+  pin_b: {type: revolute, i: b, j: {body: ground, point: [1, 0]}}
+  mesh: {type: gear, joint_1: pin_a, joint_2: pin_b, ratio: 2}
+requests: {r: "tz(mesh.j)"}
+"""
+    with pytest.raises(
+        InputError, match=r"requests.r: found 'mesh.j' in 'tz\(mesh.j\)', which acts on more than two bodies"
+    ):
+        stiffmbs.read_scene(text)
+
+
+def test_a_component_is_measured_by_its_unit_and_not_by_its_name(solution):
+    """push.x is a force, place.x a length like all others."""
+    sizes = scales(solution.channels, 1.0, solution.requested)
+    assert sizes["place.x"] >= 0.1 * sizes["bar.x"]
+    pushes = [f"push.{name}" for name in ("x", "j", "m", "along", "t", "tj", "ti")]
+    assert sizes["push.x"] == pytest.approx(max(np.abs(solution[name]).max() for name in pushes))
 
 
 def test_requests_from_python():

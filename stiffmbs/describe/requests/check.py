@@ -54,6 +54,11 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
             raise ValueError(f"{where}: found '{term.element}' in '{output.text}', expected a joint or a force")
         if term.on_second and None in ends(term.element, model):
             raise ValueError(f"{where}: found '{term.element}.j' in '{output.text}', which has no marker j")
+        if term.on_second and len(list(acting[term.element].parts(JointName))) > 1:
+            raise ValueError(
+                f"{where}: found '{term.element}.j' in '{output.text}', which acts on more than two bodies, "
+                f"expected {term.element}, whose first body is known"
+            )
     for owner, name in output.channels():
         if not name:
             _check_request(where, owner, output, others)
