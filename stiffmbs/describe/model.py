@@ -12,7 +12,6 @@ from pydantic import Field
 from . import forces, joints
 from .body import Body, BodyHandle
 from .element import Force, Joint, any_of, kinds
-from .fields import Described
 from .forces.weight import weights
 from .initial_pose import DrawnMarker
 from .marker import GROUND, MarkerReference, Placement
@@ -66,12 +65,6 @@ class PlanarData(ModelData):
         return marker.body, self.place(marker)
 
 
-class Requests(Described):
-    """Requests before they stand in a model."""
-
-    requests: dict[str, PlanarRequest]
-
-
 class Model(ModelBuilder):
     """A model built in Python, piece by piece.
 
@@ -86,7 +79,6 @@ class Model(ModelBuilder):
     """
 
     data_type = PlanarData
-    requests_type = Requests
     body_type = Body
     handle_type = BodyHandle
     kinds = JOINTS | FORCES

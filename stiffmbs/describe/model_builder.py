@@ -10,10 +10,12 @@ from .body import check_names
 from .element import Element, Force, Joint
 from .fields import Described
 from .formula.names import NAMES
+from .formula.text import FormulaError
 from .marker import GROUND, MarkerReference
 from .model_data import RESERVED, check_element
 from .requests.check import by_channel, check_output
 from .requests.order import dimensions
+from .requests.output_field import RequestField
 
 
 class ModelBuilder:
@@ -21,8 +23,8 @@ class ModelBuilder:
 
     Attributes
     ----------
-    data_type, body_type, handle_type, requests_type : types
-        The class of what is built, of its bodies, of what stands for a body that has been added, and of requests by name.
+    data_type, body_type, handle_type : types
+        The class of what is built, of its bodies, and of what stands for a body that has been added.
     kinds : mapping of str to type
         The joints and forces of the family, by kind.
     """
@@ -30,7 +32,6 @@ class ModelBuilder:
     data_type: ClassVar[type[Any]]
     body_type: ClassVar[type[Described]]
     handle_type: ClassVar[type[Any]]
-    requests_type: ClassVar[type[Any]]
     kinds: ClassVar[Mapping[str, type[Element]]]
 
     def __init__(self, name: str, gravity: tuple[float | str, ...]) -> None:
@@ -112,13 +113,16 @@ class ModelBuilder:
             As for `add`, and for a formula that cannot be read.
         """
         self._check_name(name)
-        read = self.requests_type(requests={name: formula}).requests[name]
-        requests = {**self.requests, name: read}
-        outputs = dict(by_channel(requests))
+        names = self.data_type.output_names
         try:
+            read = RequestField(names).read(formula, {})
+            requests = {**self.requests, name: read}
+            outputs = dict(by_channel(requests))
             for channel, output in by_channel({name: read}):
-                check_output(f"requests.{channel}", output, self, self.data_type.output_names, outputs)
+                check_output(f"requests.{channel}", output, self, names, outputs)
             dimensions(outputs)
+        except FormulaError as error:
+            raise InputError(f"requests.{name}: {error}") from None
         except ValueError as error:
             raise InputError(str(error)) from None
         self.requests = requests

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
@@ -17,11 +17,13 @@ from .formula.field import TIME, Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
-from .requests.angle_counter import AngleCounter
 from .requests.check import by_channel, check_output
 from .requests.names import OutputNames
 from .requests.order import dimensions
 from .requests.output import Output
+
+if TYPE_CHECKING:
+    from .requests.angle_counter import AngleCounter
 
 ROUNDING = 1e-13
 """Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""

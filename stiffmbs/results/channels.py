@@ -7,11 +7,9 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.model_data import ModelData
-from ..describe.requests.angle_counter import AngleCounter
 from ..solve.mechanics import OutputRows
 from .body_axes import in_own_axes
 from .energy import kinetic_energy, potential_energy
-from .requests import requested
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
@@ -29,14 +27,19 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
     channels["energy.total"] = kinetic + potential
     channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
-    return channels | requested(model, rows.t, channels, _counters(system, rows.q))
+    if not model.requests:
+        return channels
+    from .requests import requested
+
+    return channels | requested(model, rows.t, channels, _counters(model, system, rows.q))
 
 
-def _counters(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
+def _counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:
     """What is counted of angles over whole turns for requests, rad, by the angle's text."""
+    names = {name for name, _ in model.angle_counters()}
     return {
-        name: q[:, place]
+        name: q[:, places[0]]
         for group in system.groups
-        if issubclass(group.kind.element, AngleCounter)
-        for name, (place,) in zip(group.names, group.counters, strict=True)
+        for name, places in zip(group.names, group.counters, strict=True)
+        if name in names
     }

@@ -43,8 +43,6 @@ def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: 
         By channel, shape (n,), in the order in which the model has them.
     """
     outputs = model.outputs()
-    if not outputs:
-        return {}
     functions = {
         name: {**_FUNCTIONS, **{called: curve(table) for called, table in output.tables.items()}}
         for name, output in outputs.items()

@@ -77,14 +77,18 @@ class _OutputField:
 
     names: OutputNames
 
-    def read(self, found: Any, info: ValidationInfo) -> Any:
-        """The checked formula of what stands in the scene."""
+    def read(self, found: Any, context: Mapping[str, Any]) -> Any:
+        """The checked formula of what stands in the scene, with its parameters and tables.
+
+        Raises
+        ------
+        FormulaError
+        """
         if isinstance(found, Output):
             return found
         text = formula_text(found)
         terms = _Terms(self.names)
         tree = terms.visit(parse(text))
-        context = info.context or {}
         tables = context.get("tables") or {}
         check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*self.names.measures, *self.names.actions))
         parameters: Mapping[str, Quantity] = context.get("parameters") or {}
@@ -94,7 +98,10 @@ class _OutputField:
         return Output(text, tree, tuple(terms.found), used, called_tables(tree, tables))
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
-        return core_schema.with_info_plain_validator_function(self.read)
+        def read(found: Any, info: ValidationInfo) -> Any:
+            return self.read(found, info.context or {})
+
+        return core_schema.with_info_plain_validator_function(read)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         text = {"type": "string", "description": "a formula of anything that a run knows"}
@@ -112,19 +119,19 @@ def _others(tree: ast.expr, parameters: Mapping[str, Quantity]) -> Iterator[str]
 _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
-class _RequestedField(_OutputField):
+class RequestField(_OutputField):
     """Marks a field as the formula of a request, or formulas by the names of their components."""
 
-    def read(self, found: Any, info: ValidationInfo) -> Any:
-        if not isinstance(found, dict):
-            return super().read(found, info)
+    def read(self, found: Any, context: Mapping[str, Any]) -> Any:
+        if not isinstance(found, Mapping):
+            return super().read(found, context)
         if not found:
             raise FormulaError("found {}, expected a formula, or formulas by the names of their components")
         check_names(found, "component")
         formulas = {}
         for name, formula in found.items():
             try:
-                formulas[name] = super().read(formula, info)
+                formulas[name] = super().read(formula, context)
             except FormulaError as error:
                 raise FormulaError(f"{name}: {error}") from None
         return formulas
@@ -134,6 +141,6 @@ class _RequestedField(_OutputField):
         return {"anyOf": [*one["anyOf"], {"type": "object", "additionalProperties": one}]}
 
 
-PlanarRequest = Annotated[Output | dict[str, Output], _RequestedField(OF_PLANE)]
-SpatialRequest = Annotated[Output | dict[str, Output], _RequestedField(OF_SPACE)]
+PlanarRequest = Annotated[Output | dict[str, Output], RequestField(OF_PLANE)]
+SpatialRequest = Annotated[Output | dict[str, Output], RequestField(OF_SPACE)]
 """A formula of anything that a run knows, or several by name."""

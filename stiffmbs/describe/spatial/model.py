@@ -9,7 +9,6 @@ import numpy as np
 from pydantic import Field
 
 from ..element import Force, Joint, any_of, kinds
-from ..fields import Described
 from ..forces.weight import weights
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
@@ -80,12 +79,6 @@ class SpatialData(ModelData):
         return marker.body, placed if marker.body == GROUND else self.bodies[marker.body].carried(placed)
 
 
-class Requests(Described):
-    """Requests before they stand in a model."""
-
-    requests: dict[str, SpatialRequest]
-
-
 class Model(ModelBuilder):
     """A model in space built in Python, piece by piece.
 
@@ -99,7 +92,6 @@ class Model(ModelBuilder):
     """
 
     data_type = SpatialData
-    requests_type = Requests
     body_type = Body
     handle_type = BodyHandle
     kinds = JOINTS | FORCES
