@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr
 from pydantic import ValidationError as PydanticError
@@ -20,14 +20,21 @@ from .files.expand import (
     set_value,
 )
 from .files.quoted import written
+from .files.variables import read_variables
 from .files.yaml_text import line_of, read_yaml
+from .formula.text import FormulaError
 from .model import PlanarData
 from .model_data import ModelData
+from .requests.check import check_output
+from .requests.names import OF_PLANE
+from .requests.order import dimension, dimensions
+from .requests.output import Output
+from .requests.output_field import OutputField
 from .settings import RunSettings
 from .table import Table
 from .units.units import Quantity, in_text
 
-SECTIONS = ("bodies", "joints", "forces")
+SECTIONS = ("variables", "bodies", "joints", "forces")
 
 
 class Scene(ModelData):
@@ -35,6 +42,7 @@ class Scene(ModelData):
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
+    variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
     start: Literal["described", "equilibrium"] = Field(
         "described", description="where a run starts: as described, or at rest in the equilibrium found from there"
@@ -42,6 +50,18 @@ class Scene(ModelData):
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
+
+    def check_requests(self) -> None:
+        """The same for variables, whose formulas are read as those of requests."""
+        super().check_requests()
+        outputs = self.outputs()
+        requests = dimensions(outputs)
+        for name, output in self.variables.items():
+            check_output(f"variables.{name}", output, self, self.output_names, outputs)
+            try:
+                dimension(output, requests)
+            except FormulaError as error:
+                raise ValueError(f"variables.{name}: {error}") from None
 
     def written_parameters(self) -> dict[str, float | str]:
         """The parameters as a scene writes them, with their units."""
@@ -55,6 +75,10 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
 
 class PlanarScene(PlanarData, Scene):
     """A scene in the plane."""
+
+    variables: dict[str, Annotated[Output, OutputField(OF_PLANE)]] = Field(
+        default_factory=dict, description="formulas by name, which other formulas use"
+    )
 
 
 def scene_class(dimensions: int) -> type[Scene]:
@@ -166,11 +190,12 @@ def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity]) -> Scene
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
+        variables = read_variables(raw.get("variables"), parameters, tables)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"] = tables
-    context = {"parameters": parameters, "tables": tables}
+    context = {"parameters": parameters, "tables": tables, "variables": variables}
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from typing import Literal
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, ModelWrapValidatorHandler, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from .fields import Described
+from .formula.dimension import UNKNOWN, Known, known_of, same
 from .units import si
+from .units.quantity import quantity
+from .units.units import Quantity, named_unit
 
 
 class Table(Described):
@@ -35,6 +39,24 @@ class Table(Described):
     lines: bool = Field(False, description="straight lines in place of a spline")
     akima: bool = Field(False, description="Akima's local cubics in place of a spline")
 
+    _argument: Known = PrivateAttr(UNKNOWN)
+    _value: Known = PrivateAttr(UNKNOWN)
+
+    @property
+    def dimensions(self) -> tuple[Known, Known]:
+        """Of argument and value, as far as units stand in the table."""
+        return self._argument, self._value
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _measured(cls, found: Any, handler: ModelWrapValidatorHandler[Table], info: ValidationInfo) -> Table:
+        table = handler(found)
+        if isinstance(found, dict):
+            parameters = (info.context or {}).get("parameters") or {}
+            columns = zip(*found["table"], strict=True)
+            table._argument, table._value = (_of_column(column, parameters) for column in columns)
+        return table
+
     @field_validator("table")
     @classmethod
     def _increasing(cls, table: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
@@ -55,3 +77,14 @@ class Table(Described):
         if self.ends == "not-a-knot" and len(self.table) < 4:
             raise ValueError(f"found {len(self.table)} points, expected 4 or more for not-a-knot ends")
         return self
+
+
+def _of_column(column: Iterable[object], parameters: Mapping[str, Quantity]) -> Known:
+    """The dimension of a table's arguments or values, unknown where they are plain numbers."""
+    found = [quantity(entry, parameters) for entry in column if isinstance(entry, str)]
+    known = [each for each in map(known_of, found) if each.stated]
+    for other in known[1:]:
+        if not same(known[0].exponents, other.exponents):  # type: ignore[arg-type]
+            units = " and ".join(named_unit(each.exponents) for each in (known[0], other))  # type: ignore[arg-type]
+            raise ValueError(f"found {units} in one column of a table, expected one unit")
+    return known[0] if known else UNKNOWN

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from stiffmbs.compile.inputs.of_time import inputs_of
 from stiffmbs.compile.symbolic.generate import HEADER
 from stiffmbs.compile.symbolic.symbols import SMOOTH
 from stiffmbs.describe.formula.functions import FUNCTIONS, IN_FORMULAS
+from stiffmbs.describe.units.units import UNITS
 
 ARGUMENTS = {"step": (0.1, -1.0, 0.8, 2.0), "step5": (0.1, 3.0, 0.8, -2.0), "branch": (1.0, 2.0, 3.0)}
 POINTS = (-0.75, -0.3, 0.1, 0.35, 0.5, 0.8, 0.95)
@@ -91,7 +93,7 @@ def test_kernels_import_what_functions_are_called():
         assert not function.in_c or f" {name}," in HEADER or f" {name}\n" in HEADER
 
 
-def test_the_reference_lists_all_functions():
+def test_the_reference_lists_all_functions_and_units():
     text = (Path(__file__).parents[2] / "docs/reference/scenes.md").read_text()
-    listed = set(text.replace("`", " ").split())
-    assert set(FUNCTIONS) <= listed
+    listed = set(re.findall(r"\w+", text))
+    assert set(FUNCTIONS) | set(UNITS) <= listed

@@ -163,6 +163,21 @@ def test_requests_name_other_requests_in_any_order(solution):
     near(solution["loaded"], force + 2)
 
 
+def test_requests_use_variables_that_read_any_channel():
+    head = SCENE.partition("requests:")[0]
+    text = (
+        head
+        + """
+variables: {power: motor.torque*bar.omega, spread: "sqrt(2)*dm(bar.tip, arm.tip)"}
+requests: {twice: 2*power + spread}
+run: {duration: 0.1, points: 5}
+"""
+    )
+    solution = stiffmbs.run(stiffmbs.read_scene(text))
+    spread = np.sqrt(2) * np.hypot(*(point(solution, "bar", *TIP) - point(solution, "arm", *ARM_TIP)))
+    near(solution["twice"], 2 * solution["motor.torque"] * solution["bar.omega"] + spread)
+
+
 def test_angles_go_on_over_whole_turns_at_any_output_spacing():
     text = """
 bodies: {wheel: {mass: 1, inertia: 1, omega: 70, markers: {mark: {angle: 3}}}}
@@ -214,6 +229,7 @@ WRONG = [
     ("{r: fz(hinge)}", "requests.r: found the unknown function 'fz'"),
     ("{r: bar.z}", "requests.r: found 'bar.z' in 'bar.z', expected a channel of a body, a joint or a force"),
     ("{r: hinge.tz}", "requests.r: found 'hinge.tz'"),
+    ("{r: rod.x}", "requests.r: found the unknown body 'rod' in 'rod.x'"),
     ("{r: energy.lost}", "requests.r: found 'energy.lost'"),
     ("{r: fx(rope)}", r"requests.r: found 'rope' in 'fx\(rope\)', expected a joint or a force"),
     ("{r: other}", "requests.r: found the unknown name 'other' in 'other', expected t, .* another channel or request"),
@@ -300,14 +316,12 @@ run: {duration: 1, points: 11}
 SAME = (
     "place.x place.y place.along place.m rate.x rate.y rate.m rate.r turned.z turned.ground turned.back turned.w faster.x "
     "faster.y faster.m faster.z own.ax own.alpha own.fx own.torque push.x push.j push.m push.along push.t push.tj push.ti "
-    "of_run.sum twice effort loaded"
+    "of_run.sum twice effort loaded looked_up"
 )
 
 
 def test_requests_are_the_same_in_space(solution):
-    """But for the table: scenes are put in space without tables."""
-    text = SCENE.replace("  looked_up: curve(bar.omega - 29) + t\n", "")
-    space = stiffmbs.run(spatial.in_space(stiffmbs.read_scene(text)))
+    space = stiffmbs.run(spatial.in_space(stiffmbs.read_scene(SCENE)))
     for name in SAME.split():
         bound = 1e-6 * np.abs(solution[name]).max() + 1e-8
         np.testing.assert_allclose(space[name], solution[name], rtol=0, atol=bound, err_msg=name)

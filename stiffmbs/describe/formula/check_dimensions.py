@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
-from ..files.quoted import quoted
 from ..units.units import ANY, DIMENSIONS, Quantity, named_unit, one
 from .dimension import PLAIN, Known, alike, known_of, power, product
 from .functions import FUNCTIONS
@@ -14,8 +14,13 @@ from .text import OF_NUMBERS, FormulaError, evaluate
 Named = Callable[[str], Quantity | Known]
 """From a name, such as ``L``, ``unit.kg`` or ``cart.x``, to its value, or to what is known of its dimension."""
 
+Columns = tuple[Known, Known]
+NONE: Mapping[str, Any] = {}
 
-def dimension_of(tree: ast.expr, named: Named, called: Callable[[ast.Call], Known | None]) -> Known:
+
+def dimension_of(
+    tree: ast.expr, named: Named, measures: Mapping[str, Known] = NONE, tables: Mapping[str, Columns] = NONE
+) -> Known:
     """The dimension of a checked tree.
 
     Parameters
@@ -23,8 +28,10 @@ def dimension_of(tree: ast.expr, named: Named, called: Callable[[ast.Call], Know
     tree : ast.expr
         From `stiffmbs.describe.formula.text.parse`.
     named : callable
-    called : callable
-        Of a measure's or a table's value; None for a call of a function.
+    measures : mapping of str to Known
+        What is called with markers.
+    tables : mapping of str to (Known, Known)
+        Of the arguments and values of tables.
 
     Raises
     ------
@@ -33,7 +40,7 @@ def dimension_of(tree: ast.expr, named: Named, called: Callable[[ast.Call], Know
     """
 
     def of(node: ast.expr) -> Known:
-        return dimension_of(node, named, called)
+        return dimension_of(node, named, measures, tables)
 
     match tree:
         case ast.Name(name):
@@ -49,8 +56,14 @@ def dimension_of(tree: ast.expr, named: Named, called: Callable[[ast.Call], Know
         case ast.BinOp(left, op, right):
             return product(of(left), of(right), -1 if isinstance(op, ast.Div) else 1)
         case ast.Call(ast.Name(name), arguments):
-            found = called(tree)
-            return FUNCTIONS[name].dimension([(of(part), part) for part in arguments], tree) if found is None else found
+            if name in measures:
+                return measures[name]
+            given = [(of(part), part) for part in arguments]
+            if name in tables:
+                argument, value = tables[name]
+                alike((*given, (argument, tree)), tree)
+                return value
+            return FUNCTIONS[name].dimension(given, tree)
     return PLAIN
 
 
@@ -74,8 +87,8 @@ def _value(node: ast.expr, named: Named) -> float | None:
     return result
 
 
-def check_dimension(text: str, found: Known, dimension: str) -> None:
-    """Refuse a value with a unit that does not fit.
+def check_dimension(what: str, found: Known, dimension: str) -> None:
+    """Refuse a value with a unit that does not fit; `what` it is, for the message.
 
     Raises
     ------
@@ -84,6 +97,5 @@ def check_dimension(text: str, found: Known, dimension: str) -> None:
     if dimension != ANY and not found.is_of(dimension):
         assert found.exponents is not None
         raise FormulaError(
-            f"found '{quoted(text)}', which is in {named_unit(found.exponents)}, expected {one(dimension)} in "
-            f"{DIMENSIONS[dimension][1]}"
+            f"found {what} in {named_unit(found.exponents)}, expected {one(dimension)} in {DIMENSIONS[dimension][1]}"
         )

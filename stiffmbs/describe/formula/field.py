@@ -16,12 +16,13 @@ from ..marker import GROUND, MarkerReference
 from ..table import Table
 from ..units.quantity import as_float, is_unit, of_name
 from ..units.units import ANY, CONSTANTS, UNITS, Quantity
-from . import measured
-from .check_dimensions import check_dimension, dimension_of
+from .check_dimensions import check_dimension
 from .dimension import UNKNOWN, Known, measured_in
-from .functions import FUNCTIONS, IN_FORMULAS, check_functions
+from .functions import IN_FORMULAS, check_functions
+from .measured import dimension_within
 from .names import MEASURES
 from .text import UNIT, FormulaError, parse
+from .variables import with_variables
 
 TIME = "t"
 
@@ -78,8 +79,13 @@ class Formula:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Formula) and all(
-            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables")
+            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables", "_told")
         )
+
+    @property
+    def _told(self) -> str:
+        """What the tree says, with variables in their places."""
+        return ast.unparse(self.tree)
 
     def __hash__(self) -> int:
         return hash(self.text)
@@ -181,22 +187,31 @@ class FormulaOf:
             self._check(found)
             return found
         if isinstance(found, Table | dict) and self.table:
-            return found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
+            table = found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
+            self._check_table(table)
+            return table
         context = info.context or {}
-        formula = self._made(found, context.get("parameters") or {}, context.get("tables") or {})
+        formula = self._made(found, *(context.get(key) or {} for key in ("parameters", "tables", "variables")))
         self._check(formula)
         return formula
 
-    def _made(self, found: Any, parameters: Mapping[str, Quantity], tables: Mapping[str, Table]) -> Formula:
+    def _made(
+        self,
+        found: Any,
+        parameters: Mapping[str, Quantity],
+        tables: Mapping[str, Table],
+        variables: Mapping[str, ast.expr],
+    ) -> Formula:
         found = formula_text(found, "a formula or a table" if self.table else "a formula")
-        tree = parse(found)
+        tree = with_variables(parse(found), variables, self.variables)
         check_functions(
             tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
         )
         used = dict(self.quantities(found, tree, parameters))
         values = {name: quantity.value for name, quantity in used.items()}
-        dimension = self.dimension_of(tree, used)
-        return Formula(found, tree, self.variables, values, self.velocities, called_tables(tree, tables), dimension)
+        called = called_tables(tree, tables)
+        dimension = self.dimension_of(tree, used, called)
+        return Formula(found, tree, self.variables, values, self.velocities, called, dimension)
 
     def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
         """The parameters, units and constants in a tree.
@@ -226,36 +241,23 @@ class FormulaOf:
         raise FormulaError(f"found the unknown name '{name}' in '{quoted(text)}', expected {expected}")
 
     def dimension_of(
-        self, tree: ast.expr, used: Mapping[str, Quantity], terms: Mapping[str, Known] | None = None
+        self,
+        tree: ast.expr,
+        used: Mapping[str, Quantity],
+        tables: Mapping[str, Table],
+        terms: Mapping[str, Known] | None = None,
     ) -> Known:
-        """The dimension of a formula's value.
-
-        Parameters
-        ----------
-        tree : ast.expr
-        used : mapping of str to Quantity
-            As `quantities` finds them.
-        terms : mapping of str to Known, optional
-            Other names in the tree.
-
-        Raises
-        ------
-        FormulaError
-            When a unit stands in it and dimensions do not fit; without any it is in SI units as it stands.
+        """The dimension of a formula's value, as `stiffmbs.describe.formula.measured.dimension_within`; `terms` are other
+        names in the tree.
         """
-        own = zip(self.variables, map(measured_in, self.measured_in), strict=False)
-        names: dict[str, Quantity | Known] = {TIME: measured.TIME, **dict(own), **used, **(terms or {})}
+        own = dict(zip(self.variables, map(measured_in, self.measured_in), strict=False))
+        columns = {name: table.dimensions for name, table in tables.items()}
+        return dimension_within(tree, used, own | dict(terms or {}), columns)
 
-        def called(call: ast.Call) -> Known | None:
-            name = call.func.id  # type: ignore[attr-defined]
-            return measured.MEASURES.get(name, UNKNOWN) if is_measure(call) or name not in FUNCTIONS else None
-
-        try:
-            return dimension_of(tree, lambda name: names.get(name) or measured.of_coordinate(name), called)
-        except FormulaError:
-            if any(quantity.dimension is not None for quantity in used.values()):
-                raise
-            return UNKNOWN
+    def _check_table(self, table: Table) -> None:
+        argument, value = table.dimensions
+        check_dimension("the table's arguments", argument, *self.measured_in or ("time",))
+        check_dimension("the table's values", value, self.dimension)
 
     def _check(self, formula: Formula) -> None:
         if not self.time and any(isinstance(n, ast.Name) and n.id == TIME for n in reading_order(formula.tree)):
@@ -264,7 +266,7 @@ class FormulaOf:
         used += [f"{name}(...)" for name, _ in formula.measures()]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
-        check_dimension(formula.text, formula.dimension, self.dimension)
+        check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)

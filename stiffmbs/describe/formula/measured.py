@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-from ..units.units import DIMENSIONS
+import ast
+from collections.abc import Mapping
+
+from ..units.units import DIMENSIONS, Quantity
+from .check_dimensions import Columns, dimension_of
 from .dimension import UNKNOWN, Known, measured_in
+from .text import FormulaError
 
 _COORDINATES = {
     "length": "x y z", "angle": "angle", "number": "q0 q1 q2 q3", "velocity": "vx vy vz", "angular velocity": "omega wx wy wz",
@@ -51,3 +56,34 @@ def unit_of_coordinate(name: str) -> str:
 def unit_of_measure(function: str) -> str:
     """The unit of a measure between markers, or of what a joint or force does."""
     return _MEASURE_UNITS[function]
+
+
+def dimension_within(
+    tree: ast.expr, used: Mapping[str, Quantity], own: Mapping[str, Known], tables: Mapping[str, Columns]
+) -> Known:
+    """The dimension of a formula's value.
+
+    Parameters
+    ----------
+    tree : ast.expr
+    used : mapping of str to Quantity
+        The parameters, units and constants in it.
+    own : mapping of str to Known
+        Names with a meaning of the formula's own.
+    tables : mapping of str to (Known, Known)
+        Of arguments and values of the tables that it calls.
+
+    Raises
+    ------
+    FormulaError
+        When a unit stands in it and dimensions do not fit; without any it is in SI units as it stands.
+    """
+    names: dict[str, Quantity | Known] = {"t": TIME, **own, **used}
+    try:
+        return dimension_of(tree, lambda name: names.get(name) or of_coordinate(name), MEASURES, tables)
+    except FormulaError:
+        if any(quantity.dimension is not None for quantity in used.values()):
+            raise
+        if any(column.stated for columns in tables.values() for column in columns):
+            raise
+        return UNKNOWN

@@ -17,12 +17,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..files.quoted import quoted
+from .size import DEEPEST, MOST_PARTS, FormulaError, balanced, check_size
 
 UNIT = "unit"
 _NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
 """A number that runs into a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
-LONGEST = 2000
-DEEPEST = 60
+LONGEST = 50 * MOST_PARTS
+"""Characters of a formula, which bound the time that it takes to see how many parts it has."""
 LARGEST_LITERAL = 1e300
 
 UNIT_BY_KEYWORD = {"in": "inch"}
@@ -36,10 +37,6 @@ BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Pow: operator.pow,
 }
 UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {ast.UAdd: operator.pos, ast.USub: operator.neg}
-
-
-class FormulaError(ValueError):
-    """A formula that cannot be read or evaluated; the message is the rest of a sentence that starts with where."""
 
 
 def parse(text: str) -> ast.expr:
@@ -59,11 +56,16 @@ def parse(text: str) -> ast.expr:
         raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST}")
     try:
         tree = ast.parse(_python_spelling(text), mode="eval").body
+        if len(text) > DEEPEST:  # shorter ones are within the bounds
+            tree = balanced(tree)
+            check_size(tree, text)
+    except FormulaError:
+        raise
     except (SyntaxError, tokenize.TokenError, ValueError, RecursionError, MemoryError):
         raise FormulaError(
             f"found '{quoted(text)}', expected a number or a formula such as '125 mm' or '0.6/2'"
         ) from None
-    _check(tree, text, 0)
+    _check(tree, text)
     return tree
 
 
@@ -124,9 +126,7 @@ def _times_unit(name: str) -> list[str]:
     return ["*", UNIT, ".", UNIT_BY_KEYWORD.get(name, name)]
 
 
-def _check(node: ast.AST, text: str, depth: int) -> None:
-    if depth > DEEPEST:
-        raise FormulaError(f"found a formula nested deeper than {DEEPEST}, expected a shorter one")
+def _check(node: ast.AST, text: str) -> None:
     match node:
         case ast.BinOp(left, op, right) if type(op) in BINARY:
             children: list[ast.AST] = [left, right]
@@ -145,7 +145,7 @@ def _check(node: ast.AST, text: str, depth: int) -> None:
         case _:
             raise FormulaError(f"found '{quoted(text)}', expected only arithmetic, names and functions")
     for child in children:
-        _check(child, text, depth + 1)
+        _check(child, text)
 
 
 def real_power(base: float, exponent: float) -> float:

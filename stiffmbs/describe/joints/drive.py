@@ -16,8 +16,9 @@ from ..formula.field import Formula, OfPosition, OfTime
 from ..formula.text import FormulaError
 from ..joint_reference import unfit_joints
 from ..marker import MarkerReference
+from ..table import Table
 from ..units.quantity import refuse_cycles
-from ..units.units import NONE, named_unit
+from ..units.units import named_unit
 
 SORTS = {"angle": "angle", "displacement": "length", None: "value"}
 """The dimensions of joint coordinates by name."""
@@ -88,7 +89,7 @@ class Drive(Joint):
         for field, law, expected in (
             ("position", self.prescribed_position, driven), ("velocity", self.prescribed_velocity, rate),
         ):  # fmt: skip
-            if isinstance(law, Formula) and (reason := _unfit(field, law, expected)):
+            if law is not None and (reason := _unfit(field, law, expected)):
                 yield field, reason
 
     @staticmethod
@@ -109,15 +110,15 @@ class Drive(Joint):
         return e.frames[0].origin if e.i is None else e.i.point
 
 
-def _unfit(field: str, law: Formula, expected: Known) -> str:
+def _unfit(field: str, law: Formula | Table, expected: Known) -> str:
     """Why a law of time has not the expected dimension; empty where it has, or carries no unit."""
-    if not law.dimension.agrees_with(expected):
-        assert law.dimension.exponents is not None and expected.exponents is not None
-        found, unit = named_unit(law.dimension.exponents), named_unit(expected.exponents)
-        return (
-            f"found '{quoted(law.text)}', which is in {found}, expected a {field} in {unit if unit != NONE else 'rad'}"
-        )
-    if expected.exponents == ANGULAR_VELOCITY.exponents:
+    what = f"'{quoted(law.text)}', which is" if isinstance(law, Formula) else "the table's values"
+    found = law.dimension if isinstance(law, Formula) else law.dimensions[1]
+    if not found.agrees_with(expected):
+        assert found.exponents is not None and expected.exponents is not None
+        unit = named_unit(expected.exponents) if any(expected.exponents) else "rad"
+        return f"found {what} in {named_unit(found.exponents)}, expected a {field} in {unit}"
+    if isinstance(law, Formula) and expected.exponents == ANGULAR_VELOCITY.exponents:
         try:
             refuse_cycles(law.text, law.tree)
         except FormulaError as error:

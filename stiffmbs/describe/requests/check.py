@@ -63,6 +63,11 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
         if not name:
             _check_request(where, owner, output, others)
         elif channel(owner, name) not in others and name not in _of(owner, model, names):
+            if not _is_known(owner, acting, model, others):
+                raise ValueError(
+                    f"{where}: found the unknown body '{owner}' in '{quoted(output.text)}', expected the name of a body, a joint, a "
+                    "force or a request"
+                )
             raise ValueError(
                 f"{where}: found '{owner}.{name}' in '{output.text}', expected a channel of a body, a joint or a force"
             )
@@ -76,6 +81,16 @@ def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
     return names.of_elements if owner in model.joints or owner in model.forces else OF_RUN.get(owner, ())
 
 
+def _is_known(owner: str, acting: Mapping[str, Any], model: Any, others: Mapping[str, Output]) -> bool:
+    """Whether something has channels whose names begin with a name."""
+    return (
+        owner in acting
+        or owner in model.bodies
+        or owner in OF_RUN
+        or owner in {name.partition(".")[0] for name in others}
+    )
+
+
 def _check_request(where: str, name: str, output: Output, others: Mapping[str, Output]) -> None:
     if name in others:
         return
@@ -86,7 +101,7 @@ def _check_request(where: str, name: str, output: Output, others: Mapping[str, O
         )
     raise ValueError(
         f"{where}: found the unknown name '{name}' in '{quoted(output.text)}', expected t, a body's coordinate such as cart.x, "
-        "another channel or request, a parameter of the scene"
+        "another channel or request, a parameter or a variable of the scene"
     )
 
 

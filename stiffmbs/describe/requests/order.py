@@ -60,13 +60,22 @@ def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
     """
     found: dict[str, Known] = {}
     for name in in_order(outputs):
-        output = outputs[name]
-        terms = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(output.terms)}
         try:
-            found[name] = _ANYTHING.dimension_of(output.tree, output.quantities, {**_ENERGIES, **found, **terms})
+            found[name] = dimension(outputs[name], found)
         except FormulaError as error:
             raise ValueError(f"requests.{name}: {error}") from None
     return found
+
+
+def dimension(output: Output, requests: Mapping[str, Known]) -> Known:
+    """The dimension of one formula, from those of the requests that it names.
+
+    Raises
+    ------
+    FormulaError
+    """
+    terms = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(output.terms)}
+    return _ANYTHING.dimension_of(output.tree, output.quantities, output.tables, {**_ENERGIES, **requests, **terms})
 
 
 def reading(outputs: Mapping[str, Output], channels: Container[str], measured_so: Callable[[Term], bool]) -> set[str]:

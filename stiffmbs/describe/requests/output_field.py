@@ -14,6 +14,7 @@ from ..body import check_names
 from ..formula.field import TIME, FormulaOf, called_tables, formula_text, reading_order
 from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, parse
+from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
 from ..units.units import CONSTANTS, UNITS, Quantity
 from .names import OF_PLANE, OF_SPACE, OutputNames
@@ -72,7 +73,7 @@ def _reference(node: ast.expr) -> str:
 
 
 @dataclass(frozen=True)
-class _OutputField:
+class OutputField:
     """Marks a field as the formula of a request in a family of models."""
 
     names: OutputNames
@@ -88,7 +89,7 @@ class _OutputField:
             return found
         text = formula_text(found)
         terms = _Terms(self.names)
-        tree = terms.visit(parse(text))
+        tree = terms.visit(with_variables(parse(text), context.get("variables") or {}))
         tables = context.get("tables") or {}
         check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*self.names.measures, *self.names.actions))
         parameters: Mapping[str, Quantity] = context.get("parameters") or {}
@@ -119,7 +120,7 @@ def _others(tree: ast.expr, parameters: Mapping[str, Quantity]) -> Iterator[str]
 _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
-class RequestField(_OutputField):
+class RequestField(OutputField):
     """Marks a field as the formula of a request, or formulas by the names of their components."""
 
     def read(self, found: Any, context: Mapping[str, Any]) -> Any:

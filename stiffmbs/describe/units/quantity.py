@@ -34,7 +34,8 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
     """
     known = parameters or {}
     tree = parse(text)
-    check_functions(tree, IN_NUMBERS)
+    if "(" in text:
+        check_functions(tree, IN_NUMBERS)
 
     def named(name: str) -> Quantity:
         owner, _, last = name.rpartition(".")
@@ -44,7 +45,7 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
                     return table[last]
         return of_name(last if owner == UNIT else name, text, tree, known)
 
-    dimension = dimension_of(tree, named, lambda call: None)
+    dimension = dimension_of(tree, named)
     try:
         value = evaluate(tree, lambda name: named(name).value, VALUES, float, OF_NUMBERS)
     except ArithmeticError:

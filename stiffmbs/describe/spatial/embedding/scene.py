@@ -21,7 +21,7 @@ from .markers import Written, placement, turned
 from .plane import loose
 
 ORDER = (
-    "name", "dimensions", "parameters", "gravity", "markers", "bodies", "joints", "forces", "requests", "figure", "run", "notes",
+    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "joints", "forces", "requests", "figure", "run", "notes",
 )  # fmt: skip
 """Of the sections in the file."""
 CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
@@ -51,6 +51,8 @@ def scene_in_space(data: PlanarData) -> Written:
     if isinstance(data, Scene):
         parts |= {
             "parameters": data.written_parameters(),
+            "tables": plain(data.tables, angles),
+            "variables": {name: request(found, angles) for name, found in data.variables.items()},
             "figure": _figure(data, requests, angles),
             "run": plain(data.run.model_dump(exclude_unset=True), angles),
             "notes": list(data.notes),
