@@ -100,7 +100,11 @@ def measured(problem: Problem, rtols: Iterable[float] = RTOLS) -> Iterator[tuple
         for rtol in rtols:
             asked = job(solver, rtol, POINTS)
             found = verified(asked, solved(asked), PATIENCE)
-            yield solver, rtol, compared(found, truth, less_true, scales(truth, asked.mechanics.system.size))
+            yield (
+                solver,
+                rtol,
+                compared(found, truth, less_true, scales(truth, asked.mechanics.system.size, truth.requested)),
+            )
 
 
 def at_more_instants(job: Job) -> Solution:

@@ -43,7 +43,7 @@ class Compilable(Protocol):
     def joints(self) -> Mapping[str, Any]: ...
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """Every joint, force, request and weight with its name."""
+        """Every joint, force, counter of turns and weight with its name."""
 
     def carried(self, marker: Any) -> tuple[str, Any]:
         """The body that carries a marker, and where it sits on it."""

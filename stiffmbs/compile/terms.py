@@ -7,7 +7,7 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
     "motion": ("C", "V", "C_q", "J", "f", "Z"),
     "tangent": ("C_q", "J", "V_q", "G_lam", "G_mu", "f_q", "f_u", "f_lam", "Z", "Z_q"),
     "acceleration": ("J", "gamma", "f", "f_lam", "counting"),
-    "output": ("reaction", "potential", "request", "power"),
+    "output": ("reaction", "potential", "power"),
     "switch": ("switch", "limit", "argument"),
     "all_levels": ("C", "V", "J", "gamma", "f", "Z"),
     "all_levels_tangent": ("C_q", "J", "V_q", "G_lam", "A_q", "gamma_u", "f_q", "f_u", "f_lam", "Z", "Z_q"),
@@ -18,14 +18,14 @@ C constraints, C_q = dC/dq, V the velocity level (C_q u + C_t, and equations tha
 f applied forces, V_q = dV/dq, G_lam = d(J^T lam)/dq, G_mu = d(C_q^T mu)/dq, f_q, f_u, f_lam derivatives of f (forces
 of friction depend on multipliers), gamma = J u' on the constraints, reaction = force and torque on the first body,
 A_q = d(J a - gamma)/dq and gamma_u = dgamma/du for given accelerations a, Z of q' = Z u where that is not u itself and
-Z_q = d(Z u)/dq, counted = angles that count turns and counting = their rates, potential = energy, request =
-what the user asked for, power = what an element brings into kinetic + potential energy (`stiffmbs.compile.symbolic.losses`),
+Z_q = d(Z u)/dq, counted = angles that count turns and counting = their rates, potential = energy, power = what an
+element brings into kinetic + potential energy (`stiffmbs.compile.symbolic.losses`),
 switch = what changes its sign at corners of a force, limit = what is above zero for as long as a force's law holds,
 argument = what tables and functions with narrow features (exp, tanh) are called with.
 """
 
 TERM_AXES: dict[str, str] = {
-    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "request": "e", "power": "e", "switch": "s", "limit": "s",
+    "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "power": "e", "switch": "s", "limit": "s",
     "argument": "s",
     "C_q": "cq", "J": "cu", "V_q": "cq", "G_lam": "uq", "G_mu": "qq", "f_q": "uq", "f_u": "uu", "f_lam": "ul",
     "A_q": "cq", "gamma_u": "cu", "Z": "qu", "Z_q": "qq", "counted": "q", "counting": "q",

@@ -13,13 +13,14 @@ from . import forces, joints
 from .body import Body, BodyHandle
 from .element import Force, Joint
 from .forces.weight import weights
-from .formula.field import OfMotion
 from .given import Numbers
 from .initial_pose import DrawnMarker
 from .kinds import Kinds, any_of
 from .marker import GROUND, MarkerReference, Placement
 from .model_builder import ModelBuilder
 from .model_data import ModelData
+from .requests.names import OF_PLANE
+from .requests.output_field import PlanarRequest
 from .units import si
 
 JOINTS = Kinds(joints, Joint, 2)
@@ -33,6 +34,7 @@ class PlanarData(ModelData):
     """What a model in the plane holds."""
 
     origin = Placement()
+    output_names = OF_PLANE
 
     dimensions: Literal[2] = Field(2, description="of the model: the plane")
     gravity: tuple[si.Acceleration, si.Acceleration] = Field(
@@ -43,7 +45,9 @@ class PlanarData(ModelData):
     joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
     forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
 
-    requests: dict[str, OfMotion] = Field(default_factory=dict, description="formulas to report, by channel name")
+    requests: dict[str, PlanarRequest] = Field(
+        default_factory=dict, description="formulas to report, by channel name; or several by name under one"
+    )
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack, overload
 
 from ..errors import InputError
@@ -10,13 +10,16 @@ from .body import check_names
 from .element import Element, Force, Joint
 from .fields import Described
 from .formula.names import NAMES
+from .formula.text import FormulaError
 from .given import Law
 from .handle import Handle
 from .kinds import Kinds
 from .marker import GROUND, MarkerReference
 from .model_data import RESERVED, ModelData, check_element, contents
 from .own_elements import check_class
-from .request import Request
+from .requests.check import by_channel, check_output
+from .requests.order import dimensions
+from .requests.output_field import RequestField
 from .settings import RunSettings, Settings, takes_settings
 
 if TYPE_CHECKING:
@@ -203,15 +206,16 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
             raise InputError(f"{name}: found {marker!r}, expected a marker with a point on ground")
         self.markers[name] = placement
 
-    def request(self, name: str, formula: Law) -> None:
-        """Report a formula of coordinates, velocities, measures and time as a channel of the given name.
+    def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
+        """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
 
         Parameters
         ----------
         name : str
             Of the channel.
-        formula : str or float
-            In SI units, such as ``"0.6*abs(bar.omega)"``.
+        formula : str, float or mapping of str to these
+            In SI units, such as ``"0.6*abs(bar.omega)"`` or ``"fx(hinge) + tip_speed"``, of parts and requests that have been
+            added; several by the names of their components.
 
         Raises
         ------
@@ -219,9 +223,19 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
             As for `add`, and for a formula that cannot be read.
         """
         self._check_name(name)
-        request = Request(formula=formula)
-        self._check(name, request)
-        self.requests[name] = request.formula
+        names = self.data_type.output_names
+        try:
+            read = RequestField(names).read(formula, {})
+            requests = {**self.requests, name: read}
+            outputs = dict(by_channel(requests))
+            for channel, output in by_channel({name: read}):
+                check_output(f"requests.{channel}", output, self, names, outputs)
+            dimensions(outputs)
+        except FormulaError as error:
+            raise InputError(f"requests.{name}: {error}") from None
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        self.requests = requests
 
     @staticmethod
     def _check_spelling(name: object, what: str) -> None:

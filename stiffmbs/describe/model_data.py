@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import math
-import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
 from .body import check_names
+from .check_marker import check_marker, listed
 from .element import Element, Force, Joint, JointName
 from .fields import Described
-from .files.quoted import quoted
 from .formula.field import TIME, Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
-from .request import Request
-from .units.units import UNITS
+from .requests.check import by_channel, check_output
+from .requests.names import OutputNames
+from .requests.order import dimensions
+from .requests.output import Output
+
+if TYPE_CHECKING:
+    from .requests.angle_counter import AngleCounter
 
 ROUNDING = 1e-13
 """Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""
@@ -40,11 +44,13 @@ class ModelData(Described):
     markers : mapping of str to Placement
         Named points of ground, ``ground.name``.
     bodies, joints, forces, requests : mappings by name
-        Names are shared by all, as channels are named after them.
+        Names are shared by all, as channels are named after them.  A request is a formula, or several by name.
     """
 
     origin: ClassVar[Any]
     """Where a marker sits that is a body itself."""
+    output_names: ClassVar[OutputNames]
+    """What requests may name."""
 
     name: str = Field("", description="shown in summaries")
     dimensions: int
@@ -78,21 +84,6 @@ class ModelData(Described):
                     raise ValueError(f"found the name '{name}', which is reserved, expected another")
         return named
 
-    @field_validator("requests", mode="before")
-    @classmethod
-    def _no_unit_meant_as_a_request(cls, named: Any) -> Any:
-        if isinstance(named, dict):
-            units = "|".join(re.escape(name) for name in named if name in UNITS)
-            for text in named.values():
-                used = re.search(rf"(?<![\w.])({units})(?![\w.(])", text) if units and isinstance(text, str) else None
-                if used:
-                    name = used.group()
-                    raise ValueError(
-                        f"found '{name}' in '{quoted(text)}', which is a unit and a request, expected one or the other: "
-                        "rename the request"
-                    )
-        return named
-
     @model_validator(mode="after")
     def _whole(self) -> ModelData:
         if not self.bodies:
@@ -116,30 +107,18 @@ class ModelData(Described):
         return self
 
     def check_requests(self) -> None:
-        """Refuse requests that name what the model does not have."""
-        for name, request in self.requested():
-            self.check_request(f"requests.{name}", request)
+        """Refuse requests that name what the model does not have, or themselves, and units that do not fit."""
+        outputs = self.outputs()
+        for channel, output in outputs.items():
+            check_output(f"requests.{channel}", output, self, self.output_names, outputs)
+        dimensions(outputs)
 
-    def check_request(self, where: str, request: Request) -> None:
-        """Refuse a request that names what the model does not have."""
-        check_element(where, request, self.bodies, self.joints, self.markers, NAMES[self.dimensions])
+    def outputs(self) -> dict[str, Output]:
+        """The requests by channel: a name, or ``name.component``."""
+        return dict(by_channel(self.requests))
 
-    def outputs(self) -> Iterator[tuple[str, Any]]:
-        """The requests that are evaluated after the run, by channel."""
-        yield from ()
-
-    def requested_channels(self) -> Iterator[str]:
-        """The channels that requests become."""
-        for reported in (self.requested(), self.outputs()):
-            yield from (channel for channel, _ in reported)
-
-    def requested(self) -> Iterator[tuple[str, Request]]:
-        """The requests that are compiled, by name."""
-        for name, formula in self.requests.items():
-            yield name, Request(formula=formula)
-
-    def counted_angles(self) -> Iterator[tuple[str, Request]]:
-        """The angles over whole turns that requests evaluated after the run ask for, compiled, by their text."""
+    def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
+        """What counts the turns of angles in requests where positions tell them up to whole turns, by the angles' text."""
         yield from ()
 
     @abstractmethod
@@ -155,10 +134,9 @@ class ModelData(Described):
         """The body that carries a marker, and where it sits on it, from the centre of mass in the solver's axes."""
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """Every joint, force, request and weight with its name (a weight has its body's)."""
+        """Every joint, force, counter of turns and weight with its name (a weight has its body's)."""
         yield from self.drawn_elements()
-        yield from self.requested()
-        yield from self.counted_angles()
+        yield from self.angle_counters()
         yield from self.inertial(self.bodies)
 
     def drawn_elements(self) -> Iterator[tuple[str, Element]]:
@@ -200,15 +178,6 @@ def contents(model: Any) -> str:
     return f"'{model.name}': {', '.join(parts)}"
 
 
-def check_marker(where: str, marker: MarkerReference, bodies: Mapping[str, Any], on_ground: Mapping[str, Any]) -> None:
-    """Refuse a marker on an unknown body, or of a name that its body does not know."""
-    if marker.body != GROUND and marker.body not in bodies:
-        raise ValueError(f"{where}: found the unknown body '{marker.body}', expected {_listed(bodies)}")
-    own = on_ground if marker.body == GROUND else bodies[marker.body].markers
-    if marker.marker is not None and marker.marker not in own:
-        raise ValueError(f"{where}: found '{marker.label}', expected one of its markers ({', '.join(own) or 'none'})")
-
-
 def check_element(
     where: str,
     element: Element,
@@ -234,14 +203,9 @@ def check_element(
     for field, formula in element.parts(Formula):
         for body in formula.bodies():
             if body not in bodies and body != GROUND:
-                raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {_listed(bodies)}")
+                raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {listed(bodies)}")
         for reason in names.refused(formula):
             raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
     if len(placed) > 1 and len(set(placed)) == 1:
         raise ValueError(f"{where}: found '{placed[0]}' on both sides, expected two different bodies")
-
-
-def _listed(bodies: Mapping[str, Any]) -> str:
-    names = list(bodies)
-    return ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), GROUND])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr
 from pydantic import ValidationError as PydanticError
@@ -22,10 +22,14 @@ from .files.expand import (
 from .files.quoted import written
 from .files.variables import read_variables
 from .files.yaml_text import line_of, read_yaml
-from .formula.field import OfMotion
+from .formula.text import FormulaError
 from .model import PlanarData
 from .model_data import ModelData
-from .request import Request
+from .requests.check import check_output
+from .requests.names import OF_PLANE
+from .requests.order import dimension, dimensions
+from .requests.output import Output
+from .requests.output_field import OutputField
 from .settings import RunSettings
 from .table import Table
 from .units.units import Quantity, in_text
@@ -47,6 +51,18 @@ class Scene(ModelData):
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
 
+    def check_requests(self) -> None:
+        """The same for variables, whose formulas are read as those of requests."""
+        super().check_requests()
+        outputs = self.outputs()
+        requests = dimensions(outputs)
+        for name, output in self.variables.items():
+            check_output(f"variables.{name}", output, self, self.output_names, outputs)
+            try:
+                dimension(output, requests)
+            except FormulaError as error:
+                raise ValueError(f"variables.{name}: {error}") from None
+
     def written_parameters(self) -> dict[str, float | str]:
         """The parameters as a scene writes them, with their units."""
         return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
@@ -60,14 +76,9 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
 class PlanarScene(PlanarData, Scene):
     """A scene in the plane."""
 
-    variables: dict[str, OfMotion] = Field(
+    variables: dict[str, Annotated[Output, OutputField(OF_PLANE)]] = Field(
         default_factory=dict, description="formulas by name, which other formulas use"
     )
-
-    def check_requests(self) -> None:
-        super().check_requests()
-        for name, formula in self.variables.items():
-            self.check_request(f"variables.{name}", Request(formula=formula))
 
 
 def scene_class(dimensions: int) -> type[Scene]:

@@ -13,6 +13,7 @@ from ..compile.callbacks import fault_of, notes_on_functions
 from ..compile.compile_model import compile_model
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
+from ..describe.requests.order import units
 from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.far_away import refuse_far_away
@@ -221,7 +222,7 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
-        requested=frozenset(job.data.requested_channels()), figure=job.data.figure if isinstance(job.data, Scene) else None,
+        requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
         presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
     )  # fmt: skip
 

@@ -8,6 +8,9 @@ from typing import Unpack
 
 import numpy as np
 
+from ..describe.model_data import ModelData
+from ..describe.requests.order import reading
+from ..describe.requests.output import Term
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError, SolverError
 from ..linear_analysis.state_space import StateMatrix, state_matrix
@@ -19,6 +22,8 @@ from .at_state import AtState, at_state
 from .inputs import Parameterised, force_on
 from .run import Runnable, prepare
 
+PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
+"""Measures of places and angles."""
 SHIFT = 1e-6
 """Variation of states by which outputs are differentiated: relative to the mechanism's size, or rad."""
 
@@ -162,8 +167,14 @@ def _refuse_rates(about: _About, name: str, outputs: Sequence[str]) -> None:
     rates = (*system.of_body.velocities, *system.of_body.accelerations)
     felt = {f"{body}.{label}" for body in system.bodies for label in rates}
     felt |= {f"{joint}.{label}" for joint in data.joints for label in system.of_body.reactions}
+    felt |= reading(data.outputs(), felt, lambda term: _felt(term, data))
     for output in felt & set(outputs):
         raise InputError(
             f"output '{output}': found a velocity, acceleration or reaction, expected a displacement for the input '{name}', "
             "which moves a constraint; ask for the response of the displacement"
         )
+
+
+def _felt(term: Term, data: ModelData) -> bool:
+    """Whether a term of a request is a velocity or acceleration, or what a joint does."""
+    return term.element in data.joints if term.element else term.function not in PLACES

@@ -51,14 +51,11 @@ class Welded:
         return self.model.size()
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """What acts on the bodies that are left, what they have of themselves (weights) too, and angles that count turns.
-
-        Other requests have no part in it.
-        """
+        """What acts on the bodies that are left, what they have of themselves (weights) too, and counters of turns."""
         for name, element in self.model.drawn_elements():
             if name not in self.joints_left_out:
                 yield name, element
-        yield from self.model.counted_angles()
+        yield from self.model.angle_counters()
         yield from self.model.inertial(self.bodies)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Any]:

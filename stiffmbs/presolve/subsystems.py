@@ -8,7 +8,6 @@ import numpy as np
 
 from ..compile.group import Group
 from ..compile.system import System
-from ..describe.request import Request
 
 
 def mechanisms(system: System) -> list[np.ndarray]:
@@ -16,7 +15,7 @@ def mechanisms(system: System) -> list[np.ndarray]:
     if len(system.bodies) == 1:
         return [np.zeros(1, dtype=np.int64)]
     label = np.arange(len(system.bodies) + 1)  # of each body the least number that it is known to be connected with
-    pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(_pairs(system, group) for group in _acting(system))])
+    pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(_pairs(system, group) for group in system.groups)])
     while True:
         least = np.minimum(label[pairs[:, 0]], label[pairs[:, 1]])
         lower = label.copy()
@@ -30,16 +29,11 @@ def mechanisms(system: System) -> list[np.ndarray]:
     return [np.flatnonzero(bodies == first) for first in np.flatnonzero(bodies == np.arange(len(bodies)))]
 
 
-def _acting(system: System) -> list[Group]:
-    """What has a part in the integration: not requests, unless they count turns."""
-    return [g for g in system.groups if g.record.n_counters or not issubclass(g.kind.element, Request)]
-
-
 def counters_of(system: System) -> dict[tuple[str, int], int]:
     """The coordinates that count turns, by element and number among its own."""
     return {
         (name, k): int(at)
-        for group in _acting(system)
+        for group in system.groups
         for name, places in zip(group.names, group.counters, strict=True)
         for k, at in enumerate(places)
     }
@@ -56,7 +50,7 @@ def _pairs(system: System, group: Group) -> np.ndarray:
 
 
 def part_of(system: System, bodies: np.ndarray) -> System:
-    """The system of one mechanism, without requests that count no turns; its elements' numbers stay those of the whole.
+    """The system of one mechanism; its elements' numbers stay those of the whole.
 
     Parameters
     ----------
@@ -65,7 +59,7 @@ def part_of(system: System, bodies: np.ndarray) -> System:
     """
     place = np.full(len(system.bodies) + 1, -1)
     place[bodies], place[-1] = np.arange(len(bodies)), len(bodies)
-    chosen = [(group, _inside(group, place)) for group in _acting(system)]
+    chosen = [(group, _inside(group, place)) for group in system.groups]
     rows = np.concatenate(
         [np.empty(0, dtype=np.int64), *(_rows(group, inside) for group, inside in chosen if inside.any())]
     )

@@ -10,11 +10,10 @@ from ..describe.model_data import ModelData
 from ..solve.mechanics import OutputRows
 from .body_axes import in_own_axes
 from .energy import kinetic_energy, potential_energy
-from .requests import requests
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
-    """All channels by name: bodies, joints and forces, energies, constraint violations."""
+    """All channels by name: bodies, joints and forces, energies, constraint violations, requests."""
     channels: dict[str, np.ndarray] = {}
     of_body = system.of_body
     states = in_own_axes(system, rows.q, rows.u, rows.acceleration)
@@ -23,16 +22,24 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
         for state, names in zip(states, labels, strict=True):
             for offset, name in enumerate(names):
                 channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
-    requested = requests(system, rows.values)
-    counted = {name: requested.pop(name) for name, _ in model.counted_angles()}
-    channels |= requested
     channels |= reactions(system, rows.values)
     kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
     channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
     channels["energy.total"] = kinetic + potential
     channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
-    if not any(model.outputs()):
+    if not model.requests:
         return channels
-    from .spatial_requests import outputs
+    from .requests import requested
 
-    return channels | outputs(model, rows.t, channels, counted)
+    return channels | requested(model, rows.t, channels, _counters(model, system, rows.q))
+
+
+def _counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:
+    """What is counted of angles over whole turns for requests, rad, by the angle's text."""
+    names = {name for name, _ in model.angle_counters()}
+    return {
+        name: q[:, places[0]]
+        for group in system.groups
+        for name, places in zip(group.names, group.counters, strict=True)
+        if name in names
+    }

@@ -1,4 +1,4 @@
-"""What is measured between two markers in space, over time; named as in Adams."""
+"""What is measured between two markers over time; named as in Adams."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _quaternion(k: int, i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
     return _relative(i, j)[:, k]
 
 
-def _axis(k: int, i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
+def axis(k: int, i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
     """The k-th axis of i in the axes of j, shape (n, 3)."""
     w, x, y, z = _relative(i, j).T
     return np.column_stack(
@@ -56,23 +56,23 @@ def _axis(k: int, i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
 
 
 def _az(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    x = _axis(0, i, j)
+    x = axis(0, i, j)
     return np.arctan2(x[:, 1], x[:, 0])
 
 
 def _psi(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
     """First angle of the turns about z, x, z; where z and z are one, all of the turn is counted here."""
-    z = _axis(2, i, j)
+    z = axis(2, i, j)
     return np.where(np.hypot(z[:, 0], z[:, 1]) > ALIGNED, np.arctan2(z[:, 0], -z[:, 1]), _az(i, j))
 
 
 def _theta(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    z = _axis(2, i, j)
+    z = axis(2, i, j)
     return np.arctan2(np.hypot(z[:, 0], z[:, 1]), z[:, 2])
 
 
 def _phi(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    z = _axis(2, j, i)
+    z = axis(2, j, i)
     return np.where(np.hypot(z[:, 0], z[:, 1]) > ALIGNED, np.arctan2(z[:, 0], z[:, 1]), 0.0)
 
 

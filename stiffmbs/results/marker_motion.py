@@ -1,15 +1,20 @@
-"""How markers in space move over a run, from the channels of their bodies."""
+"""How markers move over a run, from the channels of their bodies."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from ..compile.quaternions import CONJUGATE, rotated, times
 from ..describe.marker import GROUND, MarkerReference
+from ..describe.requests.output import Term
+
+Channels = Mapping[str, np.ndarray]
+"""By name, shape (n,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,45 +56,44 @@ class MarkerMotion:
 
 
 class Motions:
-    """Finds the motion of markers.
+    """Finds the motion of markers, and what joints and forces do; all as in space, the plane being its x-y plane.
 
-    Parameters
+    Attributes
     ----------
-    model : SpatialData
+    model : ModelData
     channels : mapping of str to ndarray
         Of a run of it.
     count : int
         Instants.
     """
 
-    def __init__(self, model: Any, channels: Mapping[str, np.ndarray], count: int) -> None:
-        self._model, self._channels, self._count = model, channels, count
+    def __init__(self, model: Any, channels: Channels, count: int) -> None:
+        self.model, self.channels, self.count = model, channels, count
+        self._family = import_module(f".{'planar' if model.dimensions == 2 else 'spatial'}_motion", __package__)
         self._bodies: dict[str, MarkerMotion] = {}
 
     def of(self, marker: MarkerReference) -> MarkerMotion:
         """The motion of a marker."""
-        body, placed = marker.body, self._model.place(marker)
-        from_center = np.array(placed.point)
-        if body != GROUND:
-            from_center = from_center - self._model.bodies[body].center_of_mass
-        return self.of_body(body).placed(from_center, np.array(placed.orientation))
+        point, orientation = self._family.place(self.model, marker)
+        return self.of_body(marker.body).placed(point, orientation)
 
     def of_body(self, body: str) -> MarkerMotion:
         """The motion of a body's centre of mass with the body's own axes; of ground, rest."""
         if body not in self._bodies:
-            self._bodies[body] = self._at_rest() if body == GROUND else self._moving(body)
+            moving = body != GROUND
+            self._bodies[body] = self._family.body_motion(body, self.channels) if moving else self._at_rest()
         return self._bodies[body]
 
+    def action(self, element: str) -> tuple[np.ndarray, np.ndarray]:
+        """Force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
+        force, torque = self._family.action(element, self.channels)
+        return force, torque
+
+    def continuous_angle(self, term: Term, counters: Channels) -> np.ndarray:
+        """An angle over whole turns, shape (n,), of counters where the family needs them."""
+        angle: np.ndarray = self._family.continuous_angle(term, self, counters)
+        return angle
+
     def _at_rest(self) -> MarkerMotion:
-        nothing = np.zeros((self._count, 3))
-        return MarkerMotion(nothing, nothing, nothing, np.tile([1.0, 0, 0, 0], (self._count, 1)), nothing, nothing)
-
-    def _moving(self, body: str) -> MarkerMotion:
-        def columns(names: str) -> np.ndarray:
-            return np.column_stack([self._channels[f"{body}.{name}"] for name in names.split()])
-
-        orientation = columns("q0 q1 q2 q3")
-        return MarkerMotion(
-            columns("x y z"), columns("vx vy vz"), columns("ax ay az"), orientation,
-            rotated(orientation, columns("wx wy wz")), rotated(orientation, columns("wdx wdy wdz")),
-        )  # fmt: skip
+        nothing = np.zeros((self.count, 3))
+        return MarkerMotion(nothing, nothing, nothing, np.tile([1.0, 0, 0, 0], (self.count, 1)), nothing, nothing)

@@ -1,30 +1,115 @@
-"""Requested quantities along a motion."""
+"""Requests: what their formulas give over a run, from its channels."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 import numpy as np
 
-from ..compile.system import System
-from ..compile.terms import TERM_SETS
+from ..compile.table_values import curve
+from ..describe.formula.field import TIME
+from ..describe.formula.functions import FUNCTIONS
+from ..describe.formula.text import evaluate
+from ..describe.model_data import ModelData
+from ..describe.requests.check import ends
+from ..describe.requests.order import in_order
+from ..describe.requests.output import CONTINUOUS_ANGLES, Output, Term, placeholder
+from ..solve.storage import blocks, release, room
+from .marker_measures import MAGNITUDES, SCALARS, VECTORS
+from .marker_motion import Channels, Motions
+
+AXES = "xyz"
+Functions = Mapping[str, Callable[..., Any]]
+_FUNCTIONS: Functions = {name: function.array for name, function in FUNCTIONS.items()}
 
 
-def requests(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
-    """The requested formulas at each instant.
+def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: Channels) -> dict[str, np.ndarray]:
+    """The requests of a model at each instant.
 
     Parameters
     ----------
-    values : ndarray, shape (n, values)
-        Values of the output terms, one row per instant.
+    model : ModelData
+    time : ndarray, shape (n,)
+        s.
+    channels : mapping of str to ndarray
+        Of bodies, joints, forces and the whole, shape (n,).
+    counters : mapping of str to ndarray
+        What is counted of angles over whole turns, as `ModelData.angle_counters` names them, rad, shape (n,).
 
     Returns
     -------
     dict of str to ndarray
-        By request, shape (n,).
+        By channel, shape (n,), in the order in which the model has them.
     """
-    at = 1 + TERM_SETS["output"].index("request")
-    return {
-        name: values[:, system.places["output"][g, at] + e]
-        for g, group in enumerate(system.groups)
-        if group.record.patterns.get("request")
-        for e, name in enumerate(group.names)
+    outputs = model.outputs()
+    functions = {
+        name: {**_FUNCTIONS, **{called: curve(table) for called, table in output.tables.items()}}
+        for name, output in outputs.items()
     }
+    order = in_order(outputs)
+    found = {name: room(len(time)) for name in outputs}
+    for block in blocks(len(time)):
+        known: dict[str, np.ndarray] = {name: values[block] for name, values in channels.items()}
+        terms = _Terms(model, known, {name: values[block] for name, values in counters.items()}, len(time[block]))
+        with np.errstate(all="ignore"):
+            for name in order:
+                known[name] = _value(outputs[name], time[block], known, terms, functions[name])
+        for name, values in found.items():
+            values[block] = known[name]
+        release(*channels.values(), *found.values())
+    return found
+
+
+def _value(output: Output, time: np.ndarray, channels: Channels, terms: _Terms, functions: Functions) -> np.ndarray:
+    of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
+
+    def names(name: str) -> Any:
+        if name == TIME:
+            return time
+        if name in output.quantities:
+            return np.float64(output.quantities[name].value)
+        if name in of_terms:
+            return terms.value(of_terms[name])
+        return channels[name]
+
+    values = evaluate(output.tree, names, functions, np.float64)  # divides by zero without complaint
+    return np.array(np.broadcast_to(np.asarray(values, dtype=float), time.shape))
+
+
+class _Terms:
+    """Measures between markers and actions of elements, each computed once."""
+
+    def __init__(self, model: ModelData, channels: Channels, counters: Channels, count: int) -> None:
+        self._model, self._channels, self._counters = model, channels, counters
+        self._motions = Motions(model, channels, count)
+        self._known: dict[Term, np.ndarray] = {}
+
+    def value(self, term: Term) -> np.ndarray:
+        """What a term is over time."""
+        if term not in self._known:
+            self._known[term] = self._action(term) if term.element else self._measure(term)
+        return self._known[term]
+
+    def _measure(self, term: Term) -> np.ndarray:
+        if term.function in CONTINUOUS_ANGLES:
+            return self._motions.continuous_angle(term, self._counters)
+        i, j, *axes = (self._motions.of(marker) for marker in term.markers)
+        name = term.function
+        if name in MAGNITUDES:
+            return np.linalg.norm(MAGNITUDES[name](i, j), axis=1)
+        if name in SCALARS:
+            return SCALARS[name](i, j)
+        vectors = VECTORS[name[:-1]](i, j)
+        return (axes[0].along(vectors) if axes else vectors)[:, AXES.index(name[-1])]
+
+    def _action(self, term: Term) -> np.ndarray:
+        force, torque = self._motions.action(term.element)
+        if term.on_second:
+            i, j = (self._motions.of(marker).point for marker in ends(term.element, self._model))
+            force, torque = -force, -torque - np.cross(i - j, force)
+        acting = force if term.function[0] == "f" else torque
+        if term.function[1] == "m":
+            return np.linalg.norm(acting, axis=1)
+        axes = [self._motions.of(marker) for marker in term.markers]
+        return (axes[0].along(acting) if axes else acting)[:, AXES.index(term.function[1])]

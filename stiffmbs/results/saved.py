@@ -34,7 +34,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "outcome": solution.outcome.name,
         "message": solution.message,
         **{name: list(getattr(solution, name)) for name in TEXTS},
-        "requested": sorted(solution.requested),
+        "requested": dict(solution.requested),
         "solver": solution.solver,
         "errors": {channel: astuple(bar) for channel, bar in solution.errors.items()},
         "figure": solution.figure and solution.figure.model_dump(),
@@ -78,7 +78,7 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
     balance = {part.name: arrays[BALANCE + part.name] for part in fields(Balance)}
     return Solution(
         name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=about["message"],
-        **{name: tuple(about[name]) for name in TEXTS}, requested=frozenset(about["requested"]), solver=about["solver"],
+        **{name: tuple(about[name]) for name in TEXTS}, requested=about["requested"], solver=about["solver"],
         errors={channel: ErrorBar(*bar) for channel, bar in about["errors"].items()},
         history=History(*(arrays[HISTORY + part.name] for part in fields(History))),
         balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),

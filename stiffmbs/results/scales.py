@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -45,7 +46,15 @@ def _owner(channel: str) -> str:
     return channel if owner == "constraint" else owner
 
 
-def scales(channels: Mapping[str, np.ndarray], size: float) -> dict[str, float]:
+def _kind(channel: str, requested: Mapping[str, str]) -> str:
+    """The kind of a channel; of a request whose name and unit both say so: ``push.x`` may be a force."""
+    kind = kind_of(channel)
+    return kind if channel not in requested or requested[channel] == UNITS.get(kind, "") else ""
+
+
+def scales(
+    channels: Mapping[str, np.ndarray], size: float, requested: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, float]:
     """The size of each channel: of what its body or element does in all directions, at least a little of the largest.
 
     Parameters
@@ -53,6 +62,8 @@ def scales(channels: Mapping[str, np.ndarray], size: float) -> dict[str, float]:
     channels : mapping of str to ndarray
     size : float
         Of the mechanism, m.
+    requested : mapping of str to str
+        The channels that are requests, with their units.
 
     Returns
     -------
@@ -60,8 +71,9 @@ def scales(channels: Mapping[str, np.ndarray], size: float) -> dict[str, float]:
         In the unit of the channel; of requests the largest value of their components; zero where nothing moves or acts.
     """
     own: dict[tuple[str, str], float] = {}
+    kinds = {name: _kind(name, requested) for name in channels}
     for name, values in channels.items():
-        kind = kind_of(name)
+        kind = kinds[name]
         origin = values[0] if kind in PLACES or name == "energy.potential" else 0.0
         key = (_owner(name), kind)
         own[key] = max(own.get(key, 0.0), float(np.nanmax(np.abs(values - origin))))
@@ -78,5 +90,5 @@ def scales(channels: Mapping[str, np.ndarray], size: float) -> dict[str, float]:
     return {
         name: max(own[key], SMALL.get(key[1], LITTLE) * largest[key[1]]) if key[1] else own[key]
         for name in channels
-        for key in [(_owner(name), kind_of(name))]
+        for key in [(_owner(name), kinds[name])]
     }

@@ -46,8 +46,9 @@ class Solution(Mapping[str, np.ndarray]):
         The solver's own steps and their orders, where it tells them.
     not_unique : tuple of str
         Channels of reactions that rigid bodies do not determine; what they hold is one of many possible values.
-    requested : frozenset of str
-        Channels that are requests, not of bodies or elements.
+    requested : mapping of str to str
+        Channels that are requests, not of bodies or elements, with their SI units; empty for plain numbers, and where nothing
+        tells the unit.
     presolve : tuple of str
         What was left out of the solution because it follows from the rest, a sentence each.
     errors : mapping of str to ErrorBar
@@ -70,7 +71,7 @@ class Solution(Mapping[str, np.ndarray]):
     history: History
     balance: Balance
     not_unique: tuple[str, ...] = ()
-    requested: frozenset[str] = frozenset()
+    requested: Mapping[str, str] = field(default_factory=dict)
     presolve: tuple[str, ...] = ()
     errors: Mapping[str, ErrorBar] = field(default_factory=dict)
     verification: tuple[str, ...] = ()
@@ -83,14 +84,14 @@ class Solution(Mapping[str, np.ndarray]):
 
     @property
     def units(self) -> dict[str, str]:
-        """The unit of each channel; empty for numbers without one, and where nobody knows it (requests)."""
+        """The SI unit of each channel; empty for plain numbers, and where nothing tells it."""
         return {channel: self.unit(channel) for channel in self.channels}
 
     def unit(self, channel: str) -> str:
         """The unit of one channel, or of ``"time"``; see `units`."""
         if channel == "time":
             return "s"
-        return "" if channel in self.requested else UNITS.get(kind_of(channel), "")
+        return self.requested[channel] if channel in self.requested else UNITS.get(kind_of(channel), "")
 
     @property
     def step_times(self) -> np.ndarray:

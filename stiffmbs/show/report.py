@@ -98,7 +98,7 @@ def _settings(scene: Scene) -> dict[str, Any]:
 def _peaks(solution: Solution) -> list[dict[str, str]]:
     """A row for each channel: its least and greatest value with bars and times, its error over time."""
     rows = []
-    sizes = scales(solution.channels, 1.0)
+    sizes = scales(solution.channels, 1.0, solution.requested)
     for name, cell in channel_ranges(solution).items():
         bar, noise = solution.errors.get(name, UNKNOWN), ROUNDING * sizes[name]
         verified = name in solution.errors

@@ -96,7 +96,7 @@ class _Verification:
     def __init__(self, job: Job, first: Solution, allowed: float) -> None:
         self._job, self._first = job, first
         self._begun, self._allowed = time.perf_counter(), allowed
-        self._sizes = scales(first.channels, job.mechanics.system.size)
+        self._sizes = scales(first.channels, job.mechanics.system.size, first.requested)
         self._traits = traits_of(job.settings)
         self._exact = self._traits.exact
         self._between: Between | None = None

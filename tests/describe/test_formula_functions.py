@@ -43,16 +43,16 @@ def test_numbers_and_arrays_agree(name):
 
 @pytest.mark.parametrize("name", IN_FORMULAS)
 def test_kernels_agree_with_numbers(name):
-    """A request of the function along x = t, as it is compiled."""
+    """A torque of the function along x = t, which leaves x as it is."""
     more = "".join(f", {value}" for value in others(name))
     scene = {
         "bodies": {"a": {"mass": 1, "inertia": 1, "position": [points(name)[0], 0], "velocity": [1, 0]}},
-        "requests": {"r": f"{name}(a.x{more})"},
+        "forces": {"f": {"type": "torque", "i": "a", "torque": f"{name}(a.x{more})"}},
         "run": {"duration": points(name)[-1] - points(name)[0], "points": 30, "rtol": 1e-10},
     }
     solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(scene)))
     expected = [FUNCTIONS[name].value(x, *others(name)) for x in solution["a.x"]]
-    np.testing.assert_allclose(solution["r"], expected, rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(solution["f.torque"], expected, rtol=1e-12, atol=1e-14)
 
 
 @given(name=st.sampled_from(sorted(IN_FORMULAS)), low=st.floats(-2, 2), width=st.floats(1e-4, 1.5))

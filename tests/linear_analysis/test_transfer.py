@@ -79,6 +79,16 @@ def test_an_input_may_move_a_constraint():
         transfer(made(0.0), {"travel": made}, ["bob.vx"])
 
 
+@pytest.mark.parametrize("formula", ["bob.vx", "2*vr(bob, ground)", "fx(drive)", "hinge.torque + 1", "accx(cart)"])
+def test_a_request_that_feels_a_moved_constraint_is_refused_as_its_channels_are(formula):
+    text = f"{DRIVEN}\nrequests: {{place: dx(bob), felt: '{formula}', through: felt - place}}"
+    made = lambda value: stiffmbs.read_scene(text, [("parameters.travel", repr(value))])  # noqa: E731
+    found = transfer(made(0.0), {"travel": made}, ["place", "bob.x"])
+    np.testing.assert_allclose(found.c[0], found.c[1], atol=1e-9)
+    with pytest.raises(InputError, match=r"output 'through': found a velocity, acceleration or reaction"):
+        transfer(made(0.0), {"travel": made}, ["through"])
+
+
 def test_small_runs_follow_the_response():
     """The half car under a small harmonic force, after 12 s of settling: amplitude and phase within 1e-4."""
     scene = stiffmbs.load_scene(EXAMPLES / "half_car.yaml", [("V", "1e-9"), ("parameters.k_b", "1e5")])

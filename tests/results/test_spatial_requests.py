@@ -189,7 +189,7 @@ def test_channels_parameters_and_functions(solution):
         ("2*mod(t)", r"requests.r: found 1 arguments in 'mod\(t\)', expected 2"),
         ("min()", r"requests.r: found 0 arguments in 'min\(\)', expected 1 or more"),
         ("step(t, 0, 1)", r"requests.r: found 3 arguments in 'step\(t, 0, 1\)', expected 5"),
-        ("{x: what}", r"requests.r: x: found the unknown name 'what'"),
+        ("{x: what}", r"requests.r.x: found the unknown name 'what'"),
         ("{two words: t}", r"requests.r: found component with the name 'two words'"),
         ("{}", r"requests.r: found {}, expected a formula"),
         ("[t]", r"requests.r: found \['t'\], expected a formula"),

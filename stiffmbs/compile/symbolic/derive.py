@@ -15,7 +15,7 @@ from functools import partial
 import sympy as sp
 
 from ...describe.element import Force, Joint
-from ...describe.request import Request
+from ...describe.requests.angle_counter import AngleCounter
 from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import counting_rate
@@ -99,9 +99,8 @@ def derive(kind: Kind) -> Derived:
     symbols = symbols_of(kind)
     if issubclass(kind.element, Joint):
         derived = _derived_joint(kind, symbols)
-    elif issubclass(kind.element, Request):
-        value = sp.sympify(kind.element.value(symbols.element))
-        derived = Derived(0, 0, symbols, {"request": [Entry(value, 0)]}, [])
+    elif issubclass(kind.element, AngleCounter):
+        derived = Derived(0, 0, symbols, {}, [])
     else:
         assert issubclass(kind.element, Force)
         derived = _derived_force(kind, symbols)

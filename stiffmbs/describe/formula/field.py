@@ -144,6 +144,25 @@ def called_tables(tree: ast.expr, tables: Mapping[str, Table]) -> dict[str, Tabl
     return {name: tables[name] for name in called if name in tables}
 
 
+def formula_text(found: Any, expected: str = "a formula") -> str:
+    """The text of a formula that is given as text, as a number, or as an expression of SymPy.
+
+    Raises
+    ------
+    FormulaError
+        For anything else.
+    """
+    if isinstance(found, Real) and not isinstance(found, bool):
+        return repr(as_float(found))
+    if hasattr(found, "free_symbols"):
+        from sympy.printing.pycode import pycode
+
+        return str(pycode(found, fully_qualified_modules=False))
+    if not isinstance(found, str):
+        raise FormulaError(f"found {written(found)}, expected {expected}")
+    return found
+
+
 @dataclass(frozen=True)
 class FormulaOf:
     """Marks a field as a formula: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
@@ -189,15 +208,7 @@ class FormulaOf:
         tables: Mapping[str, Table],
         variables: Mapping[str, ast.expr],
     ) -> Formula:
-        if isinstance(found, Real) and not isinstance(found, bool):
-            found = repr(as_float(found))
-        elif hasattr(found, "free_symbols"):
-            from sympy.printing.pycode import pycode
-
-            found = pycode(found, fully_qualified_modules=False)
-        if not isinstance(found, str):
-            allowed = "a formula or a table" if self.table else "a formula"
-            raise FormulaError(f"found {written(found)}, expected {allowed}")
+        found = formula_text(found, "a formula or a table" if self.table else "a formula")
         tree = with_variables(parse(found), variables, self.variables)
         expanded = as_written(tree) if variables else ""
         check_functions(

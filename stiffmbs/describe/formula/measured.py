@@ -5,19 +5,19 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 
-from ..units.units import Quantity
+from ..units.units import DIMENSIONS, Quantity
 from .check_dimensions import Columns, dimension_of
 from .dimension import UNKNOWN, Known, measured_in
 from .text import FormulaError
 
 _COORDINATES = {
-    "length": "x y z", "angle": "angle q0 q1 q2 q3", "velocity": "vx vy vz", "angular velocity": "omega wx wy wz",
+    "length": "x y z", "angle": "angle", "number": "q0 q1 q2 q3", "velocity": "vx vy vz", "angular velocity": "omega wx wy wz",
     "acceleration": "ax ay az", "angular acceleration": "alpha wdx wdy wdz",
     "force": "fx fy fz", "torque": "tx ty tz torque",
 }  # fmt: skip
 """Of bodies, and the channels of joints and forces that requests may read."""
 _MEASURES = {
-    "length": "dx dy dz dm", "angle": "ax ay az psi theta phi q0 q1 q2 q3", "velocity": "vx vy vz vm vr",
+    "length": "dx dy dz dm", "angle": "ax ay az psi theta phi", "number": "q0 q1 q2 q3", "velocity": "vx vy vz vm vr",
     "angular velocity": "wx wy wz wm", "acceleration": "accx accy accz accm",
     "angular acceleration": "wdtx wdty wdtz wdtm", "force": "fx fy fz fm", "torque": "tx ty tz tm",
 }  # fmt: skip
@@ -28,7 +28,16 @@ def _by_name(dimensions: dict[str, str]) -> dict[str, Known]:
     return {name: measured_in(dimension) for dimension, names in dimensions.items() for name in names.split()}
 
 
+def _units_by_name(dimensions: dict[str, str]) -> dict[str, str]:
+    return {
+        name: DIMENSIONS[dimension][1] if dimension != "number" else ""
+        for dimension, names in dimensions.items()
+        for name in names.split()
+    }
+
+
 COORDINATES, MEASURES = _by_name(_COORDINATES), _by_name(_MEASURES)
+_UNITS, _MEASURE_UNITS = _units_by_name(_COORDINATES), _units_by_name(_MEASURES)
 TIME = measured_in("time")
 
 
@@ -36,6 +45,17 @@ def of_coordinate(name: str) -> Known:
     """The dimension of ``body.name``."""
     owner, _, coordinate = name.rpartition(".")
     return COORDINATES.get(coordinate, UNKNOWN) if owner else UNKNOWN
+
+
+def unit_of_coordinate(name: str) -> str:
+    """The unit of ``body.name``; empty for a number, and for what is no coordinate."""
+    owner, _, coordinate = name.rpartition(".")
+    return _UNITS.get(coordinate, "") if owner else ""
+
+
+def unit_of_measure(function: str) -> str:
+    """The unit of a measure between markers, or of what a joint or force does."""
+    return _MEASURE_UNITS[function]
 
 
 def dimension_within(

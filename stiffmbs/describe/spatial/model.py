@@ -9,14 +9,16 @@ import numpy as np
 from pydantic import Field
 
 from ..element import Force, Joint
-from ..fields import Described
 from ..forces.weight import weights
-from ..given import Law, Numbers
+from ..given import Numbers
 from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
-from ..request import Request
+from ..requests.angle_counter import AngleCounter
+from ..requests.names import OF_SPACE
+from ..requests.output import CONTINUOUS_ANGLES
+from ..requests.output_field import SpatialRequest
 from ..units import si
 from . import forces, joints
 from .body import Body, BodyHandle
@@ -24,8 +26,6 @@ from .forces.gyroscopic_torque import turnings
 from .initial_pose import DrawnMarker
 from .marker import Placement
 from .orientation import matrix, product, rotated
-from .output import COUNTED_ANGLES, Output, check_output
-from .output_field import Requested
 
 JOINTS = Kinds(joints, Joint, 3)
 FORCES = Kinds(forces, Force, 3)
@@ -38,6 +38,7 @@ class SpatialData(ModelData):
     """What a model in space holds."""
 
     origin = Placement()
+    output_names = OF_SPACE
 
     dimensions: Literal[3] = Field(3, description="of the model: space")
     gravity: tuple[si.Acceleration, si.Acceleration, si.Acceleration] = Field(
@@ -48,32 +49,17 @@ class SpatialData(ModelData):
     joints: dict[str, AnyJoint] = Field(default_factory=dict, description="joints by name")  # type: ignore[valid-type]
     forces: dict[str, AnyForce] = Field(default_factory=dict, description="forces by name")  # type: ignore[valid-type]
 
-    requests: dict[str, Requested] = Field(
+    requests: dict[str, SpatialRequest] = Field(
         default_factory=dict, description="formulas to report, by channel name; or several by name under one"
     )
 
-    def check_requests(self) -> None:
-        """Refuse requests that name what the model does not have."""
-        for channel, output in self.outputs():
-            check_output(f"requests.{channel}", output, self)
-
-    def requested(self) -> Iterator[tuple[str, Request]]:
-        """None: what is reported in space is evaluated after the run."""
-        yield from ()
-
-    def outputs(self) -> Iterator[tuple[str, Output]]:
-        """The requests by channel: a name, or ``name.component``."""
-        for name, formula in self.requests.items():
-            if isinstance(formula, Output):
-                yield name, formula
-            else:
-                yield from ((f"{name}.{component}", output) for component, output in formula.items())
-
-    def counted_angles(self) -> Iterator[tuple[str, Request]]:
-        """The angles az(i, j) in requests: only the integration sees every turn, however far apart output points are."""
-        angles = (term for _, output in self.outputs() for term in output.terms if term.function in COUNTED_ANGLES)
+    def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
+        """Of the angles az(i, j) in requests: only the integration sees every turn, however far apart output points are."""
+        angles = (
+            term for output in self.outputs().values() for term in output.terms if term.function in CONTINUOUS_ANGLES
+        )
         for term in dict.fromkeys(angles):
-            yield str(term), Request(formula=str(term))  # type: ignore[arg-type]
+            yield str(term), AngleCounter(angle=str(term))  # type: ignore[arg-type]
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights and the gyroscopic torques of their turning."""
@@ -95,12 +81,6 @@ class SpatialData(ModelData):
         return marker.body, placed if marker.body == GROUND else self.bodies[marker.body].carried(placed)
 
 
-class Requests(Described):
-    """Requests before they stand in a model."""
-
-    requested: dict[str, Requested]
-
-
 class Model(ModelBuilder[SpatialData, Body, BodyHandle]):
     """A model in space built in Python, piece by piece.
 
@@ -120,23 +100,3 @@ class Model(ModelBuilder[SpatialData, Body, BodyHandle]):
 
     def __init__(self, name: str = "", gravity: Numbers = (0.0, 0.0, 0.0)) -> None:
         super().__init__(name, gravity)
-
-    def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
-        """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
-
-        Parameters
-        ----------
-        name : str
-            Of the channel.
-        formula : str, float or mapping of str to these
-            In SI units, such as ``"dm(bar.end, ground)"``; several by the names of their components.
-
-        Raises
-        ------
-        InputError
-            When the name is taken, reserved or no identifier, or a formula cannot be read.
-        """
-        self._check_name(name)
-        self.requests[name] = Requests(
-            requested={name: dict(formula) if isinstance(formula, Mapping) else formula}
-        ).requested[name]

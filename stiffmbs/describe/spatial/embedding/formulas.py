@@ -3,43 +3,66 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Mapping
+from typing import Any
 
-from ...formula.field import Formula, is_measure, measured_markers
+from ...formula.field import Formula, measured_markers
 from ...formula.text import UNIT, as_written
 from ...marker import GROUND, MarkerReference
+from ...requests.names import OF_PLANE
+from ...requests.output import Output
 from .angles import Angles
 
 
 def formula(found: Formula, angles: Angles) -> str | float:
     """What a scene in space writes for a formula: its number, its text, or the text with other names."""
+    return _written(found.text, found.tree, angles)
+
+
+def request(found: Output | Mapping[str, Output], angles: Angles) -> Any:
+    """The same for a request, of its formulas by the names of their components."""
+    if isinstance(found, Output):
+        return _written(found.text, found.written_tree(), angles)
+    return {name: request(output, angles) for name, output in found.items()}
+
+
+def _written(text: str, tree: ast.expr, angles: Angles) -> str | float:
     try:
-        return float(found.text)
+        return float(text)
     except ValueError:
         renamed = _Renamed(angles)
-        tree = renamed.visit(ast.parse(ast.unparse(found.tree), mode="eval").body)
-        return as_written(tree) if renamed.any else found.text
+        tree = renamed.visit(ast.parse(ast.unparse(tree), mode="eval").body)
+        return as_written(tree) if renamed.any else text
 
 
 class _Renamed(ast.NodeTransformer):
-    """Puts measures in the place of ``bar.angle``, ``bar.omega`` and ``az(a, b)``; all others have the same names."""
+    """Puts measures in the place of ``bar.angle``, ``bar.omega``, ``bar.alpha`` and ``az(a, b)``, and ``hinge.tz`` in that of
+    ``hinge.torque``; all others have the same names."""
 
     def __init__(self, angles: Angles) -> None:
         self._angles = angles
         self.any = False
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        body = node.value.id  # type: ignore[attr-defined]
+        owner, data = node.value.id, self._angles.data  # type: ignore[attr-defined]
+        if owner in data.requests or owner == UNIT:
+            return node
         match node.attr:
-            case "angle" if body != UNIT:
-                return self._angle(MarkerReference(body=body), MarkerReference(body=GROUND))
-            case "omega" if body != UNIT:
-                return self._read(f"wz({body})")
+            case "angle":
+                return self._angle(MarkerReference(body=owner), MarkerReference(body=GROUND))
+            case "omega":
+                return self._read(f"wz({owner})")
+            case "alpha":
+                return self._read(f"wdtz({owner})")
+            case "torque":
+                return self._read(f"{owner}.tz")
         return node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        if not is_measure(node):
+        called = node.func.id  # type: ignore[attr-defined]
+        if called not in (*OF_PLANE.measures, *OF_PLANE.actions):
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
-        if node.func.id == "az":  # type: ignore[attr-defined]
+        if called == "az":
             i, j, *_ = measured_markers(node)
             return self._angle(i, j)
         return node

@@ -14,7 +14,7 @@ from ...model_data import ModelData
 from ...scene import Scene
 from .angles import Angles
 from .fields import plain
-from .formulas import formula
+from .formulas import request
 from .markers import Written, placement, turned
 from .plane import loose
 
@@ -37,7 +37,7 @@ def scene_in_space(data: PlanarData) -> Written:
     angles = Angles(data)
     joints = _elements("joints", data.joints, angles)
     joints |= {_free(f"{body}_in_plane", data): {"type": "planar", "i": body, "j": GROUND} for body in loose(data)}
-    requests: Written = {name: formula(found, angles) for name, found in data.requests.items()}
+    requests: Written = {name: request(found, angles) for name, found in data.requests.items()}
     parts: Written = {
         "name": data.name,
         "dimensions": 3,
@@ -50,7 +50,7 @@ def scene_in_space(data: PlanarData) -> Written:
         parts |= {
             "parameters": data.written_parameters(),
             "tables": plain(data.tables, angles),
-            "variables": {name: formula(found, angles) for name, found in data.variables.items()},
+            "variables": {name: request(found, angles) for name, found in data.variables.items()},
             "figure": _figure(data, requests, angles),
             "run": plain(data.run.model_dump(exclude_unset=True), angles),
             "notes": list(data.notes),
@@ -104,18 +104,19 @@ def _figure(data: Scene, requests: Written, angles: Angles) -> Written | None:
     if data.figure is None:
         return None
     figure = data.figure
-    names = {name: _channel(name) for name in (figure.x, *figure.y)}
-    for name, request in names.items():
+    asked = set(data.outputs())
+    names = {name: name if name in asked else _channel(name) for name in (figure.x, *figure.y)}
+    for name, written in names.items():
         body, _, channel = name.rpartition(".")
-        if channel == "angle":
-            names[name] = _free(request, data)
+        if channel == "angle" and name not in asked:
+            names[name] = _free(written, data)
             requests[names[name]] = angles.measured(MarkerReference(body=body), MarkerReference(body=GROUND))
     over = {} if figure.x == "time" else {"x": names[figure.x]}
     return figure.model_dump(exclude_unset=True) | over | {"y": [names[name] for name in figure.y]}
 
 
 def _channel(name: str) -> str:
-    """The channel of space that tells what one of the plane does, or the request."""
+    """The channel of space that tells what one of the plane does."""
     owner, _, channel = name.rpartition(".")
     if channel == "angle":
         return f"{owner}_angle"

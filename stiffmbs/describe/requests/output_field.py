@@ -1,47 +1,47 @@
-"""The requests of a model in space as a field: text to checked formulas."""
+"""The requests of a model as a field: text to checked formulas."""
 
 from __future__ import annotations
 
 import ast
-from numbers import Real
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from ..body import check_names
-from ..files.quoted import written
-from ..formula import measured
-from ..formula.field import FormulaOf, called_tables
+from ..formula.field import TIME, FormulaOf, called_tables, formula_text, reading_order
 from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
-from ..units.units import Quantity
-from .output import ACTIONS, ALONG_AXES, MEASURES, Output, Term, placeholder
+from ..units.units import CONSTANTS, UNITS, Quantity
+from .names import OF_PLANE, OF_SPACE, OutputNames
+from .output import Output, Term, placeholder
 
 
 class _Terms(ast.NodeTransformer):
     """Takes measures and actions out of a tree."""
 
-    def __init__(self) -> None:
+    def __init__(self, names: OutputNames) -> None:
+        self._names = names
         self.found: list[Term] = []
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
         name = node.func.id  # type: ignore[attr-defined]
-        if name in MEASURES:
+        if name in self._names.measures:
             term = self._measure(name, node)
-        elif name in ACTIONS:
+        elif name in self._names.actions:
             term = self._action(name, node)
         else:
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
         self.found.append(term)
         return ast.Name(placeholder(len(self.found) - 1))
 
-    @staticmethod
-    def _measure(name: str, node: ast.Call) -> Term:
+    def _measure(self, name: str, node: ast.Call) -> Term:
         markers = [MarkerReference.model_validate(_reference(argument)) for argument in node.args]
-        most = 3 if name in ALONG_AXES else 2
+        most = 3 if name in self._names.along_axes else 2
         if not 1 <= len(markers) <= most:
             raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected 1 to {most}")
         if len(markers) == 1:
@@ -72,59 +72,71 @@ def _reference(node: ast.expr) -> str:
     raise FormulaError(f"found '{ast.unparse(node)}', expected a name such as bar.end")
 
 
+@dataclass(frozen=True)
 class OutputField:
-    """Marks a field as the formula of a request."""
+    """Marks a field as the formula of a request in a family of models."""
 
-    def read(self, found: Any, info: ValidationInfo) -> Output:
-        """The checked formula of what stands in the scene."""
+    names: OutputNames
+
+    def read(self, found: Any, context: Mapping[str, Any]) -> Any:
+        """The checked formula of what stands in the scene, with its parameters and tables.
+
+        Raises
+        ------
+        FormulaError
+        """
         if isinstance(found, Output):
             return found
-        if isinstance(found, Real) and not isinstance(found, bool):
-            found = repr(float(found))
-        if not isinstance(found, str):
-            raise FormulaError(f"found {written(found)}, expected a formula")
-        terms = _Terms()
-        context = info.context or {}
+        text = formula_text(found)
+        terms = _Terms(self.names)
         variables = context.get("variables") or {}
-        whole = with_variables(parse(found), variables)
+        whole = with_variables(parse(text), variables)
         expanded = as_written(whole) if variables else ""
         tree = terms.visit(whole)
         tables = context.get("tables") or {}
-        check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*MEASURES, *ACTIONS))
-        places = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(terms.found)}
-        parameters = context.get("parameters") or {}
-        named = _NAMES.quantities(found, tree, parameters | dict.fromkeys(places, Quantity(0.0)))
-        used = {name: quantity for name, quantity in named if name not in places}
-        called = called_tables(tree, tables)
-        _NAMES.dimension_of(tree, used, called, places)
-        values = {name: quantity.value for name, quantity in used.items()}
+        check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*self.names.measures, *self.names.actions))
+        parameters: Mapping[str, Quantity] = context.get("parameters") or {}
+        others = set(_others(tree, parameters))
+        named = _NAMES.quantities(text, tree, {**parameters, **dict.fromkeys(others, Quantity(0.0))})
+        used = {name: quantity for name, quantity in named if name not in others}
         own = {name: quantity for name, quantity in used.items() if name in parameters}
-        return Output(found, tree, tuple(terms.found), values, called, own, expanded)
+        return Output(text, tree, tuple(terms.found), used, called_tables(tree, tables), own, expanded)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
-        return core_schema.with_info_plain_validator_function(self.read)
+        def read(found: Any, info: ValidationInfo) -> Any:
+            return self.read(found, info.context or {})
+
+        return core_schema.with_info_plain_validator_function(read)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         text = {"type": "string", "description": "a formula of anything that a run knows"}
         return {"anyOf": [text, {"type": "number"}]}
 
 
+def _others(tree: ast.expr, parameters: Mapping[str, Quantity]) -> Iterator[str]:
+    """The names that stand alone and are neither parameters, units, constants nor time: terms, and other requests."""
+    for node in reading_order(tree):
+        match node:
+            case ast.Name(name) if name != TIME and not any(name in known for known in (parameters, UNITS, CONSTANTS)):
+                yield name
+
+
 _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
-class _RequestedField(OutputField):
+class RequestField(OutputField):
     """Marks a field as the formula of a request, or formulas by the names of their components."""
 
-    def read(self, found: Any, info: ValidationInfo) -> Any:
-        if not isinstance(found, dict):
-            return super().read(found, info)
+    def read(self, found: Any, context: Mapping[str, Any]) -> Any:
+        if not isinstance(found, Mapping):
+            return super().read(found, context)
         if not found:
             raise FormulaError("found {}, expected a formula, or formulas by the names of their components")
         check_names(found, "component")
         formulas = {}
         for name, formula in found.items():
             try:
-                formulas[name] = super().read(formula, info)
+                formulas[name] = super().read(formula, context)
             except FormulaError as error:
                 raise FormulaError(f"{name}: {error}") from None
         return formulas
@@ -134,5 +146,6 @@ class _RequestedField(OutputField):
         return {"anyOf": [*one["anyOf"], {"type": "object", "additionalProperties": one}]}
 
 
-Requested = Annotated[Output | dict[str, Output], _RequestedField()]
+PlanarRequest = Annotated[Output | dict[str, Output], RequestField(OF_PLANE)]
+SpatialRequest = Annotated[Output | dict[str, Output], RequestField(OF_SPACE)]
 """A formula of anything that a run knows, or several by name."""

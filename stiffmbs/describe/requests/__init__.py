@@ -1,0 +1,1 @@
+"""Requests: formulas that are reported, evaluated after the run from its channels."""

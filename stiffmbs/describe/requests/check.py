@@ -1,0 +1,117 @@
+"""What a model has to have for its requests."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ..check_marker import check_marker
+from ..element import JointName
+from ..files.quoted import quoted
+from ..formula.text import UNIT
+from ..units.units import CONSTANTS, UNITS
+from .names import OF_RUN, OutputNames
+from .output import Output, channel
+
+
+def by_channel(requests: Mapping[str, Output | Mapping[str, Output]]) -> Iterator[tuple[str, Output]]:
+    """Requests by channel: a name, or ``name.component``."""
+    for name, found in requests.items():
+        if isinstance(found, Output):
+            yield name, found
+        else:
+            yield from ((channel(name, component), output) for component, output in found.items())
+
+
+def ends(element: str, model: Any) -> tuple[Any, Any]:
+    """The markers i and j of a joint or force, of a drive those of the joint that it drives; None where it has none."""
+    acting: Any = {**model.joints, **model.forces}[element]
+    for _, joint in acting.parts(JointName):
+        acting = model.joints[joint.joint]
+        break
+    return getattr(acting, "i", None), getattr(acting, "j", None)
+
+
+def check_output(where: str, output: Output, model: Any, names: OutputNames, others: Mapping[str, Output]) -> None:
+    """Refuse a formula that names an unknown body, marker, joint, force, channel or request.
+
+    Parameters
+    ----------
+    where : str
+        In the scene, for messages.
+    output : Output
+    model : ModelData or ModelBuilder
+    names : OutputNames
+        Of the model's family.
+    others : mapping of str to Output
+        All requests, by channel.
+    """
+    acting = {**model.joints, **model.forces}
+    for term in output.terms:
+        for marker in term.markers:
+            check_marker(where, marker, model.bodies, model.markers)
+        if term.element and term.element not in acting:
+            raise ValueError(f"{where}: found '{term.element}' in '{output.text}', expected a joint or a force")
+        if term.on_second and None in ends(term.element, model):
+            raise ValueError(f"{where}: found '{term.element}.j' in '{output.text}', which has no marker j")
+        if term.on_second and len(list(acting[term.element].parts(JointName))) > 1:
+            raise ValueError(
+                f"{where}: found '{term.element}.j' in '{output.text}', which acts on more than two bodies, "
+                f"expected {term.element}, whose first body is known"
+            )
+    for owner, name in output.channels():
+        if not name:
+            _check_request(where, owner, output, others)
+        elif channel(owner, name) not in others and name not in _of(owner, model, names):
+            if not _is_known(owner, acting, model, others):
+                raise ValueError(
+                    f"{where}: found the unknown body '{owner}' in '{quoted(output.text)}', expected the name of a body, a joint, a "
+                    "force or a request"
+                )
+            raise ValueError(
+                f"{where}: found '{owner}.{name}' in '{output.text}', expected a channel of a body, a joint or a force"
+            )
+    _check_meanings(where, output, others)
+
+
+def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
+    """The channels of a body, of a joint or force, or of the whole."""
+    if owner in model.bodies:
+        return names.of_bodies
+    return names.of_elements if owner in model.joints or owner in model.forces else OF_RUN.get(owner, ())
+
+
+def _is_known(owner: str, acting: Mapping[str, Any], model: Any, others: Mapping[str, Output]) -> bool:
+    """Whether something has channels whose names begin with a name."""
+    return (
+        owner in acting
+        or owner in model.bodies
+        or owner in OF_RUN
+        or owner in {name.partition(".")[0] for name in others}
+    )
+
+
+def _check_request(where: str, name: str, output: Output, others: Mapping[str, Output]) -> None:
+    if name in others:
+        return
+    components = [other for other in others if other.startswith(f"{name}.")]
+    if components:
+        raise ValueError(
+            f"{where}: found '{name}' in '{quoted(output.text)}', which has components, expected one of {', '.join(components)}"
+        )
+    raise ValueError(
+        f"{where}: found the unknown name '{name}' in '{quoted(output.text)}', expected t, a body's coordinate such as cart.x, "
+        "another channel or request, a parameter or a variable of the scene"
+    )
+
+
+def _check_meanings(where: str, output: Output, others: Mapping[str, Output]) -> None:
+    """Refuse a name that a request has, and something else too."""
+    for used in output.quantities:
+        name = used.removeprefix(f"{UNIT}.")
+        if name in others:
+            what = "unit" if name in UNITS else "constant" if name in CONSTANTS else "parameter"
+            raise ValueError(
+                f"{where}: found '{name}' in '{quoted(output.text)}', which is a {what} and a request, expected one or the other: "
+                "rename the request"
+            )

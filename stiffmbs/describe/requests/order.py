@@ -1,0 +1,131 @@
+"""Requests that name other requests: the order in which they are evaluated, their dimensions and units."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Container, Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
+
+from ..formula import measured
+from ..formula.dimension import Known, measured_in
+from ..formula.field import FormulaOf
+from ..formula.text import FormulaError
+from ..units.units import NUMBER, named_unit
+from .names import OF_RUN
+from .output import Output, Term, channel, placeholder
+
+ALIKE: dict[str, slice] = {"abs": slice(1), "min": slice(None), "max": slice(None), "mod": slice(None),
+                           "step": slice(2, 5, 2), "step5": slice(2, 5, 2), "branch": slice(1, 4)}  # fmt: skip
+"""The arguments of functions whose value is in the unit of these."""
+ANGLES = ("asin", "acos", "atan", "atan2")
+"""Functions whose value is in rad."""
+_ANYTHING = FormulaOf(coordinates=True, velocities=True)
+_ENERGIES = {f"energy.{name}": measured_in("torque") for name in OF_RUN["energy"]}
+
+
+def in_order(outputs: Mapping[str, Output]) -> tuple[str, ...]:
+    """The channels of requests, each behind those that it names.
+
+    Parameters
+    ----------
+    outputs : mapping of str to Output
+        By channel.
+
+    Raises
+    ------
+    ValueError
+        For a request that depends on itself.
+    """
+    named = {name: [of for of in map(_channel, output.channels()) if of in outputs] for name, output in outputs.items()}
+    try:
+        return tuple(TopologicalSorter(named).static_order())
+    except CycleError as error:
+        circle = error.args[1][::-1]  # each names the one behind it
+        raise ValueError(
+            f"requests.{circle[0]}: found a request that depends on itself ({' -> '.join(circle)}), expected one that does not"
+        ) from None
+
+
+def _channel(parts: tuple[str, str]) -> str:
+    return channel(*parts)
+
+
+def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
+    """What is known of the dimension of each request, by channel.
+
+    Raises
+    ------
+    ValueError
+        For requests that depend on themselves, and for one in which a unit stands and dimensions do not fit.
+    """
+    found: dict[str, Known] = {}
+    for name in in_order(outputs):
+        try:
+            found[name] = dimension(outputs[name], found)
+        except FormulaError as error:
+            raise ValueError(f"requests.{name}: {error}") from None
+    return found
+
+
+def dimension(output: Output, requests: Mapping[str, Known]) -> Known:
+    """The dimension of one formula, from those of the requests that it names.
+
+    Raises
+    ------
+    FormulaError
+    """
+    terms = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(output.terms)}
+    return _ANYTHING.dimension_of(output.tree, output.quantities, output.tables, {**_ENERGIES, **requests, **terms})
+
+
+def reading(outputs: Mapping[str, Output], channels: Container[str], measured_so: Callable[[Term], bool]) -> set[str]:
+    """The requests that read some channels or terms, themselves or through others."""
+    found: set[str] = set()
+    for name in in_order(outputs):
+        read = {channel(*parts) for parts in outputs[name].channels()}
+        if read & found or any(of in channels for of in read) or any(map(measured_so, outputs[name].terms)):
+            found.add(name)
+    return found
+
+
+def units(outputs: Mapping[str, Output]) -> dict[str, str]:
+    """The SI unit of each request, by channel; empty for plain numbers, and where nothing tells it."""
+    known, found = dimensions(outputs), dict.fromkeys(_ENERGIES, "J")
+    for name in in_order(outputs):
+        output = outputs[name]
+        terms = {placeholder(k): measured.unit_of_measure(term.function) for k, term in enumerate(output.terms)}
+        found[name] = _unit(output.tree, known[name], {**found, **terms})
+    return {name: found[name] for name in outputs}
+
+
+def _unit(tree: ast.expr, known: Known, named: Mapping[str, str]) -> str:
+    """The unit of a formula: that of its parts where sums and the like keep it, as rad, else that of its dimension."""
+    if known.exponents is None:
+        return ""
+
+    def of_name(name: str) -> str:
+        return named[name] if name in named else measured.unit_of_coordinate(name)
+
+    kept = next(filter(None, _kept(tree, of_name)), "")
+    if kept or known.fits_all or known.exponents == NUMBER:
+        return kept
+    return named_unit(known.exponents)
+
+
+def _kept(tree: ast.expr, of_name: Callable[[str], str]) -> Iterator[str]:
+    """The units of the parts that a formula has the unit of."""
+    match tree:
+        case ast.Name(name):
+            yield of_name(name)
+        case ast.Attribute(ast.Name(owner), name):
+            yield of_name(f"{owner}.{name}")
+        case ast.UnaryOp(_, operand):
+            yield from _kept(operand, of_name)
+        case ast.BinOp(left, ast.Add() | ast.Sub(), right):
+            yield from _kept(left, of_name)
+            yield from _kept(right, of_name)
+        case ast.Call(ast.Name(name), _) if name in ANGLES:
+            yield "rad"
+        case ast.Call(ast.Name(name), arguments):
+            for part in arguments[ALIKE[name]] if name in ALIKE else ():
+                yield from _kept(part, of_name)
