@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import Field, field_validator
 
-from .fields import NAME_PATTERN, Described
+from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .marker import Marker, Placement
 from .units import si
@@ -86,6 +86,6 @@ class BodyHandle:
 def check_names(names: Iterable[object], what: str) -> None:
     """Refuse names that could not stand in a formula or a channel."""
     for name in names:
-        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+        if not isinstance(name, str) or not re.match(DOTTED_PATTERN, name):
             shown = "no name" if name in (None, "") else f"the name {written(name)}"
             raise ValueError(f"found {what} with {shown}, expected letters, digits and _ not starting with a digit")

@@ -22,6 +22,7 @@ from ..errors import InputError
 from .fields import Described
 from .formula.field import Formula
 from .marker import MarkerReference
+from .names import names_of
 
 if TYPE_CHECKING:
     from .model_data import ModelData
@@ -32,17 +33,22 @@ function for a formula or table of a variable, a symbolic element for a joint th
 ``e.rate(expression)`` for a total time derivative, ``e.frames`` for the bodies."""
 
 
+COORDINATES = ("angle", "displacement")
+"""What the coordinates of joints are called."""
+
+
 class JointName(str):
     """The name of a joint of the model, or of one of its coordinates (``sleeve.angle``), in a field of another element."""
 
     @property
     def joint(self) -> str:
         """The joint's name."""
-        return self.partition(".")[0]
+        owner, _, last = self.rpartition(".")
+        return owner if owner and last in COORDINATES else str(self)
 
     def coordinate_of(self, joint: Joint) -> str | None:
         """Which of the joint's coordinates is meant; None where it has no such one, or there is a choice."""
-        _, _, name = self.partition(".")
+        name = self[len(self.joint) + 1 :]
         if name:
             return name if name in joint.coordinates else None
         return joint.coordinates[0] if len(joint.coordinates) == 1 else None
@@ -51,7 +57,9 @@ class JointName(str):
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
         from pydantic_core import core_schema
 
-        return core_schema.no_info_after_validator_function(cls, core_schema.str_schema())
+        return core_schema.with_info_after_validator_function(
+            lambda text, info: cls(names_of(info).full(text)), core_schema.str_schema()
+        )
 
 
 JointReference = Annotated[

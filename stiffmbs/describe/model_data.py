@@ -18,6 +18,7 @@ from .formula.field import TIME, Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
+from .names import beginnings
 from .request import Request
 from .units.units import UNITS
 
@@ -96,6 +97,12 @@ class ModelData(Described):
                 if name in seen:
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
                 seen[name] = f"{section}.{name}"
+        for name in seen:
+            owner = next((o for o, rest in beginnings(name) if rest and (o in seen or o in RESERVED)), None)
+            if owner is not None:
+                raise ValueError(
+                    f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
+                )
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions]
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()

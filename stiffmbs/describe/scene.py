@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field
@@ -12,8 +13,9 @@ from ..errors import InputError
 from .fields import sentence
 from .figure import Figure
 from .files.expand import read_parameters, read_tables, refuse_unused_parameters, repeat_entries, set_value
+from .files.include import read_including
 from .files.quoted import written
-from .files.yaml_text import line_of, read_yaml
+from .files.yaml_text import read_yaml
 from .model import PlanarData
 from .model_data import ModelData
 from .settings import RunSettings
@@ -53,7 +55,9 @@ def scene_class(dimensions: int) -> type[Scene]:
     return SpatialScene
 
 
-def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene") -> Scene:
+def read_scene(
+    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", folder: str | Path = "."
+) -> Scene:
     """Read a scene from text.
 
     Parameters
@@ -64,6 +68,8 @@ def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
         Values put in place of the text's, such as ``("bodies.cart.mass", "12 kg")``.
     source : str
         What messages call it.
+    folder : str or Path
+        Where the names of files that it includes start from.
 
     Returns
     -------
@@ -74,19 +80,19 @@ def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
     InputError
         When it is no valid scene; names the line and the path in it.
     """
-    found = read_yaml(text, source)
+    found, line = read_including(text, source, Path(folder))
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, lambda path: line_of(text, path))
+    return made_scene(found, changes, source, line)
 
 
 def made_scene(
     found: dict[str, Any],
     changes: Sequence[tuple[str, str]],
     source: str,
-    line_of: Callable[[tuple[Any, ...]], int | None],
+    line_of: Callable[[tuple[Any, ...]], int | str | None],
 ) -> Scene:
     """The scene of a mapping.
 
@@ -126,7 +132,7 @@ def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
 
 
 def _place(
-    fault: tuple[Any, ...], changes: Sequence[tuple[str, str]], line_of: Callable[[tuple[Any, ...]], int | None]
+    fault: tuple[Any, ...], changes: Sequence[tuple[str, str]], line_of: Callable[[tuple[Any, ...]], int | str | None]
 ) -> str:
     """Where a fault is, for a sentence that goes on with its path: in what was changed, or in a line."""
     for path, _ in changes:

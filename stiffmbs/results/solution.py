@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..describe.names import owner_of
 from ..errors import InputError
 from ..solve.storage import release
 from ..solve.trajectory import History, Outcome
@@ -79,8 +80,8 @@ class Solution(Mapping[str, np.ndarray]):
         try:
             return self.channels[channel]
         except KeyError:
-            owner = channel.partition(".")[0]
-            near = [name for name in self.channels if name.partition(".")[0] == owner] or list(self.channels)[:12]
+            owner = owner_of(channel)
+            near = [name for name in self.channels if owner_of(name) == owner] or list(self.channels)[:12]
             raise InputError(f"found no channel '{channel}', expected one such as {', '.join(near)}") from None
 
     def __iter__(self) -> Iterator[str]:

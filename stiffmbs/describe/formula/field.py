@@ -13,9 +13,11 @@ from pydantic_core import core_schema
 
 from ..files.quoted import quoted, written
 from ..marker import GROUND, MarkerReference
+from ..names import Names, names_of
 from ..table import Table
 from ..units.quantity import as_float
 from ..units.units import CONSTANTS, UNITS, Quantity
+from .full_names import text_in_full, with_full_names
 from .functions import FUNCTIONS, OF_TABLE, check_functions
 from .names import MEASURES
 from .text import UNIT, FormulaError, parse
@@ -153,11 +155,11 @@ class FormulaOf:
         if isinstance(found, Table | dict) and self.table:
             return found if isinstance(found, Table) else Table.model_validate(found, context=info.context)
         known = {name: value.value for name, value in parameters.items()}
-        formula = self._made(found, known, (info.context or {}).get("tables") or {})
+        formula = self._made(found, known, (info.context or {}).get("tables") or {}, names_of(info))
         self._check(formula)
         return formula
 
-    def _made(self, found: Any, parameters: dict[str, float], tables: Mapping[str, Table]) -> Formula:
+    def _made(self, found: Any, parameters: dict[str, float], tables: Mapping[str, Table], names: Names) -> Formula:
         if isinstance(found, Real) and not isinstance(found, bool):
             found = repr(as_float(found))
         elif hasattr(found, "free_symbols"):
@@ -167,7 +169,8 @@ class FormulaOf:
         if not isinstance(found, str):
             allowed = "a formula or a table" if self.table else "a formula"
             raise FormulaError(f"found {written(found)}, expected {allowed}")
-        tree = parse(found)
+        tree = with_full_names(parse(found), names, MEASURES)
+        found = text_in_full(found, tree, names)
         known = FUNCTIONS | dict.fromkeys(tables, OF_TABLE)
         check_functions(tree, known, MEASURES, (*known, *MEASURES) if self.coordinates else tuple(known))
         values = dict(self.values(found, tree, parameters))
