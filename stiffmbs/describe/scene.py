@@ -18,6 +18,8 @@ from .files.quoted import written
 from .files.yaml_text import read_yaml
 from .model import PlanarData
 from .model_data import ModelData
+from .parts.instances import set_in_instances
+from .parts.placed import with_parts
 from .settings import RunSettings
 from .table import Table
 
@@ -112,11 +114,16 @@ def made_scene(
         When it is no valid scene.
     """
     refuse_unused_parameters(found, changes)
+    in_parts = []
     for path, value in changes:
-        set_value(found, path, read_yaml(value, f"--set {path}"))
+        read = read_yaml(value, f"--set {path}")
+        if set_in_instances(path, found.get("use")):
+            in_parts.append((path, read))
+        else:
+            set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found)
+        return _validated(found, in_parts)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
 
@@ -151,18 +158,19 @@ class _Located(Exception):
         self.path = path
 
 
-def _validated(found: dict[str, Any]) -> Scene:
+def _validated(found: dict[str, Any], in_parts: Sequence[tuple[str, Any]]) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"))
         tables = read_tables(found.get("tables"), parameters)
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables}
+        raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"] = tables
-    context = {"parameters": parameters, "tables": tables}
     try:
         return _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
