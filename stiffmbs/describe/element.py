@@ -68,9 +68,20 @@ JointReference = Annotated[
 
 
 class Element(Described):
-    """Base of joints and forces.  A subclass in its own file in `joints` or `forces` is all that a new kind takes."""
+    """Base of joints and forces.  A subclass in its own file in `joints` or `forces` is all that a new kind takes.
+
+    Attributes
+    ----------
+    reflected : mapping of str to str, optional
+        How fields change in the mirror image of a part; those that it does not name stay.  Each marker's axes X become
+        S X S (`stiffmbs.describe.parts.planar_frame.PlanarFrame`).  None: the element cannot be mirrored.  For a number, a
+        law or components along the axes: ``vector``, ``rotations``, ``components`` (of force, then of torque), ``matrix``,
+        ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``; names of fields that name joints: as
+        the product of their coordinates.  For a marker: its axis whose direction matters, such as ``z``.
+    """
 
     kind: ClassVar[str] = ""
+    reflected: ClassVar[dict[str, str] | None] = None
 
     def parts(self, part: type) -> Iterator[tuple[str, Any]]:
         """The element's markers, formulas, or joint names: every value of a type, by field name, in order."""

@@ -30,6 +30,7 @@ class AppliedForce(Force):
     """
 
     kind: ClassVar[str] = "force"
+    reflected: ClassVar[dict[str, str] | None] = {"force": "vector"}
 
     type: Literal["force"] = "force"
     i: Marker = Field(description="marker at which the force acts")
@@ -63,6 +64,7 @@ class AppliedTorque(Force):
     """
 
     kind: ClassVar[str] = "torque"
+    reflected: ClassVar[dict[str, str] | None] = {"torque": "angle"}
 
     type: Literal["torque"] = "torque"
     i: Marker = Field(description="marker of the body on which the torque acts")

@@ -53,6 +53,14 @@ class Bushing(Force):
     """
 
     kind: ClassVar[str] = "bushing"
+    reflected: ClassVar[dict[str, str] | None] = {
+        "stiffness": "matrix",
+        "damping": "matrix",
+        "preload": "components",
+        "law_x": "x",
+        "law_y": "y",
+        "law_angle": "angle",
+    }
 
     type: Literal["bushing"] = "bushing"
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")

@@ -30,6 +30,7 @@ class Contact(ContactLaw):
     """
 
     kind: ClassVar[str] = "contact"
+    reflected: ClassVar[dict[str, str] | None] = {"j": "y"}
 
     type: Literal["contact"] = "contact"
     i: Marker = Field(description="the point, or the circle's centre")

@@ -21,6 +21,7 @@ class JointFriction(RubbingJoint):
     """
 
     kind: ClassVar[str] = "joint_friction"
+    reflected: ClassVar[dict[str, str] | None] = {}
     rubbing: ClassVar[tuple[str, ...]] = ("revolute", "prismatic")
     round: ClassVar[tuple[str, ...]] = ("revolute",)
 

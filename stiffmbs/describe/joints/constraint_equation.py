@@ -21,6 +21,7 @@ class ConstraintEquation(KeptAtZero):
     """
 
     kind: ClassVar[str] = "equation"
+    reflected: ClassVar[dict[str, str] | None] = {}
 
     type: Literal["equation"] = "equation"
     zero: Annotated[tuple[OfPosition, ...], ONE_OR_MORE] = Field(

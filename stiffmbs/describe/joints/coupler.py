@@ -23,6 +23,7 @@ class Coupler(Relation):
     """
 
     kind: ClassVar[str] = "coupler"
+    reflected: ClassVar[dict[str, str] | None] = {"scale": "joint_1 joint_2", "offset": "joint_1"}
     equations: ClassVar[tuple[str, ...]] = ("ratio",)
 
     type: Literal["coupler"] = "coupler"

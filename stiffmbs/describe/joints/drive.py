@@ -33,6 +33,7 @@ class Drive(Joint):
     """
 
     kind: ClassVar[str] = "drive"
+    reflected: ClassVar[dict[str, str] | None] = {"prescribed_position": "joint", "prescribed_velocity": "joint"}
     equations: ClassVar[tuple[str, ...]] = ("motion",)
 
     type: Literal["drive"] = "drive"

@@ -17,6 +17,7 @@ class Fixed(Joint):
     """
 
     kind: ClassVar[str] = "fixed"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
 
     type: Literal["fixed"] = "fixed"

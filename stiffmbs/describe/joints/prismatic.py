@@ -20,6 +20,7 @@ class Prismatic(Joint):
     """
 
     kind: ClassVar[str] = "prismatic"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ("normal", "angle")
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
 

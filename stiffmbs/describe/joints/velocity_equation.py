@@ -26,6 +26,7 @@ class VelocityEquation(KeptAtZero):
     """
 
     kind: ClassVar[str] = "velocity_equation"
+    reflected: ClassVar[dict[str, str] | None] = {}
 
     type: Literal["velocity_equation"] = "velocity_equation"
     zero: Annotated[tuple[OfMotion, ...], ONE_OR_MORE] = Field(

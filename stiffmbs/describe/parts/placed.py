@@ -16,7 +16,7 @@ from ..fields import Described, sentence
 from ..marker import MarkerReference
 from ..names import GROUND, MOUNT, Names
 from .instances import NAMED, Instance, Instances
-from .mirrored import mirrored
+from .mirrored import Mirror
 
 SECTIONS = ("markers", *NAMED)
 
@@ -101,10 +101,11 @@ class _Placed:
         in_ground = self._pose(on).then(frame)
         for name, body in found.bodies.items():
             self._put("bodies", instance, name, in_ground.placed_body(body))
+        mirror = Mirror(instance.name, in_ground, found) if -1.0 in frame.signs else None
         for section in ("joints", "forces"):
             for name, element in getattr(found, section).items():
                 where = f"{instance.where}.{section}.{name}"
-                moved = mirrored(element, instance.name, in_ground, where) if -1.0 in frame.signs else element
+                moved = mirror.mirrored(element, where) if mirror else element
                 self._put(section, instance, name, _on_mount(moved, instance.name, on, frame))
         for name, request in found.requests.items():
             self._put("requests", instance, name, request)

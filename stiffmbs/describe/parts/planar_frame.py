@@ -9,6 +9,9 @@ from typing import Any, Self
 from ..body import Body
 from .use import PlanarUse
 
+STRAIGHT = 1e-12
+"""How far the cosine of an angle between axes may be from one."""
+
 
 @dataclass(frozen=True)
 class PlanarFrame:
@@ -77,6 +80,10 @@ class PlanarFrame:
         angle = self.angle + self.handedness * marker.angle
         return marker.model_copy(update={"point": self.to_outside(marker.point), "angle": angle})
 
+    def half_turned(self, marker: Any, axis: str) -> Any:
+        """A marker with an axis the other way round."""
+        return marker.model_copy(update={"angle": marker.angle + math.pi})
+
     def placed_body(self, body: Body) -> Body:
         """A body of the part as a body of the ground that this frame stands on."""
         own = self.mirror()
@@ -92,13 +99,7 @@ class PlanarFrame:
 
     def ground_signs(self) -> tuple[float, ...] | None:
         """How components along the ground's axes change their signs; None where the mirror is oblique to them."""
-        return self.signs if _is_straight(self) else None
-
-
-def _is_straight(frame: PlanarFrame) -> bool:
-    """Whether A S A^T is S: turned by half turns, or mirrored in nothing."""
-    return frame.signs[0] == frame.signs[1] or abs(math.sin(frame.angle)) < STRAIGHT
-
-
-STRAIGHT = 1e-12
-"""Sine of the angle below which axes are parallel."""
+        c, s = math.cos(self.angle) ** 2, math.sin(self.angle) ** 2
+        x, y = c * self.signs[0] + s * self.signs[1], s * self.signs[0] + c * self.signs[1]  # of A S A^T
+        straight = min(abs(x), abs(y)) > 1 - STRAIGHT
+        return (math.copysign(1.0, x), math.copysign(1.0, y)) if straight else None

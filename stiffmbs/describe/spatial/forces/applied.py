@@ -54,6 +54,7 @@ class AppliedForce(Applied):
     """
 
     kind: ClassVar[str] = "force"
+    reflected: ClassVar[dict[str, str] | None] = {"force": "vector"}
 
     type: Literal["force"] = "force"
     force: Components = Field(description="components along x, y and z, N: numbers or formulas")
@@ -82,6 +83,7 @@ class AppliedTorque(Applied):
     """
 
     kind: ClassVar[str] = "torque"
+    reflected: ClassVar[dict[str, str] | None] = {"torque": "rotations"}
 
     type: Literal["torque"] = "torque"
     torque: Components = Field(description="components along x, y and z, N m: numbers or formulas")

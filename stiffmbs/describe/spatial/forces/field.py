@@ -34,6 +34,12 @@ class FieldForce(Elastic):
     """
 
     kind: ClassVar[str] = "field"
+    reflected: ClassVar[dict[str, str] | None] = {
+        "stiffness": "matrix",
+        "damping": "matrix",
+        "preload": "components",
+        "free": "components",
+    }
 
     type: Literal["field"] = "field"
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")

@@ -32,6 +32,7 @@ class JointFriction(RubbingJoint):
     """
 
     kind: ClassVar[str] = "joint_friction"
+    reflected: ClassVar[dict[str, str] | None] = {}
 
     rubbing: ClassVar[tuple[str, ...]] = ("revolute", "cylindrical", "prismatic", "spherical")
     round: ClassVar[tuple[str, ...]] = ("revolute", "spherical")

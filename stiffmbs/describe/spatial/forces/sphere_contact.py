@@ -28,6 +28,7 @@ class SphereContact(ContactLaw):
     """
 
     kind: ClassVar[str] = "sphere_contact"
+    reflected: ClassVar[dict[str, str] | None] = {"j": "z"}
 
     type: Literal["sphere_contact"] = "sphere_contact"
     i: Marker = Field(description="the point, or the sphere's centre")

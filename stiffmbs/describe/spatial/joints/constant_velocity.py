@@ -29,6 +29,7 @@ class ConstantVelocity(Joint):
     """
 
     kind: ClassVar[str] = "constant_velocity"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, "twist")
 
     type: Literal["constant_velocity"] = "constant_velocity"

@@ -18,5 +18,6 @@ class Distance(Rod[Marker]):
     """
 
     kind: ClassVar[str] = "distance"
+    reflected: ClassVar[dict[str, str] | None] = {}
 
     type: Literal["distance"] = "distance"

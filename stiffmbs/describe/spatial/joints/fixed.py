@@ -24,6 +24,7 @@ class Fixed(Joint):
     """
 
     kind: ClassVar[str] = "fixed"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ORIENT)
 
     type: Literal["fixed"] = "fixed"

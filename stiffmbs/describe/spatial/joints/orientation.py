@@ -26,6 +26,7 @@ class Orientation(Joint):
     """
 
     kind: ClassVar[str] = "orientation"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ORIENT
 
     type: Literal["orientation"] = "orientation"

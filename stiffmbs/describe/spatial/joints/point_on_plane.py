@@ -20,6 +20,7 @@ class PointOnPlane(Joint):
     """
 
     kind: ClassVar[str] = "point_on_plane"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = IN_PLANE
 
     type: Literal["point_on_plane"] = "point_on_plane"

@@ -23,6 +23,7 @@ class Revolute(Joint):
     """
 
     kind: ClassVar[str] = "revolute"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ALIGN)
     coordinates: ClassVar[tuple[str, ...]] = ("angle",)
 

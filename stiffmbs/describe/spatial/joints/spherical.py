@@ -20,6 +20,7 @@ class Spherical(Joint):
     """
 
     kind: ClassVar[str] = "spherical"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = COINCIDE
 
     type: Literal["spherical"] = "spherical"

@@ -24,6 +24,7 @@ class Universal(Joint):
     """
 
     kind: ClassVar[str] = "universal"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ACROSS)
 
     type: Literal["universal"] = "universal"
