@@ -39,6 +39,8 @@ class MirroredNames(ast.NodeTransformer):
         if not self.inside(MarkerReference(body=body)):
             raise FormulaError(f"found '{body}', which is outside of a mirrored part, expected what is in it")
         match node.attr:
+            case "x" | "y" | "z" if self._of_ground(node)["xyz".index(node.attr)] > 0:  # the mirror is along it
+                return node
             case "vx" | "vy" | "vz":
                 return _signed(node, self._of_ground(node)["xyz".index(node.attr[1])])
             case "wx" | "wy" | "wz":  # along the body's own axes
@@ -55,8 +57,8 @@ class MirroredNames(ast.NodeTransformer):
         name: str = node.func.id  # type: ignore[attr-defined]
         i, j, *axes = measured_markers(node)
         for marker in (i, j, *axes):
-            to_ground = marker is j and marker == MarkerReference(body=GROUND) and name[0] in "vw"
-            if not (to_ground or self.inside(marker)):
+            against_ground = marker is j and j.body == GROUND and (name[0] in "vw" or self._kept(node, name, axes))
+            if not (against_ground or self.inside(marker)):
                 raise FormulaError(
                     f"found '{marker.label}' in '{ast.unparse(node)}', which is outside of a mirrored part, expected what is "
                     "in it, or mount"
@@ -71,6 +73,10 @@ class MirroredNames(ast.NodeTransformer):
                 node, self.frame.handedness * ([*signs, 1.0, 1.0]["xyz".index(name[1])] if len(signs) == 3 else 1.0)
             )
         return _signed(node, signs["xyz".index(name[1])])
+
+    def _kept(self, node: ast.AST, name: str, axes: list[MarkerReference]) -> bool:
+        """Whether a position against ground is along the mirror, which does not change it."""
+        return name in ("dx", "dy", "dz") and not axes and self._of_ground(node)["xyz".index(name[1])] > 0
 
     def _of_ground(self, node: ast.AST) -> Signs:
         signs: Signs | None = self.frame.ground_signs()
