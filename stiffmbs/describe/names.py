@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 GROUND = "ground"
@@ -27,7 +28,7 @@ class Names:
     bodies: frozenset[str] = frozenset()
     local: Mapping[str, str] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def dotted(self) -> bool:
         """Whether any name has a dot, or stands for another one."""
         return bool(self.local) or any("." in name for name in self.bodies)

@@ -58,7 +58,7 @@ def scene_class(dimensions: int) -> type[Scene]:
 
 
 def read_scene(
-    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", folder: str | Path = "."
+    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", file: Path | None = None
 ) -> Scene:
     """Read a scene from text.
 
@@ -70,8 +70,8 @@ def read_scene(
         Values put in place of the text's, such as ``("bodies.cart.mass", "12 kg")``.
     source : str
         What messages call it.
-    folder : str or Path
-        Where the names of files that it includes start from.
+    file : Path, optional
+        The file that the text is of: what it includes is looked for beside it, or in the working folder without it.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def read_scene(
     InputError
         When it is no valid scene; names the line and the path in it.
     """
-    found, line = read_including(text, source, Path(folder))
+    found, line = read_including(text, source, file)
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):

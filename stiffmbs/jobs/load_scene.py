@@ -36,5 +36,5 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
-    folder = Path() if str(path) == STANDARD_INPUT else Path(path).parent
-    return read_scene(file_text(path), changes, source_name(path), folder)
+    file = None if str(path) == STANDARD_INPUT else Path(path)
+    return read_scene(file_text(path), changes, source_name(path), file)

@@ -43,7 +43,7 @@ class Sources:
         return line
 
 
-def read_including(text: str, source: str, folder: Path) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
+def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
     """What stands in a text and in the files that it includes.
 
     Parameters
@@ -52,8 +52,8 @@ def read_including(text: str, source: str, folder: Path) -> tuple[Any, Callable[
         YAML.
     source : str
         What messages call it.
-    folder : Path
-        Where the names of files start from.
+    file : Path or None
+        The file that the text is of, beside which those are that it includes; the working folder's without one.
 
     Returns
     -------
@@ -70,8 +70,8 @@ def read_including(text: str, source: str, folder: Path) -> tuple[Any, Callable[
     sources = Sources([(source, text, ())])
     found = read_yaml(text, source)
     if isinstance(found, dict):
-        own = () if source == STANDARD_INPUT else ((folder / Path(source).name).resolve(),)
-        found = _Including(sources).whole(found, source, folder, own, ())
+        own = (file.resolve(),) if file else ()
+        found = _Including(sources).whole(found, source, file.parent if file else Path(), own, ())
     return found, sources.line
 
 

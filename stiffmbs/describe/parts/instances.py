@@ -27,6 +27,7 @@ REPEATED = ("bodies", "joints", "forces")
 KEYS = ("parameters", "markers", *NAMED, "use")
 MOST_NESTED = 10
 """Parts within parts."""
+MOST_INSTANCES = 10_000
 MOST_VALUES = 2_000_000
 """Numbers, texts, lists and mappings in all instances together."""
 
@@ -136,6 +137,8 @@ class Instances:
     def _add(
         self, name: str, use: Use, where: str, parameters: Mapping[str, Quantity], outer: Instance | None, depth: int
     ) -> None:
+        if len(self.found) >= MOST_INSTANCES:
+            raise InputError(f"{where}: found more than {MOST_INSTANCES} parts in their places, expected fewer")
         definition = self._definition(use.part)
         own = _parameters(use, where, definition.get("parameters"), parameters)
         self._set(name, definition)

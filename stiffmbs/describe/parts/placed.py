@@ -13,6 +13,7 @@ from pydantic import create_model
 from ...errors import InputError
 from ..element import Element
 from ..fields import Described, sentence
+from ..files.quoted import written
 from ..marker import MarkerReference
 from ..names import GROUND, MOUNT, Names
 from .instances import NAMED, Instance, Instances
@@ -42,7 +43,7 @@ def with_parts(
     InputError
         When a part cannot be read or placed.
     """
-    raw = dict(raw)
+    raw = {key: dict(value) if isinstance(value, dict) else value for key, value in raw.items()}
     parts, used = raw.pop("parts", None), raw.pop("use", None)
     left = list(changes)
     instances = Instances(parts, _frame_kind(scene)[0], left)
@@ -123,7 +124,7 @@ class _Placed:
         on = instance.use.on
         if outer is None:
             on = on or GROUND
-            if on != GROUND and on not in self.raw.get("bodies", {}):
+            if on != GROUND and on not in self._entries("bodies"):
                 raise InputError(
                     f"use.{instance.name}.on: found '{on}', expected ground, a body of the scene, or one of a part above"
                 )
@@ -151,25 +152,30 @@ class _Placed:
             )
         except PydanticError as error:
             raise InputError(sentence(error)) from None
-        self.raw["bodies"] = {**self.raw["bodies"], name: found.bodies[name]}
+        self.raw["bodies"][name] = found.bodies[name]
         return found.bodies[name]
 
     def _add_markers(self, on: str, markers: Mapping[str, Any]) -> None:
         if on == GROUND:
-            own = self.raw.get("markers") or {}
-            if isinstance(own, dict):
-                self.raw["markers"] = {**own, **markers}
+            self._entries("markers").update(markers)
             return
         body = self._body(on)
         self.raw["bodies"][on] = body.model_copy(update={"markers": {**body.markers, **markers}})
 
     def _put(self, section: str, instance: Instance, name: str, value: Any) -> None:
-        full, entries = f"{instance.name}.{name}", self.raw.setdefault(section, {})
-        if not isinstance(entries, dict):
-            raise InputError(f"{section}: found {type(entries).__name__}, expected a mapping of names to entries")
+        full, entries = f"{instance.name}.{name}", self._entries(section)
         if full in entries:
             raise InputError(f"{section}.{full}: found a name that a part makes too, expected another")
-        self.raw[section][full] = value
+        entries[full] = value
+
+    def _entries(self, section: str) -> dict[str, Any]:
+        """What the scene has in a section, to which parts add."""
+        if self.raw.get(section) is None:
+            self.raw[section] = {}
+        entries: Any = self.raw[section]
+        if not isinstance(entries, dict):
+            raise InputError(f"{section}: found {written(entries)}, expected a mapping of names to entries")
+        return entries
 
 
 def _on_mount(element: Element, name: str, on: str, frame: Any) -> Element:
