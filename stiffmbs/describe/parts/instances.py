@@ -28,7 +28,7 @@ KEYS = ("parameters", "markers", *NAMED, "use")
 MOST_NESTED = 10
 """Parts within parts."""
 MOST_INSTANCES = 10_000
-MOST_VALUES = 2_000_000
+MOST_VALUES = 1_000_000
 """Numbers, texts, lists and mappings in all instances together."""
 
 
