@@ -208,6 +208,10 @@ def check_element(
     for field, marker in element.markers():
         check_marker(f"{where}.{field}", marker, bodies, on_ground)
     for field, joint in element.parts(JointName):
+        owner = joint.rpartition(".")[0]
+        if joint.joint not in joints and owner in joints:
+            own = " or ".join(f"{owner}.{name}" for name in joints[owner].coordinates) or owner
+            raise ValueError(f"{where}.{field}: found '{joint}' of the type {joints[owner].kind}, expected {own}")
         if joint.joint not in joints:
             raise ValueError(
                 f"{where}.{field}: found the unknown joint '{joint.joint}', expected one of {', '.join(joints) or 'none'}"

@@ -174,3 +174,51 @@ def test_the_schema_knows_parts():
     ):
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({**example, **wrong}, schema)
+
+
+def test_a_name_with_dots_may_stand_anywhere():
+    """Written by hand, as in a scene that was made flat: body, marker, joint and coordinate are told apart."""
+    bar = {"mass": 1, "inertia": 1, "markers": {"c.d": {}}}
+    found = {
+        "bodies": {"a.b": bar},
+        "joints": {
+            "p.q": {"type": "revolute", "i": "a.b.c.d", "j": "ground"},
+            "d.r": {"type": "drive", "joint": "p.q.angle", "position": "t"},
+        },
+        "requests": {"x.y": "az(a.b.c.d, ground) + a.b.angle"},
+    }
+    solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(found)), duration=1, points=3)
+    assert solution["x.y"] == pytest.approx(2 * solution.time)
+    for wrong in ("a.b.c", "a.b"):
+        with pytest.raises(InputError, match=r"found 'a.b' before a dot|found a name that bodies.a.b has too"):
+            stiffmbs.read_scene(json.dumps({**found, "requests": {wrong: "t"}}))
+    with pytest.raises(InputError, match=r"found 'energy' before a dot in 'energy.b'"):
+        stiffmbs.read_scene(json.dumps({"bodies": {"energy.b": bar}}))
+
+
+def test_angles_and_reactions_of_parts_are_requested_in_space():
+    bar = {
+        "mass": 1,
+        "inertia": [1, 2, 2.5],
+        "omega": [0, 0, 3],
+        "velocity": [0, -3, 0],
+        "markers": {"end": {"point": [1, 0, 0]}},
+    }
+    part = {
+        "bodies": {"bar": bar},
+        "joints": {"pin": {"type": "revolute", "i": "bar.end", "j": {"body": "mount", "point": [1, 0, 0]}}},
+        "requests": {"turns": {"z": "az(bar.end, mount)", "f": "fx(pin.j) + fx(pin, bar.end) + bar.x"}},
+    }
+    found = {
+        "dimensions": 3,
+        "parts": {"arm": part},
+        "use": {"a.b": {"part": "arm"}},
+        "requests": {"out": "az(a.b.bar.end, ground.a.b) + fx(a.b.pin.i)"},
+    }
+    solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(found)), duration=4, points=9)
+    assert solution["a.b.turns.z"] == pytest.approx(3 * solution.time, rel=1e-5)
+    assert solution["out"] == pytest.approx(3 * solution.time + solution["a.b.pin.fx"], rel=1e-5)
+    along = np.cos(3 * solution.time) * solution["a.b.pin.fx"] + np.sin(3 * solution.time) * solution["a.b.pin.fy"]
+    assert solution["a.b.turns.f"] == pytest.approx(
+        along - solution["a.b.pin.fx"] + solution["a.b.bar.x"], abs=1e-3
+    )  # along the bar's own axes, and on the other body
