@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Callable, Collection
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 from zipfile import ZipFile
 
 import numpy as np
@@ -44,10 +45,12 @@ def _write_npz(path: Path, solution: Solution) -> None:
 def _write_netcdf(path: Path, solution: Solution) -> None:
     import xarray
 
-    variables = {
-        name.replace(".", "_"): ("time", values, {"channel": name, "unique": int(name not in solution.not_unique)})
-        for name, values in solution.channels.items()
-    }
+    variables: dict[str, Any] = {}
+    for name, values in solution.channels.items():
+        plain = name.replace(".", "_")
+        while plain in variables:  # front.left_arm.x and front_left.arm.x
+            plain += "_"
+        variables[plain] = ("time", values, {"channel": name, "unique": int(name not in solution.not_unique)})
     xarray.Dataset(variables, coords={"time": solution.time}).to_netcdf(path, engine="scipy")
 
 

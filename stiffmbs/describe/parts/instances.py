@@ -13,12 +13,11 @@ from pydantic import ValidationError as PydanticError
 from ...errors import InputError
 from ..body import check_names
 from ..fields import sentence
-from ..files.expand import read_parameters, repeat_entries, set_value
+from ..files.expand import repeat_entries, set_value
 from ..files.quoted import written
-from ..formula.text import FormulaError
 from ..names import MOUNT, beginnings
-from ..units.quantity import in_si, quantity
 from ..units.units import Quantity
+from .parameters import parameters_of
 from .use import Use
 
 NAMED = ("bodies", "joints", "forces", "requests")
@@ -140,7 +139,7 @@ class Instances:
         if len(self.found) >= MOST_INSTANCES:
             raise InputError(f"{where}: found more than {MOST_INSTANCES} parts in their places, expected fewer")
         definition = self._definition(use.part)
-        own = _parameters(use, where, definition.get("parameters"), parameters)
+        own = parameters_of(use, where, definition.get("parameters"), parameters)
         self._set(name, definition)
         sections = {
             section: repeat_entries(f"parts.{use.part}.{section}", definition[section], own) if section in REPEATED else definition[section]
@@ -224,33 +223,6 @@ def _check_sections(part: str, sections: Mapping[str, Any], inner: Sequence[str]
                 raise InputError(f"{where}.{name}: found a name that {seen[name]}.{name} has too, expected another")
             if section in NAMED:
                 seen[name] = section
-
-
-def _parameters(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """The parameters of an instance: those outside, its own, and in their places those that its use gives."""
-    own = {} if found is None else found
-    if not isinstance(own, dict):
-        raise InputError(f"parts.{use.part}.parameters: found {written(own)}, expected a mapping of names to numbers")
-    for name in use.parameters:
-        if name not in own:
-            known = ", ".join(map(str, own)) or "none"
-            raise InputError(
-                f"{where}.parameters.{name}: found no such parameter of '{use.part}', expected one of {known}"
-            )
-    names: Mapping[str, Quantity]
-    inside = dict(outside)
-    for name, value in own.items():
-        place = f"parts.{use.part}."
-        try:
-            read_parameters({name: 0.0})  # whether it may be a parameter's name
-            given, names = (use.parameters[name], outside) if name in use.parameters else (value, inside)
-            place = f"{where}." if name in use.parameters else place
-            inside[name] = quantity(given, names) if isinstance(given, str) else Quantity(in_si(given, "number"))
-        except FormulaError as error:
-            raise InputError(f"{place}parameters.{name}: {error}") from None
-        except InputError as error:
-            raise InputError(f"{place}{error}") from None
-    return inside
 
 
 def _size(found: Any, most: int) -> int:

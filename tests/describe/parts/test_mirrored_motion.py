@@ -139,6 +139,10 @@ JOINTS_IN_SPACE = {
     "constant_velocity": "pin: {type: constant_velocity, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}}",
     "drive": 'pin: {type: cylindrical, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}}, d: {type: drive, joint: pin.angle, velocity: "0.5 + t"}',
     "drive along": 'pin: {type: cylindrical, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}}, d: {type: drive, joint: pin.displacement, velocity: "0.5*t"}',
+    "thread": "pin: {type: cylindrical, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}}, t: {type: thread, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}, pitch: 0.3, offset: 0.4}",
+    "coupler": "pin: {type: cylindrical, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}}, c: {type: coupler, joint_1: pin.angle, joint_2: pin.displacement, scale: 2, offset: 0.3}",
+    "equation": 'e: {type: equation, zero: ["ax(one.a, two) - 0.3*dx(one.b, two, mount) + 2*dm(one, two)"]}',
+    "velocity_equation": 'e: {type: velocity_equation, zero: ["one.wx - 0.3*wy(one, two, mount) - vz(one.b, mount, two)"]}',
 }  # fmt: skip
 FORCES_IN_SPACE = {
     "bushing": (
@@ -149,6 +153,8 @@ FORCES_IN_SPACE = {
     "force": 'f: {type: force, i: one.b, force: ["2 - one.wx", "vz(one.b, mount, mount)", "wx(one, mount, two)"], axes: body}',
     "torque": 'f: {type: torque, i: one, j: two, torque: [0.3, "0.2*wy(one, mount, two)", "0.1*dz(one, two, two)"], frame: two}',
     "sphere_contact": "f: {type: sphere_contact, i: one.b, j: two, radius: 0.6, surface: plane, stiffness: 1e3}",
+    "torsion_spring": "f: {type: torsion_spring, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}, stiffness: 3, free_angle: 1, preload: 0.5, damper_law: v^2}",
+    "line_force": 'f: {type: line_force, i: one, j: two, force: "sin(t) + 3*wm(one, two) - vr(one, two)"}',
 }  # fmt: skip
 
 
