@@ -16,6 +16,7 @@ from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
+from ..names import Names
 from ..request import Request
 from ..units import si
 from . import forces, joints
@@ -73,7 +74,10 @@ class SpatialData(ModelData):
         """The angles az(i, j) in requests: only the integration sees every turn, however far apart output points are."""
         angles = (term for _, output in self.outputs() for term in output.terms if term.function in COUNTED_ANGLES)
         for term in dict.fromkeys(angles):
-            yield str(term), Request(formula=str(term))  # type: ignore[arg-type]
+            yield (
+                str(term),
+                Request.model_validate({"formula": str(term)}, context={"names": Names(frozenset(self.bodies))}),
+            )
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights and the gyroscopic torques of their turning."""

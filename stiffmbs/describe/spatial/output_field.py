@@ -13,10 +13,12 @@ from ..body import check_names
 from ..files.quoted import written
 from ..formula import measured
 from ..formula.field import FormulaOf, called_tables
+from ..formula.full_names import text_in_full, with_full_names
 from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
+from ..names import names_of
 from ..units.units import Quantity
 from .output import ACTIONS, ALONG_AXES, MEASURES, Output, Term, placeholder
 
@@ -40,7 +42,7 @@ class _Terms(ast.NodeTransformer):
 
     @staticmethod
     def _measure(name: str, node: ast.Call) -> Term:
-        markers = [MarkerReference.model_validate(_reference(argument)) for argument in node.args]
+        markers = [_marker(argument) for argument in node.args]
         most = 3 if name in ALONG_AXES else 2
         if not 1 <= len(markers) <= most:
             raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected 1 to {most}")
@@ -54,21 +56,28 @@ class _Terms(ast.NodeTransformer):
             raise FormulaError(
                 f"found {len(node.args)} names in '{ast.unparse(node)}', expected a joint or force, and a marker if its axes are meant"
             )
-        element, _, end = _reference(node.args[0]).partition(".")
-        if end not in ("", "i", "j"):
-            raise FormulaError(
-                f"found '{element}.{end}' in '{ast.unparse(node)}', expected {element}, {element}.i or {element}.j"
-            )
-        markers = tuple(MarkerReference.model_validate(_reference(argument)) for argument in node.args[1:])
+        element, end = _element_and_end(node.args[0])
+        markers = tuple(_marker(argument) for argument in node.args[1:])
         return Term(name, element, end == "j", markers)
 
 
-def _reference(node: ast.expr) -> str:
+def _marker(node: ast.expr) -> MarkerReference:
+    body, name = _owner_and_name(node)
+    return MarkerReference(body=body, marker=name or None)
+
+
+def _element_and_end(node: ast.expr) -> tuple[str, str]:
+    """A joint or force, and which of its ends is meant, if any."""
+    owner, name = _owner_and_name(node)
+    return (f"{owner}.{name}", "") if name not in ("", "i", "j") else (owner, name)
+
+
+def _owner_and_name(node: ast.expr) -> tuple[str, str]:
     match node:
         case ast.Name(name):
-            return name
+            return name, ""
         case ast.Attribute(ast.Name(owner), name):
-            return f"{owner}.{name}"
+            return owner, name
     raise FormulaError(f"found '{ast.unparse(node)}', expected a name such as bar.end")
 
 
@@ -86,15 +95,17 @@ class OutputField:
         terms = _Terms()
         context = info.context or {}
         variables = context.get("variables") or {}
-        whole = with_variables(parse(found), variables)
+        named = with_full_names(parse(found), names_of(info), (*MEASURES, *ACTIONS))
+        found = text_in_full(found, named, names_of(info))
+        whole = with_variables(named, variables)
         expanded = as_written(whole) if variables else ""
         tree = terms.visit(whole)
         tables = context.get("tables") or {}
         check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*MEASURES, *ACTIONS))
         places = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(terms.found)}
         parameters = context.get("parameters") or {}
-        named = _NAMES.quantities(found, tree, parameters | dict.fromkeys(places, Quantity(0.0)))
-        used = {name: quantity for name, quantity in named if name not in places}
+        quantities = _NAMES.quantities(found, tree, parameters | dict.fromkeys(places, Quantity(0.0)))
+        used = {name: quantity for name, quantity in quantities if name not in places}
         called = called_tables(tree, tables)
         _NAMES.dimension_of(tree, used, called, places)
         values = {name: quantity.value for name, quantity in used.items()}

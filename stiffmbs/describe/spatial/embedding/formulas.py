@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 
 from ...formula.field import Formula, is_measure, measured_markers
 from ...formula.text import UNIT, as_written
@@ -16,7 +17,7 @@ def formula(found: Formula, angles: Angles) -> str | float:
         return float(found.text)
     except ValueError:
         renamed = _Renamed(angles)
-        tree = renamed.visit(ast.parse(ast.unparse(found.tree), mode="eval").body)
+        tree = renamed.visit(copy.deepcopy(found.tree))
         return as_written(tree) if renamed.any else found.text
 
 
