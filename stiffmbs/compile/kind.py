@@ -7,6 +7,7 @@ refers to), so that a change of a number never changes a kernel.
 from __future__ import annotations
 
 import ast
+import copy
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -184,7 +185,7 @@ class _FormulaShape(ast.NodeTransformer):
 
     def shape(self) -> Shape:
         """The formula's shape; its numbers and markers are appended to the data."""
-        tree = self.visit(ast.parse(ast.unparse(self.formula.tree), mode="eval").body)
+        tree = self.visit(copy.deepcopy(self.formula.tree))
         self.data.numbers += self.numbers
         measures = tuple(
             (name, tuple(_marker_shape(marker, self.model, self.data) for marker in markers))

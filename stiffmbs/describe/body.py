@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field, field_validator
 
 from . import given
-from .fields import NAME_PATTERN, Described
+from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .formula.names import PLANE
 from .handle import Handle
@@ -95,6 +95,6 @@ class BodyHandle(Handle):
 def check_names(names: Iterable[object], what: str) -> None:
     """Refuse names that could not stand in a formula or a channel."""
     for name in names:
-        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+        if not isinstance(name, str) or not re.match(DOTTED_PATTERN, name):
             shown = "no name" if name in (None, "") else f"the name {written(name)}"
             raise ValueError(f"found {what} with {shown}, expected letters, digits and _ not starting with a digit")

@@ -19,6 +19,7 @@ from .files.quoted import quoted
 from .formula.field import Formula
 from .loads import Loads
 from .marker import MarkerReference
+from .names import names_of
 
 if TYPE_CHECKING:
     from .model_data import ModelData
@@ -29,17 +30,22 @@ function for a formula or table of a variable, a symbolic element for a joint th
 ``e.rate(expression)`` for a total time derivative, ``e.frames`` for the bodies."""
 
 
+COORDINATES = ("angle", "displacement")
+"""What the coordinates of joints are called."""
+
+
 class JointName(str):
     """The name of a joint of the model, or of one of its coordinates (``sleeve.angle``), in a field of another element."""
 
     @property
     def joint(self) -> str:
         """The joint's name."""
-        return self.partition(".")[0]
+        owner, _, last = self.rpartition(".")
+        return owner if owner and last in COORDINATES else str(self)
 
     def coordinate_of(self, joint: Joint) -> str | None:
         """Which of the joint's coordinates is meant; None where it has no such one, or there is a choice."""
-        _, _, name = self.partition(".")
+        name = self[len(self.joint) + 1 :]
         if name:
             return name if name in joint.coordinates else None
         return joint.coordinates[0] if len(joint.coordinates) == 1 else None
@@ -48,7 +54,9 @@ class JointName(str):
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
         from pydantic_core import core_schema
 
-        return core_schema.no_info_after_validator_function(cls, core_schema.str_schema())
+        return core_schema.with_info_after_validator_function(
+            lambda text, info: cls(names_of(info).full(text)), core_schema.str_schema()
+        )
 
 
 JointReference = Annotated[
@@ -68,11 +76,18 @@ class Element(Described):
     forms : tuple of mappings of str to Any
         The fields that make the forms in which it is mostly used, where those that have no default are not enough: these are
         compiled ahead (``stiffmbs cache warm``) and tested.
+    reflected : mapping of str to str, optional
+        How fields change in the mirror image of a part; those that it does not name stay.  Each marker's axes X become
+        S X S (`stiffmbs.describe.parts.planar_frame.PlanarFrame`).  None: the element cannot be mirrored.  For a number, a
+        law or components along the axes: ``vector``, ``rotations``, ``components`` (of force, then of torque), ``matrix``,
+        ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``; names of fields that name joints: as
+        the product of their coordinates.  For a marker: its axis whose direction matters, such as ``z``.
     """
 
     kind: ClassVar[str] = ""
     dimensions: ClassVar[tuple[int, ...]] = ()
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
+    reflected: ClassVar[dict[str, str] | None] = None
 
     type: str = ""
 

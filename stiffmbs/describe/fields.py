@@ -30,6 +30,8 @@ from .units.quantity import in_si
 from .units.units import DIMENSIONS, one
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
+DOTTED_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
+"""Of what may stand in a part: ``front.left.arm``."""
 
 
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]

@@ -8,17 +8,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pydantic import Field, GetJsonSchemaHandler, model_validator
+from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validator
 
-from .fields import NAME_PATTERN, Described
+from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .handle import Handle
+from .names import GROUND as GROUND
+from .names import MOUNT, names_of
 from .units import si
 
 if TYPE_CHECKING:
     from . import given
-
-GROUND = "ground"
 
 _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
 
@@ -59,18 +59,23 @@ class MarkerReference(Described):
     dimensions: ClassVar[int | None] = None
 
     body: str = Field(description="a body of the scene, or ground")
-    marker: str | None = Field(None, pattern=NAME_PATTERN, description="a marker that the body names")
+    marker: str | None = Field(None, pattern=DOTTED_PATTERN, description="a marker that the body names")
 
     @model_validator(mode="before")
     @classmethod
-    def _from_reference(cls, found: Any) -> Any:
+    def _from_reference(cls, found: Any, info: ValidationInfo) -> Any:
+        names = names_of(info)
         if isinstance(found, Handle):
             return {"body": found.name}
         if isinstance(found, dict) and isinstance(found.get("body"), Handle):
             found = {**found, "body": found["body"].name}
         if isinstance(found, str):
-            body, _, marker = found.partition(".")
+            if MOUNT in names.local and (found == MOUNT or found.startswith(f"{MOUNT}.")):
+                return {"body": MOUNT, "marker": found[len(MOUNT) + 1 :] or None}  # placed with the part
+            body, marker = names.body_and_marker(found)
             return {"body": body, "marker": marker or None}
+        if isinstance(found, dict) and isinstance(found.get("body"), str) and found["body"] != MOUNT:
+            found = {**found, "body": names.full(found["body"])}
         if (
             isinstance(found, dict)
             and found.get("marker")

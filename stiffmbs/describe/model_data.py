@@ -17,6 +17,7 @@ from .formula.field import TIME, Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
+from .names import beginnings
 from .requests.check import by_channel, check_output
 from .requests.names import OutputNames
 from .requests.order import dimensions
@@ -94,6 +95,12 @@ class ModelData(Described):
                 if name in seen:
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
                 seen[name] = f"{section}.{name}"
+        for name in seen:
+            owner = next((o for o, rest in beginnings(name) if rest and (o in seen or o in RESERVED)), None)
+            if owner is not None:
+                raise ValueError(
+                    f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
+                )
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions]
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
@@ -190,6 +197,10 @@ def check_element(
     for field, marker in element.markers():
         check_marker(f"{where}.{field}", marker, bodies, on_ground)
     for field, joint in element.parts(JointName):
+        owner = joint.rpartition(".")[0]
+        if joint.joint not in joints and owner in joints:
+            own = " or ".join(f"{owner}.{name}" for name in joints[owner].coordinates) or owner
+            raise ValueError(f"{where}.{field}: found '{joint}' of the type {joints[owner].kind}, expected {own}")
         if joint.joint not in joints:
             raise ValueError(
                 f"{where}.{field}: found the unknown joint '{joint.joint}', expected one of {', '.join(joints) or 'none'}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr
@@ -19,12 +20,15 @@ from .files.expand import (
     replaced_parameters,
     set_value,
 )
+from .files.include import read_including
 from .files.quoted import written
 from .files.variables import read_variables
-from .files.yaml_text import line_of, read_yaml
+from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .model import PlanarData
 from .model_data import ModelData
+from .parts.instances import set_in_instances
+from .parts.placed import with_parts
 from .requests.check import check_output
 from .requests.names import OF_PLANE
 from .requests.order import dimension, dimensions
@@ -90,7 +94,9 @@ def scene_class(dimensions: int) -> type[Scene]:
     return SpatialScene
 
 
-def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene") -> Scene:
+def read_scene(
+    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", file: Path | None = None
+) -> Scene:
     """Read a scene from text.
 
     Parameters
@@ -101,6 +107,8 @@ def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
         Values put in place of the text's, such as ``("bodies.cart.mass", "12 kg")``.
     source : str
         What messages call it.
+    file : Path, optional
+        The file that the text is of: what it includes is looked for beside it, or in the working folder without it.
 
     Returns
     -------
@@ -111,19 +119,19 @@ def read_scene(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
     InputError
         When it is no valid scene; names the line and the path in it.
     """
-    found = read_yaml(text, source)
+    found, line = read_including(text, source, file)
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, lambda path: line_of(text, path))
+    return made_scene(found, changes, source, line)
 
 
 def made_scene(
     found: dict[str, Any],
     changes: Sequence[tuple[str, str]],
     source: str,
-    line_of: Callable[[tuple[Any, ...]], int | None],
+    line_of: Callable[[tuple[Any, ...]], int | str | None],
 ) -> Scene:
     """The scene of a mapping.
 
@@ -144,11 +152,16 @@ def made_scene(
     """
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
+    in_parts = []
     for path, value in changes:
-        set_value(found, path, read_yaml(value, f"--set {path}"))
+        read = read_yaml(value, f"--set {path}")
+        if set_in_instances(path, found.get("use")):
+            in_parts.append((path, read))
+        else:
+            set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found, replaced)
+        return _validated(found, replaced, in_parts)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
 
@@ -164,7 +177,7 @@ def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
 
 
 def _place(
-    fault: tuple[Any, ...], changes: Sequence[tuple[str, str]], line_of: Callable[[tuple[Any, ...]], int | None]
+    fault: tuple[Any, ...], changes: Sequence[tuple[str, str]], line_of: Callable[[tuple[Any, ...]], int | str | None]
 ) -> str:
     """Where a fault is, for a sentence that goes on with its path: in what was changed, or in a line."""
     for path, _ in changes:
@@ -183,7 +196,7 @@ class _Located(Exception):
         self.path = path
 
 
-def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity]) -> Scene:
+def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts: Sequence[tuple[str, Any]]) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"), replaced)
         tables = read_tables(found.get("tables"), parameters)
@@ -191,11 +204,12 @@ def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity]) -> Scene
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
         variables = read_variables(raw.get("variables"), parameters, tables)
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables}
+        raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"] = tables
-    context = {"parameters": parameters, "tables": tables, "variables": variables}
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:

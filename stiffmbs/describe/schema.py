@@ -6,6 +6,8 @@ from typing import Any
 
 from .body import Body as PlanarBody
 from .model import FORCES, JOINTS
+from .parts.instances import KEYS
+from .parts.use import PlanarUse
 from .scene import PlanarScene
 
 
@@ -22,16 +24,46 @@ def scene_schema() -> dict[str, Any]:
     from .spatial.body import Body as SpatialBody
     from .spatial.model import FORCES as SPATIAL_FORCES
     from .spatial.model import JOINTS as SPATIAL_JOINTS
+    from .spatial.part_frame import SpatialUse
     from .spatial.scene import SpatialScene
 
     planar: list[type[Any]] = [PlanarBody, *JOINTS.values(), *FORCES.values()]
     spatial: list[type[Any]] = [SpatialBody, *SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]
     scenes: list[type[Any]] = [PlanarScene, SpatialScene]
-    found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial)])
+    uses: list[type[Any]] = [PlanarUse, SpatialUse]
+    found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial, *uses)])
     loop = {"type": "string", "description": "repeat this entry: 'k in 1..N'; k and {k} are replaced in it"}
-    for part in dict.fromkeys((*planar, *spatial)):
+    for part in dict.fromkeys((*planar, *spatial, *uses)):
         name = found[part, "validation"]["$ref"].rpartition("/")[2]
         schema["$defs"][name]["properties"]["for"] = loop
+    for scene, use in ((PlanarScene, PlanarUse), (SpatialScene, SpatialUse)):
+        _add_parts(schema["$defs"], found[scene, "validation"], found[use, "validation"])
     in_plane, in_space = (found[scene, "validation"] for scene in scenes)
     three = {"properties": {"dimensions": {"const": 3}}, "required": ["dimensions"]}
     return {"if": three, "then": in_space, "else": in_plane, "$defs": schema["$defs"]}
+
+
+def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str, Any]) -> None:
+    """Let a scene have ``include``, ``parts`` and ``use``; bodies may then stand elsewhere."""
+    whole = definitions[scene["$ref"].rpartition("/")[2]]
+    name = {"type": "string"}
+    include = {
+        "anyOf": [name, {"type": "array", "items": name}],
+        "description": "files whose sections are put with those here, from the folder of this file on",
+    }
+    used = {"type": "object", "additionalProperties": use, "description": "parts in their places, by name"}
+    part = {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {
+            "include": include,
+            "use": used,
+            **{key: whole["properties"][key] for key in KEYS if key != "use"},
+        },
+    }
+    parts = {"type": "object", "additionalProperties": part, "description": "what `use` places, by name"}
+    whole["properties"] |= {"include": include, "parts": parts, "use": used}
+    whole["required"] = [key for key in whole["required"] if key != "bodies"]
+    if not whole["required"]:
+        del whole["required"]
+    whole["anyOf"] = [{"required": [key]} for key in ("bodies", "include", "use")]

@@ -10,6 +10,7 @@ from ..compile.bodies import BODY_KINDS
 from ..describe.element import Force
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
+from ..describe.names import Names
 from ..errors import InputError
 from .load_scene import load_scene
 
@@ -36,8 +37,10 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
     """
     data: ModelData = model.data() if isinstance(model, ModelBuilder) else model
     at, _, component = name.rpartition(".")
+    body, marker = Names(frozenset(data.bodies)).body_and_marker(at)
+    place = {"body": body, "marker": marker or None}
     components = BODY_KINDS[data.dimensions].reactions
-    if at.partition(".")[0] not in data.bodies or component not in components:
+    if body not in data.bodies or component not in components:
         raise InputError(
             f"input '{name}': found no such force, expected BODY.COMPONENT or BODY.MARKER.COMPONENT with one of "
             f"{', '.join(components)}, or a parameter of the scene"
@@ -45,13 +48,13 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
 
     def with_force(value: float) -> ModelData:
         loads = [value if label == component else 0.0 for label in components]
-        added = _applied(data.dimensions, at, loads)
+        added = _applied(data.dimensions, place, loads)
         return data.model_copy(update={"forces": {**data.forces, FORCE: added}})
 
     return with_force
 
 
-def _applied(dimensions: int, at: str, loads: list[float]) -> Force:
+def _applied(dimensions: int, at: dict[str, str | None], loads: list[float]) -> Force:
     """The applied force or torque with some components, of which one differs from zero at most."""
     force, torque = tuple(loads[:dimensions]), tuple(loads[dimensions:])
     if dimensions == 2:

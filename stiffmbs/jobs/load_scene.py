@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..describe.files.text_file import file_text, source_name
+from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
 from ..describe.scene import Scene, read_scene
 
 DATASET = ".adm"
@@ -36,4 +36,5 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
-    return read_scene(file_text(path), changes, source_name(path))
+    file = None if str(path) == STANDARD_INPUT else Path(path)
+    return read_scene(file_text(path), changes, source_name(path), file)

@@ -47,7 +47,7 @@ def _write_netcdf(path: Path, solution: Solution) -> None:
     names: dict[str, str] = {}
     for channel in solution.channels:
         name = channel.replace(".", "_")
-        while name in names.values():  # of a request that is called like a channel
+        while name in names.values():  # front.left_arm.x and front_left.arm.x, or a request called like a channel
             name += "_"
         names[channel] = name
     solution.to_xarray().rename(names).to_netcdf(path, engine="scipy")

@@ -7,6 +7,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ..describe.names import owner_of
+
 SMALL = {"force": 1e-2, "torque": 1e-2}
 LITTLE = 0.1
 """Part of the largest of a kind that an element or body counts for at the least: who asks for the force of a small
@@ -42,7 +44,7 @@ def kind_of(channel: str) -> str:
 
 def _owner(channel: str) -> str:
     """The body, element or request whose channels are measured together."""
-    owner = channel.partition(".")[0]
+    owner = owner_of(channel)
     return channel if owner == "constraint" else owner
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from ..describe.figure import Figure
+from ..describe.names import owner_of
 from ..errors import ChannelError, InputError
 from ..solve.storage import release
 from ..solve.trajectory import History, Outcome
@@ -107,8 +108,8 @@ class Solution(Mapping[str, np.ndarray]):
         try:
             return self.channels[channel]
         except KeyError:
-            owner = str(channel).partition(".")[0]
-            near = [name for name in self.channels if name.partition(".")[0] == owner] or list(self.channels)[:12]
+            owner = owner_of(str(channel))
+            near = [name for name in self.channels if owner_of(name) == owner] or list(self.channels)[:12]
             raise ChannelError(f"found no channel '{channel}', expected one such as {', '.join(near)}") from None
 
     def __iter__(self) -> Iterator[str]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..compile.bodies import PLANE, SPACE
+from ..describe.names import owner_of
 from ..results.error_bars import ErrorBar
 from ..results.solution import Solution, channel_ranges
 from .digits import with_bar
@@ -28,7 +29,7 @@ def force_table(solution: Solution) -> Table:
     own = [name for name in ranges if name not in solution.requested]
     in_space = any(name.endswith(".tz") for name in own)
     components = SPACE.reactions if in_space else PLANE.reactions
-    elements = dict.fromkeys(name.partition(".")[0] for name in own if name.endswith(f".{components[-1]}"))
+    elements = dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{components[-1]}"))
     noise = ROUNDING * max(
         (_largest(ranges[f"{element}.{component}"]) for element in elements for component in components), default=0.0
     )

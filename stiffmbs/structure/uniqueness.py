@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.reactions import reactions
+from ..describe.names import owner_of
 from .directions import Direction, directions
 from .loop_equations import LoopEquations, Pose
 from .loop_rank import LoopRank
@@ -54,7 +55,7 @@ def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) ->
     of_owner: dict[str, list[str]] = {}
     for name in changes[0]:
         if any(np.abs(change[name]).max() > CHANGES for change in changes):
-            of_owner.setdefault(name.partition(".")[0], []).append(name)
+            of_owner.setdefault(owner_of(name), []).append(name)
     poses = [pose for pose, _ in null_spaces]
     return [
         Undetermined(owner, tuple(names), tuple(directions(equations, poses, changes, owner, CHANGES)))
@@ -91,7 +92,7 @@ def changes_of(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[
         rows.append(state.values["output"].copy())
     state.lam[:] = 0.0
     found = {
-        name: (values[1:] - values[0]) / (equations.length if name.partition(".")[2] in TORQUES else 1.0)
+        name: (values[1:] - values[0]) / (equations.length if name.rpartition(".")[2] in TORQUES else 1.0)
         for name, values in reactions(state.system, np.array(rows)).items()
     }
     largest = np.max([np.abs(change) for change in found.values()], axis=0)

@@ -55,7 +55,7 @@ def distance(
     """
     found: dict[str, np.ndarray] = {}
     for name, values in first.items():
-        kind, (body, _, ending) = kind_of(name), name.partition(".")
+        kind, (body, _, ending) = kind_of(name), name.rpartition(".")
         if not sizes[name] or not (kind in ("position", "angle") or ending == TURNING[0]):
             continue
         if ending == TURNING[0] and not all(f"{body}.{part}" in first for part in TURNING):

@@ -19,6 +19,7 @@ from ..formula.field import TIME
 from ..formula.functions import IN_FORMULAS, IN_NUMBERS
 from ..formula.names import MEASURES
 from ..formula.text import UNIT, FormulaError
+from ..names import beginnings
 from ..table import Table
 from ..units.quantity import in_si, quantity
 from ..units.units import CONSTANTS, Quantity
@@ -39,7 +40,7 @@ def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
     """
     if path in (scene.get("parameters") or {}):
         path = f"parameters.{path}"
-    *ways, last = path.split(".")
+    *ways, last = _keys(scene, path)
     place: Any = scene
     for k, way in enumerate(ways):
         if isinstance(place, dict):
@@ -54,6 +55,19 @@ def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
         place[int(last)] = value
     else:
         raise InputError(f"--set {path}: found no such place in the scene")
+
+
+def _keys(place: Any, path: str) -> list[str]:
+    """The keys of a path; what a mapping has under a name with dots is one key."""
+    keys: list[str] = []
+    rest: str | None = path
+    while rest is not None:
+        known = (start for start, _ in beginnings(rest) if isinstance(place, dict) and start in place)
+        key = next(known, rest.partition(".")[0])
+        place = place.get(key) if isinstance(place, dict) else None
+        rest = rest[len(key) + 1 :] if len(rest) > len(key) else None
+        keys.append(key)
+    return keys
 
 
 def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, str]]) -> None:

@@ -69,14 +69,19 @@ def _reason(error: Any) -> str:
 
 def line_of(text: str, path: tuple[Any, ...]) -> int | None:
     """The line of the deepest key of `path` that the file holds."""
+    return line_and_depth(text, path)[0]
+
+
+def line_and_depth(text: str, path: tuple[Any, ...]) -> tuple[int | None, int]:
+    """The line of the deepest key of `path` that the file holds, and how many of its keys that are."""
     from ruamel.yaml import YAML
 
     try:
         place: Any = YAML().load(StringIO(_with_plain_ends(text)))
     except Exception:  # what `read_yaml` takes, this reader, which keeps lines, may not
-        return None
-    line = None
-    for key in path:
+        return None, 0
+    line, depth = None, 0
+    for depth, key in enumerate(path):
         marks = getattr(place, "lc", None)
         if isinstance(place, dict) and key in place and marks:
             line = _line_in(marks, key)
@@ -85,8 +90,8 @@ def line_of(text: str, path: tuple[Any, ...]) -> int | None:
             line = marks.item(int(key))[0] + 1
             place = place[int(key)]
         else:
-            break
-    return line
+            return line, depth
+    return line, len(path)
 
 
 def _line_in(marks: Any, key: Any) -> int | None:

@@ -40,6 +40,7 @@ class AppliedForce(Force):
 
     kind: ClassVar[str] = "force"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"axes": "body"}, {"j": "b"})
+    reflected: ClassVar[dict[str, str] | None] = {"force": "vector"}
 
     i: Marker = Field(description="marker at which the force acts")
     j: Marker | None = Field(None, description="a second body, which takes the opposite force at the same point")
@@ -75,6 +76,7 @@ class AppliedTorque(Force):
 
     kind: ClassVar[str] = "torque"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"j": "b"})
+    reflected: ClassVar[dict[str, str] | None] = {"torque": "angle"}
 
     i: Marker = Field(description="marker of the body on which the torque acts")
     j: Marker | None = Field(None, description="marker of a second body, which takes the opposite torque")

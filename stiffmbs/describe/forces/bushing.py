@@ -58,6 +58,14 @@ class Bushing(Force):
         {"stiffness": (1, 1, 1), "damping": (1, 1, 1)},
         {"stiffness": (1, 1, 1), "damping": (1, 1, 1), "axes": "ground"},
     )
+    reflected: ClassVar[dict[str, str] | None] = {
+        "stiffness": "matrix",
+        "damping": "matrix",
+        "preload": "components",
+        "law_x": "x",
+        "law_y": "y",
+        "law_angle": "angle",
+    }
 
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")
     j: Marker = Field(description="marker of the second body, whose direction orients the bushing")

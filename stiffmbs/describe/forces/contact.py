@@ -36,6 +36,7 @@ class Contact(ContactLaw):
         {"radius": 0.1, "friction": 0.3},
         {"radius": 0.1, "surface": "circle", "surface_radius": 0.1},
     )
+    reflected: ClassVar[dict[str, str] | None] = {"j": "y"}
 
     i: Marker = Field(description="the point, or the circle's centre")
     j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")

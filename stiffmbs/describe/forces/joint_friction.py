@@ -23,6 +23,7 @@ class JointFriction(RubbingJoint):
 
     kind: ClassVar[str] = "joint_friction"
     dimensions: ClassVar[tuple[int, ...]] = (2,)
+    reflected: ClassVar[dict[str, str] | None] = {}
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
         {"joint": "pin", "friction": 0.1, "radius": 0.01},
         {"joint": "slider", "friction": 0.1},

@@ -22,6 +22,12 @@ class TorsionSpring(AngleSpring[Marker]):
     """
 
     kind: ClassVar[str] = "torsion_spring"
+    reflected: ClassVar[dict[str, str] | None] = {
+        "free_angle": "angle",
+        "preload": "angle",
+        "spring_law": "angle",
+        "damper_law": "angle",
+    }
 
     @staticmethod
     def angle(e: Symbolic) -> Any:

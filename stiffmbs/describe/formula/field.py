@@ -13,11 +13,13 @@ from pydantic_core import core_schema
 
 from ..files.quoted import quoted, written
 from ..marker import GROUND, MarkerReference
+from ..names import Names, names_of
 from ..table import Table
 from ..units.quantity import as_float, is_unit, of_name
 from ..units.units import ANY, CONSTANTS, UNITS, Quantity
 from .check_dimensions import check_dimension
 from .dimension import UNKNOWN, Known, measured_in
+from .full_names import text_in_full, with_full_names
 from .functions import IN_FORMULAS, check_functions
 from .measured import dimension_within
 from .names import MEASURES
@@ -197,7 +199,8 @@ class FormulaOf:
             self._check_table(table)
             return table
         context = info.context or {}
-        formula = self._made(found, *(context.get(key) or {} for key in ("parameters", "tables", "variables")))
+        parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
+        formula = self._made(found, parameters, tables, variables, names_of(info))
         self._check(formula)
         return formula
 
@@ -207,9 +210,12 @@ class FormulaOf:
         parameters: Mapping[str, Quantity],
         tables: Mapping[str, Table],
         variables: Mapping[str, ast.expr],
+        names: Names,
     ) -> Formula:
         found = formula_text(found, "a formula or a table" if self.table else "a formula")
-        tree = with_variables(parse(found), variables, self.variables)
+        named = with_full_names(parse(found), names, MEASURES)
+        found = text_in_full(found, named, names)
+        tree = with_variables(named, variables, self.variables)
         expanded = as_written(tree) if variables else ""
         check_functions(
             tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()

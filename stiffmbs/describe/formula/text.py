@@ -66,7 +66,27 @@ def parse(text: str) -> ast.expr:
             f"found '{quoted(text)}', expected a number or a formula such as '125 mm' or '0.6/2'"
         ) from None
     _check(tree, text)
-    return tree
+    checked: ast.expr = _Owners().visit(tree)
+    return checked
+
+
+def _first_owner(node: ast.expr) -> ast.expr:
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return node
+
+
+class _Owners(ast.NodeTransformer):
+    """Makes one name of all but the last of ``front.left.arm.x``, so that an owner is a name, with dots or without."""
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        words, owner = [], node.value
+        while isinstance(owner, ast.Attribute):
+            words.append(owner.attr)
+            owner = owner.value
+        if not words or not isinstance(owner, ast.Name):
+            return node
+        return ast.Attribute(ast.Name(".".join([owner.id, *reversed(words)])), node.attr)
 
 
 def _python_spelling(text: str) -> str:
@@ -138,7 +158,9 @@ def _check(node: ast.AST, text: str) -> None:
             if not abs(value) < LARGEST_LITERAL:
                 raise FormulaError(f"found a number that is too large in '{quoted(text)}'")
             return
-        case ast.Name() | ast.Attribute(ast.Name()):
+        case ast.Name():
+            return
+        case ast.Attribute(owner) if isinstance(_first_owner(owner), ast.Name):
             return
         case ast.Call(ast.Name(), list() as arguments, []) if not any(isinstance(a, ast.Starred) for a in arguments):
             children = list(arguments)

@@ -9,7 +9,7 @@ import ast
 import copy
 from collections.abc import Collection, Mapping
 
-from ..units.units import UNITS
+from ..units.units import UNITS, Quantity
 from . import measured
 from .size import check_size
 from .text import UNIT, FormulaError, as_written, parse
@@ -85,6 +85,17 @@ def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dic
     for name in formulas:
         resolve(name, ())
     return trees
+
+
+def meant_within(
+    variables: Mapping[str, ast.expr], inside: Mapping[str, Quantity], outside: Mapping[str, Quantity]
+) -> dict[str, ast.expr]:
+    """The variables that mean within a part what they mean outside of it.
+
+    A parameter of the part hides a variable of its name, and all variables that use an outer parameter of its name.
+    """
+    hidden = {name for name, value in inside.items() if outside.get(name) != value}
+    return {name: tree for name, tree in variables.items() if name not in inside and hidden.isdisjoint(_names(tree))}
 
 
 def _check_names(tree: ast.expr, variables: Collection[str], known: Collection[str]) -> None:

@@ -23,6 +23,7 @@ class ConstraintEquation(KeptAtZero):
 
     kind: ClassVar[str] = "equation"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"zero": "a.x"},)
+    reflected: ClassVar[dict[str, str] | None] = {}
 
     zero: Annotated[tuple[OfPosition, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, that the joint keeps at zero"

@@ -24,6 +24,7 @@ class Coupler(Relation):
     """
 
     kind: ClassVar[str] = "coupler"
+    reflected: ClassVar[dict[str, str] | None] = {"scale": "joint_1 joint_2", "offset": "joint_1"}
     equations: ClassVar[tuple[str, ...]] = ("ratio",)
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
         {"joint_1": "pin", "joint_2": "second_pin"},

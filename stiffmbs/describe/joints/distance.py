@@ -20,3 +20,4 @@ class Distance(Rod[Marker]):
 
     kind: ClassVar[str] = "distance"
     elastic: ClassVar[str] = "spring_damper"
+    reflected: ClassVar[dict[str, str] | None] = {}

@@ -43,6 +43,7 @@ class Drive(Joint):
     """
 
     kind: ClassVar[str] = "drive"
+    reflected: ClassVar[dict[str, str] | None] = {"prescribed_position": "joint", "prescribed_velocity": "joint"}
     equations: ClassVar[tuple[str, ...]] = ("motion",)
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
         *({"joint": "pin", "position": law} for law in ("2*t", "0.1 + 2*t", "0.1 - 2*t", "0.1*sin(2*t)", "0.1")),

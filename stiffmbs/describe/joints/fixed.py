@@ -17,6 +17,7 @@ class Fixed(Joint):
     """
 
     kind: ClassVar[str] = "fixed"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ("x", "y", "angle")
     elastic: ClassVar[str] = "bushing"
     keeps_in_plane: ClassVar[bool] = True

@@ -24,6 +24,7 @@ class Gear(Relation):
     """
 
     kind: ClassVar[str] = "gear"
+    reflected: ClassVar[dict[str, str] | None] = {"offset": "joint_1"}
     equations: ClassVar[tuple[str, ...]] = ("mesh",)
     wanted = {"joint_1": "angle", "joint_2": "angle"}
     carried: ClassVar[bool] = True

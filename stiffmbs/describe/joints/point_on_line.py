@@ -18,6 +18,7 @@ class PointOnLine(Joint):
     """
 
     kind: ClassVar[str] = "point_on_line"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ("normal",)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
     elastic: ClassVar[str] = "bushing"

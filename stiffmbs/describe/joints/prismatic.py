@@ -22,6 +22,7 @@ class Prismatic(Joint):
     """
 
     kind: ClassVar[str] = "prismatic"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ("normal", "angle")
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
     elastic: ClassVar[str] = "bushing"

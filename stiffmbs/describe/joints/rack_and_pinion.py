@@ -24,6 +24,7 @@ class RackAndPinion(Relation):
     """
 
     kind: ClassVar[str] = "rack_and_pinion"
+    reflected: ClassVar[dict[str, str] | None] = {"pitch_radius": "rack pinion", "offset": "rack"}
     equations: ClassVar[tuple[str, ...]] = ("mesh",)
     wanted = {"rack": "displacement", "pinion": "angle"}
     carried: ClassVar[bool] = True

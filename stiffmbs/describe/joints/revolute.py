@@ -21,6 +21,7 @@ class Revolute(Joint):
     """
 
     kind: ClassVar[str] = "revolute"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ("x", "y")
     coordinates: ClassVar[tuple[str, ...]] = ("angle",)
     elastic: ClassVar[str] = "bushing"

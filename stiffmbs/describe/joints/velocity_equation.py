@@ -28,6 +28,7 @@ class VelocityEquation(KeptAtZero):
 
     kind: ClassVar[str] = "velocity_equation"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"zero": "a.vy"},)
+    reflected: ClassVar[dict[str, str] | None] = {}
 
     zero: Annotated[tuple[OfMotion, ...], ONE_OR_MORE] = Field(
         min_length=1, description="a formula, or several, linear in velocities, that the joint keeps at zero"

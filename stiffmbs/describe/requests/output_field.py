@@ -12,10 +12,12 @@ from pydantic_core import core_schema
 
 from ..body import check_names
 from ..formula.field import TIME, FormulaOf, called_tables, formula_text, reading_order
+from ..formula.full_names import text_in_full, with_full_names
 from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
+from ..names import Names
 from ..units.units import CONSTANTS, UNITS, Quantity
 from .names import OF_PLANE, OF_SPACE, OutputNames
 from .output import Output, Term, placeholder
@@ -40,7 +42,7 @@ class _Terms(ast.NodeTransformer):
         return ast.Name(placeholder(len(self.found) - 1))
 
     def _measure(self, name: str, node: ast.Call) -> Term:
-        markers = [MarkerReference.model_validate(_reference(argument)) for argument in node.args]
+        markers = [_marker(argument) for argument in node.args]
         most = 3 if name in self._names.along_axes else 2
         if not 1 <= len(markers) <= most:
             raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected 1 to {most}")
@@ -54,21 +56,28 @@ class _Terms(ast.NodeTransformer):
             raise FormulaError(
                 f"found {len(node.args)} names in '{ast.unparse(node)}', expected a joint or force, and a marker if its axes are meant"
             )
-        element, _, end = _reference(node.args[0]).partition(".")
-        if end not in ("", "i", "j"):
-            raise FormulaError(
-                f"found '{element}.{end}' in '{ast.unparse(node)}', expected {element}, {element}.i or {element}.j"
-            )
-        markers = tuple(MarkerReference.model_validate(_reference(argument)) for argument in node.args[1:])
+        element, end = _element_and_end(node.args[0])
+        markers = tuple(_marker(argument) for argument in node.args[1:])
         return Term(name, element, end == "j", markers)
 
 
-def _reference(node: ast.expr) -> str:
+def _marker(node: ast.expr) -> MarkerReference:
+    body, name = _owner_and_name(node)
+    return MarkerReference(body=body, marker=name or None)
+
+
+def _element_and_end(node: ast.expr) -> tuple[str, str]:
+    """A joint or force, and which of its ends is meant, if any."""
+    owner, name = _owner_and_name(node)
+    return (f"{owner}.{name}", "") if name not in ("", "i", "j") else (owner, name)
+
+
+def _owner_and_name(node: ast.expr) -> tuple[str, str]:
     match node:
         case ast.Name(name):
-            return name
+            return name, ""
         case ast.Attribute(ast.Name(owner), name):
-            return f"{owner}.{name}"
+            return owner, name
     raise FormulaError(f"found '{ast.unparse(node)}', expected a name such as bar.end")
 
 
@@ -90,15 +99,18 @@ class OutputField:
         text = formula_text(found)
         terms = _Terms(self.names)
         variables = context.get("variables") or {}
-        whole = with_variables(parse(text), variables)
+        names = context.get("names") or Names()
+        named = with_full_names(parse(text), names, (*self.names.measures, *self.names.actions))
+        text = text_in_full(text, named, names)
+        whole = with_variables(named, variables)
         expanded = as_written(whole) if variables else ""
         tree = terms.visit(whole)
         tables = context.get("tables") or {}
         check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*self.names.measures, *self.names.actions))
         parameters: Mapping[str, Quantity] = context.get("parameters") or {}
         others = set(_others(tree, parameters))
-        named = _NAMES.quantities(text, tree, {**parameters, **dict.fromkeys(others, Quantity(0.0))})
-        used = {name: quantity for name, quantity in named if name not in others}
+        of_formula = _NAMES.quantities(text, tree, {**parameters, **dict.fromkeys(others, Quantity(0.0))})
+        used = {name: quantity for name, quantity in of_formula if name not in others}
         own = {name: quantity for name, quantity in used.items() if name in parameters}
         return Output(text, tree, tuple(terms.found), used, called_tables(tree, tables), own, expanded)
 

@@ -15,6 +15,7 @@ from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
+from ..names import Names
 from ..requests.angle_counter import AngleCounter
 from ..requests.names import OF_SPACE
 from ..requests.output import CONTINUOUS_ANGLES
@@ -59,7 +60,8 @@ class SpatialData(ModelData):
             term for output in self.outputs().values() for term in output.terms if term.function in CONTINUOUS_ANGLES
         )
         for term in dict.fromkeys(angles):
-            yield str(term), AngleCounter(angle=str(term))  # type: ignore[arg-type]
+            names = Names(frozenset(self.bodies))
+            yield str(term), AngleCounter.model_validate({"angle": str(term)}, context={"names": names})
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights and the gyroscopic torques of their turning."""

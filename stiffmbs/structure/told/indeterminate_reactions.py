@@ -14,7 +14,7 @@ def channel_words(parts: Sequence[Undetermined]) -> str:
     """Their components, those of elements with the same ones together: ``fz and tx of lower and upper``."""
     alike: dict[tuple[str, ...], list[str]] = {}
     for part in parts:
-        components = tuple(name.partition(".")[2] for name in part.channels)
+        components = tuple(name.rpartition(".")[2] for name in part.channels)
         alike.setdefault(components, []).append(part.element)
     return "; ".join(f"{listed(components)} of {listed(elements)}" for components, elements in alike.items())
 
@@ -53,5 +53,5 @@ def _axis(vector: Sequence[float]) -> str:
 
 def _told_by_channels(part: Undetermined, direction: Direction) -> bool:
     """Whether the components without a unique value are as few as the directions."""
-    components = [name for name in part.channels if name.partition(".")[2].startswith(direction.quantity[0])]
+    components = [name for name in part.channels if name.rpartition(".")[2].startswith(direction.quantity[0])]
     return len(components) <= (2 if direction.across else 1)

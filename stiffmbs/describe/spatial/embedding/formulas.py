@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 from collections.abc import Mapping
 from typing import Any
 
@@ -31,7 +32,7 @@ def _written(text: str, tree: ast.expr, angles: Angles) -> str | float:
         return float(text)
     except ValueError:
         renamed = _Renamed(angles)
-        tree = renamed.visit(ast.parse(ast.unparse(tree), mode="eval").body)
+        tree = renamed.visit(copy.deepcopy(tree))
         return as_written(tree) if renamed.any else text
 
 

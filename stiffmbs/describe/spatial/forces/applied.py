@@ -54,6 +54,7 @@ class AppliedForce(Applied):
 
     kind: ClassVar[str] = "force"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"axes": "body"}, {"j": "b"})
+    reflected: ClassVar[dict[str, str] | None] = {"force": "vector"}
 
     force: tuple[ForceOfMotion, ForceOfMotion, ForceOfMotion] = Field(
         description="components along x, y and z, N: numbers or formulas"
@@ -84,6 +85,7 @@ class AppliedTorque(Applied):
 
     kind: ClassVar[str] = "torque"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"j": "b"})
+    reflected: ClassVar[dict[str, str] | None] = {"torque": "rotations"}
 
     torque: tuple[TorqueOfMotion, TorqueOfMotion, TorqueOfMotion] = Field(
         description="components along x, y and z, N m: numbers or formulas"

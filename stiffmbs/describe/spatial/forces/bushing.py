@@ -51,6 +51,17 @@ class Bushing(Elastic):
         {"stiffness": (1,) * 6, "damping": (1,) * 6},
         {"stiffness": (1,) * 6, "damping": (1,) * 6, "axes": "ground"},
     )
+    reflected: ClassVar[dict[str, str] | None] = {
+        "stiffness": "matrix",
+        "damping": "matrix",
+        "preload": "components",
+        "law_x": "x",
+        "law_y": "y",
+        "law_z": "z",
+        "law_about_x": "about x",
+        "law_about_y": "about y",
+        "law_about_z": "about z",
+    }
 
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")

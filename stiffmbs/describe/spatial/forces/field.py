@@ -39,6 +39,12 @@ class FieldForce(Elastic):
         {"stiffness": (1,) * 6, "damping": (1,) * 6},
         {"stiffness": ((1,) * 6,) * 6, "damping": ((1,) * 6,) * 6, "free": (1, 0, 0, 0, 0, 0)},
     )
+    reflected: ClassVar[dict[str, str] | None] = {
+        "stiffness": "matrix",
+        "damping": "matrix",
+        "preload": "components",
+        "free": "components",
+    }
 
     stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")

@@ -16,3 +16,4 @@ class LineForce(ForceAlongLine[Marker]):
     """
 
     kind: ClassVar[str] = "line_force"
+    reflected: ClassVar[dict[str, str] | None] = {}

@@ -34,6 +34,7 @@ class SphereContact(ContactLaw):
         {"radius": 0.1, "friction": 0.3},
         {"radius": 0.1, "surface": "sphere", "surface_radius": 0.1, "friction": 0.3},
     )
+    reflected: ClassVar[dict[str, str] | None] = {"j": "z"}
 
     i: Marker = Field(description="the point, or the sphere's centre")
     j: Marker = Field(description="on the plane, its z pointing out of the solid, or the surface's centre")

@@ -18,3 +18,4 @@ class SpringDamper(LineSpring[Marker]):
     """
 
     kind: ClassVar[str] = "spring_damper"
+    reflected: ClassVar[dict[str, str] | None] = {}

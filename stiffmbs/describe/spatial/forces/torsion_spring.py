@@ -27,6 +27,12 @@ class TorsionSpring(AngleSpring[Marker]):
     """
 
     kind: ClassVar[str] = "torsion_spring"
+    reflected: ClassVar[dict[str, str] | None] = {
+        "free_angle": "angle",
+        "preload": "angle",
+        "spring_law": "angle",
+        "damper_law": "angle",
+    }
 
     def misplaced(self, model: ModelData) -> Iterator[str]:
         yield from drawn_without_axis(model, self.i, self.j)

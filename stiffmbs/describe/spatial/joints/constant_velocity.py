@@ -29,6 +29,7 @@ class ConstantVelocity(Joint):
     """
 
     kind: ClassVar[str] = "constant_velocity"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, "twist")
 
     i: Marker = Field(description="marker of the first shaft, z along it; the reaction is reported on it")

@@ -26,6 +26,7 @@ class Cylindrical(Joint):
     """
 
     kind: ClassVar[str] = "cylindrical"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ALIGN)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement", "angle")
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "tx", "ty")

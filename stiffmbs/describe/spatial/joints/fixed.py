@@ -24,6 +24,7 @@ class Fixed(Joint):
     """
 
     kind: ClassVar[str] = "fixed"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ORIENT)
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty", "tz")
     elastic: ClassVar[str] = "bushing"

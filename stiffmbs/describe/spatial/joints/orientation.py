@@ -26,6 +26,7 @@ class Orientation(Joint):
     """
 
     kind: ClassVar[str] = "orientation"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ORIENT
     transmits: ClassVar[tuple[str, ...]] = ("tx", "ty", "tz")
     elastic: ClassVar[str] = "bushing"

@@ -23,6 +23,7 @@ class Parallel(Joint):
     """
 
     kind: ClassVar[str] = "parallel"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ALIGN
     transmits: ClassVar[tuple[str, ...]] = ("tx", "ty")
     elastic: ClassVar[str] = "bushing"

@@ -23,6 +23,7 @@ class Perpendicular(Joint):
     """
 
     kind: ClassVar[str] = "perpendicular"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ACROSS
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
 

@@ -24,6 +24,7 @@ class Planar(Joint):
     """
 
     kind: ClassVar[str] = "planar"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*IN_PLANE, *ALIGN)
     transmits: ClassVar[tuple[str, ...]] = ("fz", "tx", "ty")
     elastic: ClassVar[str] = "bushing"

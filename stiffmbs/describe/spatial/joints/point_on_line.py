@@ -20,6 +20,7 @@ class PointOnLine(Joint):
     """
 
     kind: ClassVar[str] = "point_on_line"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = ON_AXIS
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy")

@@ -20,6 +20,7 @@ class PointOnPlane(Joint):
     """
 
     kind: ClassVar[str] = "point_on_plane"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = IN_PLANE
     transmits: ClassVar[tuple[str, ...]] = ("fz",)
     elastic: ClassVar[str] = "bushing"

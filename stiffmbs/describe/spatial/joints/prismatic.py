@@ -25,6 +25,7 @@ class Prismatic(Joint):
     """
 
     kind: ClassVar[str] = "prismatic"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ORIENT)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement",)
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "tx", "ty", "tz")

@@ -25,6 +25,7 @@ class Revolute(Joint):
     """
 
     kind: ClassVar[str] = "revolute"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ALIGN)
     coordinates: ClassVar[tuple[str, ...]] = ("angle",)
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty")

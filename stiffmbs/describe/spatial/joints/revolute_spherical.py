@@ -23,6 +23,7 @@ class RevoluteSpherical(Rod[Marker]):
     """
 
     kind: ClassVar[str] = "revolute_spherical"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*Rod.equations, *IN_PLANE)
 
     i: Marker = Field(description="marker of the body with the ball, on which the reaction is reported")

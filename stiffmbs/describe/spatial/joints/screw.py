@@ -25,6 +25,7 @@ class Screw(Thread):
     """
 
     kind: ClassVar[str] = "screw"
+    reflected: ClassVar[dict[str, str] | None] = {"pitch": "pitch", "offset": "z"}
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ALIGN, *Thread.equations)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement", "angle")
 

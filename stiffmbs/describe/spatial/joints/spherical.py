@@ -22,6 +22,7 @@ class Spherical(Joint):
     """
 
     kind: ClassVar[str] = "spherical"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = COINCIDE
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz")
     elastic: ClassVar[str] = "bushing"

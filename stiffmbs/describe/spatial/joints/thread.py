@@ -26,6 +26,7 @@ class Thread(KeptAsDrawn):
     """
 
     kind: ClassVar[str] = "thread"
+    reflected: ClassVar[dict[str, str] | None] = {"pitch": "pitch", "offset": "z"}
     equations: ClassVar[tuple[str, ...]] = ("pitch",)
 
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")

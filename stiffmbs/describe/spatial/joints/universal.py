@@ -24,6 +24,7 @@ class Universal(Joint):
     """
 
     kind: ClassVar[str] = "universal"
+    reflected: ClassVar[dict[str, str] | None] = {}
     equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ACROSS)
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz")
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)

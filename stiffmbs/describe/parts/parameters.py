@@ -1,0 +1,56 @@
+"""The parameters of an instance of a part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ...errors import InputError
+from ..files.expand import read_parameters
+from ..files.quoted import written
+from ..formula.text import FormulaError
+from ..units.quantity import in_si, quantity
+from ..units.units import Quantity
+from .use import Use
+
+
+def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """The parameters of an instance: those outside, its own, and in their places those that its use gives.
+
+    Parameters
+    ----------
+    use : Use
+    where : str
+        Its path in the scene.
+    found : mapping of str to number or text
+        Those of the definition.
+    outside : mapping of str to Quantity
+
+    Raises
+    ------
+    InputError
+        When one is unknown, has the name of something else, or is no number.
+    """
+    own = {} if found is None else found
+    if not isinstance(own, dict):
+        raise InputError(f"parts.{use.part}.parameters: found {written(own)}, expected a mapping of names to numbers")
+    for name in use.parameters:
+        if name not in own:
+            known = ", ".join(map(str, own)) or "none"
+            raise InputError(
+                f"{where}.parameters.{name}: found no such parameter of '{use.part}', expected one of {known}"
+            )
+    names: Mapping[str, Quantity]
+    inside = dict(outside)
+    for name, value in own.items():
+        place = f"parts.{use.part}."
+        try:
+            read_parameters({name: 0.0})  # whether it may be a parameter's name
+            given, names = (use.parameters[name], outside) if name in use.parameters else (value, inside)
+            place = f"{where}." if name in use.parameters else place
+            inside[name] = quantity(given, names) if isinstance(given, str) else Quantity(in_si(given, "number"))
+        except FormulaError as error:
+            raise InputError(f"{place}parameters.{name}: {error}") from None
+        except InputError as error:
+            raise InputError(f"{place}{error}") from None
+    return inside

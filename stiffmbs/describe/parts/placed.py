@@ -1,0 +1,204 @@
+"""A scene with its parts in their places: bodies, joints, forces and requests by full names."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import ValidationError as PydanticError
+from pydantic import create_model
+
+from ...errors import InputError
+from ..element import Element
+from ..fields import Described, sentence
+from ..files.quoted import written
+from ..formula.full_names import with_full_names
+from ..formula.names import MEASURES
+from ..formula.variables import meant_within
+from ..marker import MarkerReference
+from ..names import GROUND, MOUNT, Names
+from .instances import NAMED, Instance, Instances
+from .mirrored import Mirror
+
+SECTIONS = ("markers", *NAMED)
+
+
+def with_parts(
+    raw: dict[str, Any], scene: type[Any], context: dict[str, Any], changes: Sequence[tuple[str, Any]]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """A scene with what its ``use`` stands for, and the context in which it is validated.
+
+    Parameters
+    ----------
+    raw : mapping
+        The scene as it is written, repeated entries written out.
+    scene : type of Scene
+        Of the plane or of space.
+    context : mapping
+        Of validation: parameters, tables, variables.
+    changes : sequence of (path, value)
+        What is set in instances of parts.
+
+    Raises
+    ------
+    InputError
+        When a part cannot be read or placed.
+    """
+    raw = {key: dict(value) if isinstance(value, dict) else value for key, value in raw.items()}
+    parts, used = raw.pop("parts", None), raw.pop("use", None)
+    left = list(changes)
+    instances = Instances(parts, _frame_kind(scene)[0], left)
+    if used is not None:
+        instances.read(used, context["parameters"])
+    for path, _ in left:
+        raise InputError(f"--set {path}: found no such place in the scene")
+    bodies = [*_keys(raw.get("bodies")), *(name for one in instances.found for name in one.names("bodies"))]
+    names = Names(frozenset(bodies))
+    variables = {
+        name: with_full_names(tree, names, MEASURES) for name, tree in (context.get("variables") or {}).items()
+    }
+    context = {**context, "names": names, "variables": variables}
+    placed = _Placed(raw, scene, context)
+    for instance in instances.found:
+        placed.add(instance)
+    return raw, context
+
+
+def _keys(found: Any) -> list[str]:
+    return [name for name in found if isinstance(name, str)] if isinstance(found, dict) else []
+
+
+def _frame_kind(scene: type[Any]) -> tuple[type[Any], type[Any]]:
+    """What a use is, and a part's frame, in a family of scenes."""
+    if scene.model_fields["dimensions"].default == 3:
+        from ..spatial.part_frame import SpatialFrame, SpatialUse
+
+        return SpatialUse, SpatialFrame
+    from .planar_frame import PlanarFrame
+    from .use import PlanarUse
+
+    return PlanarUse, PlanarFrame
+
+
+@functools.cache
+def _sections(scene: Any) -> Any:
+    """The sections of a part, validated as a scene's are."""
+    fields: dict[str, Any] = {name: (scene.model_fields[name].annotation, {}) for name in SECTIONS}
+    return create_model("Part", __base__=Described, **fields)
+
+
+@dataclass
+class _Placed:
+    raw: dict[str, Any]
+    scene: Any
+    context: dict[str, Any]
+    mounts: dict[str, tuple[str, Any]] = field(default_factory=dict)
+    """The body that each instance is placed on, and its frame in that body's axes."""
+
+    def add(self, instance: Instance) -> None:
+        """Put all entries of an instance into the scene."""
+        on, frame = self._mount(instance)
+        self.mounts[instance.name] = on, frame
+        self._add_markers(on, {instance.name: frame.placed(self.scene.origin)})
+        local = instance.local() | {MOUNT: f"{on}.{instance.name}"}
+        names = Names(self.context["names"].bodies, local)
+        found = self._read(instance, names)
+        self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
+        in_ground = self._pose(on).then(frame)
+        for name, body in found.bodies.items():
+            self._put("bodies", instance, name, in_ground.placed_body(body))
+        mirror = Mirror(instance.name, in_ground, found) if -1.0 in frame.signs else None
+        for section in ("joints", "forces"):
+            for name, element in getattr(found, section).items():
+                where = f"{instance.where}.{section}.{name}"
+                moved = mirror.mirrored(element, where) if mirror else element
+                self._put(section, instance, name, _on_mount(moved, instance.name, on, frame))
+        for name, request in found.requests.items():
+            self._put("requests", instance, name, request)
+
+    def _read(self, instance: Instance, names: Names) -> Any:
+        variables = meant_within(self.context["variables"], instance.parameters, self.context["parameters"])
+        context = {**self.context, "parameters": instance.parameters, "names": names, "variables": variables}
+        try:
+            return _sections(self.scene).model_validate(dict(instance.sections), context=context)
+        except PydanticError as error:
+            raise InputError(f"{instance.where}.{sentence(error)} (in {instance.name})") from None
+
+    def _mount(self, instance: Instance) -> tuple[str, Any]:
+        """The body that an instance is placed on, and its frame in that body's axes."""
+        own, outer = _frame_kind(self.scene)[1].of_use(instance.use), instance.outer
+        on = instance.use.on
+        if outer is None:
+            on = on or GROUND
+            if on != GROUND and on not in self._entries("bodies"):
+                raise InputError(
+                    f"use.{instance.name}.on: found '{on}', expected ground, a body of the scene, or one of a part above"
+                )
+            return on, own
+        mount, frame = self.mounts[outer.name]
+        if on in (None, MOUNT):
+            return mount, frame.then(own)
+        body = Names(local=outer.local()).full(str(on))
+        if body not in self.raw["bodies"] or not body.startswith(f"{outer.name}."):
+            raise InputError(
+                f"{outer.where}.use.{instance.name.removeprefix(outer.name + '.')}.on: found '{on}', expected mount, a body of "
+                "the part, or one of a part above"
+            )
+        return body, frame.mirror().then(own)
+
+    def _pose(self, on: str) -> Any:
+        frame = _frame_kind(self.scene)[1]
+        return frame() if on == GROUND else frame.of_body(self._body(on))
+
+    def _body(self, name: str) -> Any:
+        """A body that something is placed on, validated."""
+        try:
+            found = _sections(self.scene).model_validate(
+                {"bodies": {name: self.raw["bodies"][name]}}, context=self.context
+            )
+        except PydanticError as error:
+            raise InputError(sentence(error)) from None
+        self.raw["bodies"][name] = found.bodies[name]
+        return found.bodies[name]
+
+    def _add_markers(self, on: str, markers: Mapping[str, Any]) -> None:
+        if on == GROUND:
+            self._entries("markers").update(markers)
+            return
+        body = self._body(on)
+        self.raw["bodies"][on] = body.model_copy(update={"markers": {**body.markers, **markers}})
+
+    def _put(self, section: str, instance: Instance, name: str, value: Any) -> None:
+        full, entries = f"{instance.name}.{name}", self._entries(section)
+        if full in entries:
+            raise InputError(f"{section}.{full}: found a name that a part makes too, expected another")
+        entries[full] = value
+
+    def _entries(self, section: str) -> dict[str, Any]:
+        """What the scene has in a section, to which parts add."""
+        if self.raw.get(section) is None:
+            self.raw[section] = {}
+        entries: Any = self.raw[section]
+        if not isinstance(entries, dict):
+            raise InputError(f"{section}: found {written(entries)}, expected a mapping of names to entries")
+        return entries
+
+
+def _on_mount(element: Element, name: str, on: str, frame: Any) -> Element:
+    """An element of a part with its markers on ``mount`` on the body that the part is placed on."""
+    moved = {}
+    for field_name in type(element).model_fields:
+        value = getattr(element, field_name)
+        if isinstance(value, MarkerReference) and value.body == MOUNT:
+            moved[field_name] = _marker_on(value, name, on, frame)
+    return element.model_copy(update=moved) if moved else element
+
+
+def _marker_on(marker: MarkerReference, name: str, on: str, frame: Any) -> MarkerReference:
+    if marker.marker is not None:
+        return marker.model_copy(update={"body": on, "marker": f"{name}.{marker.marker}"})
+    if marker.placement() is None:
+        return marker.model_copy(update={"body": on, "marker": name})
+    return frame.placed(marker).model_copy(update={"body": on})  # type: ignore[no-any-return]
