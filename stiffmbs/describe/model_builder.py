@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack, overload
 
@@ -17,8 +18,8 @@ from .kinds import Kinds
 from .marker import GROUND, MarkerReference
 from .model_data import RESERVED, ModelData, check_element, contents
 from .own_elements import check_class
-from .requests.check import by_channel, check_output
-from .requests.order import dimensions
+from .requests.check import ByChannel, by_channel, check_output
+from .requests.order import dimensions, with_named
 from .requests.output_field import RequestField
 from .settings import RunSettings, Settings, takes_settings
 
@@ -123,7 +124,8 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
                 f"{name}: found {part!r} in place of {section[name]!r}, expected a body for a body, a joint for a joint, a force for a force"
             )
         self._check(name, part)
-        if isinstance(part, Joint) or (section is self.bodies and section[name].markers.keys() - part.markers.keys()):
+        fewer_markers = section is self.bodies and section[name].markers.keys() - part.markers.keys()
+        if isinstance(part, Joint) or (isinstance(part, Force) and self.requests) or fewer_markers:
             self._changed(name, section, lambda: section.update({name: part}))
         section[name] = part
         return self._handle(name)
@@ -226,16 +228,16 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         names = self.data_type.output_names
         try:
             read = RequestField(names).read(formula, {})
-            requests = {**self.requests, name: read}
-            outputs = dict(by_channel(requests))
-            for channel, output in by_channel({name: read}):
+            added = dict(by_channel({name: read}))
+            outputs = ChainMap(added, ByChannel(self.requests))  # type: ignore[arg-type]  # it is only read
+            for channel, output in added.items():
                 check_output(f"requests.{channel}", output, self, names, outputs)
-            dimensions(outputs)
+            dimensions(with_named(added, outputs))
         except FormulaError as error:
             raise InputError(f"requests.{name}: {error}") from None
         except ValueError as error:
             raise InputError(str(error)) from None
-        self.requests = requests
+        self.requests[name] = read
 
     @staticmethod
     def _check_spelling(name: object, what: str) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import (
+    AppliedForce,
     Body,
     ConstraintEquation,
     Coupler,
@@ -181,6 +182,50 @@ def test_a_parameter_with_two_values_is_refused():
     model.add("a", Body(mass=1, inertia=1))
     with pytest.raises(InputError, match=r"c: found 1\.0 in one formula and 2\.0 in another"):
         model.to_scene()
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_requests_of_requests_and_components_are_written(dimensions):
+    inertia = 1 if dimensions == 2 else [1, 1, 1]
+    scene = stiffmbs.read_scene(f"""
+dimensions: {dimensions}
+parameters: {{k: 3 N/m}}
+variables: {{pull: k*dx(a)}}
+bodies: {{a: {{mass: 1, inertia: {inertia}, position: {[0.5, 0, 0][:dimensions]}}}}}
+forces: {{push: {{type: force, i: a, force: {["-k*a.x", 0, 0][:dimensions]}}}}}
+requests: {{total: own.x + push.fx + pull, own: {{x: 2*accx(a)*unit.kg, y: a.y}}}}
+run: {{duration: 1}}
+""")
+    model = Model() if dimensions == 2 else spatial.Model()
+    for section in SECTIONS[2:]:
+        getattr(model, section).update(getattr(scene, section))
+    found = stiffmbs.run(stiffmbs.read_scene(model.to_scene()), duration=1)
+    expected = stiffmbs.run(scene)
+    assert found.requested == expected.requested == {"total": "N", "own.x": "N", "own.y": "m"}
+    np.testing.assert_array_equal(found["total"], expected["total"])
+    assert expected["total"][0] == -3
+
+
+def test_a_force_is_not_replaced_by_one_without_what_a_request_reads():
+    model, cart, bar = cart_pendulum()
+    model.add("spring", SpringDamper(i=bar, j=cart, stiffness=1))
+    model.request("back", "fx(spring.j)")
+    model.replace("spring", SpringDamper(i=bar, j=cart, stiffness=2))
+    with pytest.raises(InputError, match=r"spring: found it in use \(requests.back: found 'spring.j'"):
+        model.replace("spring", AppliedForce(i=bar, force=(1, 0)))
+
+
+def test_a_request_names_those_before_it_in_any_number():
+    model, _, _ = cart_pendulum()
+    model.request("far", {"x": "bar.x + 2 m", "y": "far.x + bar.y"})
+    model.request("twice", "2*far.y")
+    with pytest.raises(InputError, match=r"requests\.wrong: .*far.*expected one of far\.x, far\.y"):
+        model.request("wrong", "far + 1")
+    with pytest.raises(InputError, match=r"requests\.wrong: "):
+        model.request("wrong", "twice + 2 s")
+    with pytest.raises(InputError, match="depends on itself"):
+        model.request("wrong", {"a": "wrong.b", "b": "wrong.a"})
+    assert set(model.requests) == {"far", "twice"}
 
 
 def test_units_of_parameters_and_tables_are_written():

@@ -57,7 +57,7 @@ def test_channels_have_units(solution, in_space):
     }
     assert {name: units[name] for name in expected} == expected
     assert in_space.units["top.q0"] == "" and in_space.units["tip.fx"] == "N"
-    assert in_space.units["probe.x"] == "", "a request is of no known unit, whatever it is called"
+    assert in_space.units["probe.x"] == "N", "a request has the unit of what it reads, whatever it is called"
 
 
 def test_a_solution_becomes_a_table_of_pandas(solution):

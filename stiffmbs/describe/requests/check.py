@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -23,9 +24,31 @@ def by_channel(requests: Mapping[str, Output | Mapping[str, Output]]) -> Iterato
             yield from ((channel(name, component), output) for component, output in found.items())
 
 
+class ByChannel(Mapping[str, Output]):
+    """The same as a mapping that looks at a request when it is asked for."""
+
+    def __init__(self, requests: Mapping[str, Output | Mapping[str, Output]]) -> None:
+        self._requests = requests
+
+    def __getitem__(self, name: str) -> Output:
+        owner, _, component = name.partition(".")
+        found = self._requests[owner]
+        if isinstance(found, Output) and not component:
+            return found
+        if isinstance(found, Output):
+            raise KeyError(name)
+        return found[component]
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, _ in by_channel(self._requests))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
 def ends(element: str, model: Any) -> tuple[Any, Any]:
     """The markers i and j of a joint or force, of a drive those of the joint that it drives; None where it has none."""
-    acting: Any = {**model.joints, **model.forces}[element]
+    acting: Any = ChainMap(model.joints, model.forces)[element]
     for _, joint in acting.parts(JointName):
         acting = model.joints[joint.joint]
         break
@@ -46,7 +69,7 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
     others : mapping of str to Output
         All requests, by channel.
     """
-    acting = {**model.joints, **model.forces}
+    acting = ChainMap(model.joints, model.forces)
     for term in output.terms:
         for marker in term.markers:
             check_marker(where, marker, model.bodies, model.markers)

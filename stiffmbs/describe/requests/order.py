@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 
 from ..formula import measured
@@ -48,6 +48,18 @@ def in_order(outputs: Mapping[str, Output]) -> tuple[str, ...]:
 
 def _channel(parts: tuple[str, str]) -> str:
     return channel(*parts)
+
+
+def with_named(channels: Iterable[str], requests: Mapping[str, Output]) -> dict[str, Output]:
+    """Some requests, by channel, and those that they name, themselves or through others."""
+    found: dict[str, Output] = {}
+    ahead = list(channels)
+    while ahead:
+        name = ahead.pop()
+        if name not in found and name in requests:
+            found[name] = requests[name]
+            ahead += map(_channel, found[name].channels())
+    return found
 
 
 def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
