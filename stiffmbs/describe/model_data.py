@@ -18,7 +18,7 @@ from .formula.field import TIME, Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
-from .names import beginnings
+from .parts.names import beginnings
 from .request import Request
 from .units.units import UNITS
 

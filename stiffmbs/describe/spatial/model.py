@@ -16,7 +16,7 @@ from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
-from ..names import Names
+from ..parts.names import Names
 from ..request import Request
 from ..units import si
 from . import forces, joints

@@ -18,7 +18,7 @@ from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
-from ..names import names_of
+from ..parts.names import names_of
 from ..units.units import Quantity
 from .output import ACTIONS, ALONG_AXES, MEASURES, Output, Term, placeholder
 

@@ -18,7 +18,7 @@ ARM = {
     "bodies": {"bar": {"mass": "m", "inertia": 1, "position": ["l", 0], "markers": {"end": {"point": ["l", 0]}}}},
     "joints": {"pin": {"type": "revolute", "i": {"body": "bar", "point": ["-l", 0]}, "j": "mount"}},
     "forces": {"spring": {"type": "spring_damper", "i": "bar.end", "j": "mount.stop", "stiffness": 10}},
-    "requests": {"height": "dy(bar.end, mount) + 2*bar.y + m*t"},
+    "requests": {"height": "dy(bar.end, mount) + 2*bar.y + m*t*(1 m)/(1 kg)/(1 s)"},
 }
 
 
