@@ -19,7 +19,7 @@ from .files.quoted import quoted
 from .formula.field import Formula
 from .loads import Loads
 from .marker import MarkerReference
-from .names import names_of
+from .parts.names import names_of
 
 if TYPE_CHECKING:
     from .model_data import ModelData

@@ -13,8 +13,8 @@ from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validato
 from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .handle import Handle
-from .names import GROUND as GROUND
-from .names import MOUNT, names_of
+from .parts.names import GROUND as GROUND
+from .parts.names import MOUNT, names_of
 from .units import si
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from .formula.field import TIME, Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
-from .names import beginnings
+from .parts.names import beginnings
 from .requests.check import by_channel, check_output
 from .requests.names import OutputNames
 from .requests.order import dimensions

@@ -10,7 +10,7 @@ from ..compile.bodies import BODY_KINDS
 from ..describe.element import Force
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
-from ..describe.names import Names
+from ..describe.parts.names import Names
 from ..errors import InputError
 from .load_scene import load_scene
 

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..describe.names import owner_of
+from ..describe.parts.names import owner_of
 
 SMALL = {"force": 1e-2, "torque": 1e-2}
 LITTLE = 0.1

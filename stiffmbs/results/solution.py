@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from ..describe.figure import Figure
-from ..describe.names import owner_of
+from ..describe.parts.names import owner_of
 from ..errors import ChannelError, InputError
 from ..solve.storage import release
 from ..solve.trajectory import History, Outcome

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..compile.bodies import PLANE, SPACE
-from ..describe.names import owner_of
+from ..describe.parts.names import owner_of
 from ..results.error_bars import ErrorBar
 from ..results.solution import Solution, channel_ranges
 from .digits import with_bar

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.reactions import reactions
-from ..describe.names import owner_of
+from ..describe.parts.names import owner_of
 from .directions import Direction, directions
 from .loop_equations import LoopEquations, Pose
 from .loop_rank import LoopRank

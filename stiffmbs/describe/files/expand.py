@@ -19,7 +19,7 @@ from ..formula.field import TIME
 from ..formula.functions import IN_FORMULAS, IN_NUMBERS
 from ..formula.names import MEASURES
 from ..formula.text import UNIT, FormulaError
-from ..names import beginnings
+from ..parts.names import beginnings
 from ..table import Table
 from ..units.quantity import in_si, quantity
 from ..units.units import CONSTANTS, Quantity

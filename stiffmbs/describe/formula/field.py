@@ -13,7 +13,7 @@ from pydantic_core import core_schema
 
 from ..files.quoted import quoted, written
 from ..marker import GROUND, MarkerReference
-from ..names import Names, names_of
+from ..parts.names import Names, names_of
 from ..table import Table
 from ..units.quantity import as_float, is_unit, of_name
 from ..units.units import ANY, CONSTANTS, UNITS, Quantity

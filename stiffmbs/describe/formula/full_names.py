@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Container
 
-from ..names import GROUND, Names
+from ..parts.names import GROUND, Names
 from .text import UNIT, as_written
 
 

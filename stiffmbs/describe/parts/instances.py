@@ -15,8 +15,8 @@ from ..body import check_names
 from ..fields import sentence
 from ..files.expand import repeat_entries, set_value
 from ..files.quoted import written
-from ..names import MOUNT, beginnings
 from ..units.units import Quantity
+from .names import MOUNT, beginnings
 from .parameters import parameters_of
 from .use import Use
 

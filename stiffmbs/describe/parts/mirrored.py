@@ -15,9 +15,9 @@ from ..element import Element, Joint, JointName
 from ..formula.field import Formula
 from ..formula.text import FormulaError
 from ..marker import GROUND, MarkerReference
-from ..names import MOUNT
 from ..table import Table
 from .mirrored_formula import MirroredNames, mirrored_law
+from .names import MOUNT
 
 ALONG_AXES = ("angle", "x", "y", "z", "about x", "about y", "about z")
 """What `Element.reflected` says of laws."""

@@ -17,6 +17,8 @@ from .use import Use
 def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """The parameters of an instance: those outside, its own, and in their places those that its use gives.
 
+    A plain number takes the SI unit of what it replaces.
+
     Parameters
     ----------
     use : Use
@@ -48,9 +50,24 @@ def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quanti
             read_parameters({name: 0.0})  # whether it may be a parameter's name
             given, names = (use.parameters[name], outside) if name in use.parameters else (value, inside)
             place = f"{where}." if name in use.parameters else place
-            inside[name] = quantity(given, names) if isinstance(given, str) else Quantity(in_si(given, "number"))
+            value_here = _quantity(given, names)
+            if name in use.parameters and value_here.dimension is None:
+                value_here = Quantity(value_here.value, _dimension(value, inside))
+            inside[name] = value_here
         except FormulaError as error:
             raise InputError(f"{place}parameters.{name}: {error}") from None
         except InputError as error:
             raise InputError(f"{place}{error}") from None
     return inside
+
+
+def _quantity(given: Any, names: Mapping[str, Quantity]) -> Quantity:
+    return quantity(given, names) if isinstance(given, str) else Quantity(in_si(given, "number"))
+
+
+def _dimension(given: Any, names: Mapping[str, Quantity]) -> Any:
+    """The dimension of what is replaced; none where it cannot be read."""
+    try:
+        return _quantity(given, names).dimension
+    except FormulaError:
+        return None

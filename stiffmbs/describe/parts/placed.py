@@ -18,9 +18,9 @@ from ..formula.full_names import with_full_names
 from ..formula.names import MEASURES
 from ..formula.variables import meant_within
 from ..marker import MarkerReference
-from ..names import GROUND, MOUNT, Names
 from .instances import NAMED, Instance, Instances
 from .mirrored import Mirror
+from .names import GROUND, MOUNT, Names
 
 SECTIONS = ("markers", *NAMED)
 

@@ -17,7 +17,7 @@ from ..formula.functions import FUNCTIONS, check_functions
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
-from ..names import Names
+from ..parts.names import Names
 from ..units.units import CONSTANTS, UNITS, Quantity
 from .names import OF_PLANE, OF_SPACE, OutputNames
 from .output import Output, Term, placeholder

@@ -15,7 +15,7 @@ from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
 from ..model_builder import ModelBuilder
 from ..model_data import ModelData
-from ..names import Names
+from ..parts.names import Names
 from ..requests.angle_counter import AngleCounter
 from ..requests.names import OF_SPACE
 from ..requests.output import CONTINUOUS_ANGLES

@@ -13,12 +13,12 @@ import stiffmbs
 from stiffmbs.errors import InputError
 
 ARM = {
-    "parameters": {"m": "1 kg", "l": "L/2"},
+    "parameters": {"M": "1 kg", "l": "L/2"},
     "markers": {"stop": {"point": [0.1, -0.2]}},
-    "bodies": {"bar": {"mass": "m", "inertia": 1, "position": ["l", 0], "markers": {"end": {"point": ["l", 0]}}}},
+    "bodies": {"bar": {"mass": "M", "inertia": 1, "position": ["l", 0], "markers": {"end": {"point": ["l", 0]}}}},
     "joints": {"pin": {"type": "revolute", "i": {"body": "bar", "point": ["-l", 0]}, "j": "mount"}},
     "forces": {"spring": {"type": "spring_damper", "i": "bar.end", "j": "mount.stop", "stiffness": 10}},
-    "requests": {"height": "dy(bar.end, mount) + 2*bar.y + m*t"},
+    "requests": {"height": "dy(bar.end, mount) + 2*bar.y + M*t*1 m/(1 kg s)"},
 }
 
 
@@ -74,7 +74,7 @@ def test_a_part_in_its_place_is_as_if_it_were_written_there():
 
 
 def test_parameters_are_formulas_of_those_outside():
-    found = scene({"a{k}": {"for": "k in 1..3", "part": "arm", "parameters": {"m": "k*L*2 kg/m", "l": "L"}}})
+    found = scene({"a{k}": {"for": "k in 1..3", "part": "arm", "parameters": {"M": "k*L*2 kg/m", "l": "L"}}})
     assert [body.mass for body in found.bodies.values()] == [2, 4, 6]
     assert found.bodies["a2.bar"].position == (1, 0)
 
@@ -83,7 +83,7 @@ def test_changes_reach_parts_uses_and_instances():
     use = {"front.left": {"part": "arm"}, "right": {"part": "arm"}}
     changes = [
         ("bodies.front.left.bar.mass", "7"),
-        ("use.right.parameters.m", "8"),
+        ("use.right.parameters.M", "8"),
         ("parts.arm.bodies.bar.inertia", "9"),
     ]
     found = scene(use, changes)
@@ -129,8 +129,8 @@ def _force(*components):
         ({"use": {"a": {"part": "arm", "on": "car"}}}, "use.a.on: found 'car', expected ground, a body"),
         ({"use": {"a": {"part": "arm", "mirror": "z"}}}, "use.a.mirror: found 'z', expected 'x' or 'y'"),
         ({"use": {"a": {"part": "arm", "orientation": 3}}}, "use.a: found the unknown key 'orientation'"),
-        ({"use": {"a": {"part": "arm", "parameters": {"n": 3}}}}, "use.a.parameters.n: found no such parameter of 'arm', expected one of m, l"),
-        ({"use": {"a": {"part": "arm", "parameters": {"m": "1 +"}}}}, r"use.a.parameters.m: found '1 \+'"),
+        ({"use": {"a": {"part": "arm", "parameters": {"n": 3}}}}, "use.a.parameters.n: found no such parameter of 'arm', expected one of M, l"),
+        ({"use": {"a": {"part": "arm", "parameters": {"M": "1 +"}}}}, r"use.a.parameters.M: found '1 \+'"),
         ({"parts": _with(parameters={"sin": 1})}, "parts.arm.parameters.sin: found the name of a constant or function"),
         ({"parts": _with(body=3)}, "parts.arm: found the unknown key 'body'"),
         ({"parts": _with(bodies=3)}, "parts.arm.bodies: found 3, expected a mapping"),
@@ -222,3 +222,25 @@ def test_angles_and_reactions_of_parts_are_requested_in_space():
     assert solution["a.b.turns.f"] == pytest.approx(
         along - solution["a.b.pin.fx"] + solution["a.b.bar.x"], abs=1e-3
     )  # along the bar's own axes, and on the other body
+
+
+def test_parts_use_variables_of_the_scene():
+    variables = {"gap": "dm(a.bar, ground) + 0.5*b.bar.x", "pull": "2*gap*1 N/m", "weight": "L*1 N/m"}
+    forces = {"f": {"type": "force", "i": "bar", "force": ["pull", "weight"]}}
+    found = scene({"a": {"part": "arm"}, "b": {"part": "arm"}}, parts=_with(forces=forces), variables=variables)
+    body_values = stiffmbs.run(found, duration=0.1, points=2)
+    written = {"gap": "dm(a.bar, ground) + 0.5*b.bar.x"}
+    force = {"type": "force", "i": "a.bar", "force": [f"2*({written['gap']})*1 N/m", "1 N"]}
+    both = {"f": force, "g": {**force, "i": "b.bar"}}
+    flat = scene({"a": {"part": "arm"}, "b": {"part": "arm"}}, parts=_with(forces={}), forces=both)
+    expected = stiffmbs.run(flat, duration=0.1, points=2)
+    assert body_values["b.bar.y"] == pytest.approx(expected["b.bar.y"], abs=1e-12)
+    assert body_values["b.bar.y"][-1] != pytest.approx(0, abs=1e-3)
+
+
+def test_a_parameter_of_a_part_hides_the_variables_that_use_an_outer_one_of_its_name():
+    """They would be another formula there than in the scene."""
+    forces = {"f": {"type": "force", "i": "bar", "force": ["weight", 0]}}
+    part = _with(forces=forces, parameters={**ARM["parameters"], "L": "3 m"})
+    with pytest.raises(InputError, match=r"parts.arm.forces.f.force.* 'weight'.*\(in a\)"):
+        scene({"a": {"part": "arm"}}, parts=part, variables={"weight": "L*1 N/m"})
