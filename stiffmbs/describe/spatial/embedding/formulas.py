@@ -8,8 +8,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...formula.field import Formula, measured_markers
+from ...formula.full_names import with_full_names
 from ...formula.text import UNIT, as_written
 from ...marker import GROUND, MarkerReference
+from ...parts.names import Names
 from ...requests.names import OF_PLANE
 from ...requests.output import Output
 from .angles import Angles
@@ -23,7 +25,9 @@ def formula(found: Formula, angles: Angles) -> str | float:
 def request(found: Output | Mapping[str, Output], angles: Angles) -> Any:
     """The same for a request, of its formulas by the names of their components."""
     if isinstance(found, Output):
-        return _written(found.text, found.written_tree(), angles)
+        names = Names(frozenset(angles.data.bodies))
+        tree = with_full_names(found.written_tree(), names, (*OF_PLANE.measures, *OF_PLANE.actions))
+        return _written(found.text, tree, angles)
     return {name: request(output, angles) for name, output in found.items()}
 
 
