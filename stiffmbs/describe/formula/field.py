@@ -214,18 +214,22 @@ class FormulaOf:
     ) -> Formula:
         found = formula_text(found, "a formula or a table" if self.table else "a formula")
         named = with_full_names(parse(found), names, MEASURES)
-        found = text_in_full(found, named, names)
+        text = text_in_full(found, named, names)
         tree = with_variables(named, variables, self.variables)
-        expanded = as_written(tree) if variables else ""
         check_functions(
             tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
         )
-        used = dict(self.quantities(found, tree, parameters))
+        used = dict(self.quantities(text, tree, parameters))
+        if names.values:
+            named, tree = (with_variables(each, names.values, self.variables) for each in (named, tree))
+            text = text_in_full(found, named, names)
+            used = dict(self.quantities(text, tree, parameters))
+        expanded = as_written(tree) if variables else ""
         values = {name: quantity.value for name, quantity in used.items()}
         called = called_tables(tree, tables)
         dimension = self.dimension_of(tree, used, called)
         own = {name: quantity for name, quantity in used.items() if name in parameters}
-        return Formula(found, tree, self.variables, values, self.velocities, called, dimension, own, expanded)
+        return Formula(text, tree, self.variables, values, self.velocities, called, dimension, own, expanded)
 
     def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
         """The parameters, units and constants in a tree.

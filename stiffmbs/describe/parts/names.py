@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -23,10 +24,13 @@ class Names:
         that a text has one meaning.
     local : mapping of str to str
         Within a part: its own short names, and the full names that they stand for.
+    values : mapping of str to ast.expr
+        Within a part: its own parameters, as the numbers with units that stand in their places outside of it.
     """
 
     bodies: frozenset[str] = frozenset()
     local: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, ast.expr] = field(default_factory=dict)
 
     @cached_property
     def dotted(self) -> bool:

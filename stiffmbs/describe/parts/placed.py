@@ -16,8 +16,10 @@ from ..fields import Described, sentence
 from ..files.quoted import written
 from ..formula.full_names import with_full_names
 from ..formula.names import MEASURES
+from ..formula.text import parse
 from ..formula.variables import meant_within
 from ..marker import MarkerReference
+from ..units.units import in_text
 from .instances import NAMED, Instance, Instances
 from .mirrored import Mirror
 from .names import GROUND, MOUNT, Names
@@ -103,7 +105,12 @@ class _Placed:
         self.mounts[instance.name] = on, frame
         self._add_markers(on, {instance.name: frame.placed(self.scene.origin)})
         local = instance.local() | {MOUNT: f"{on}.{instance.name}"}
-        names = Names(self.context["names"].bodies, local)
+        own = {
+            name: parse(str(in_text(value)))
+            for name, value in instance.parameters.items()
+            if self.context["parameters"].get(name) != value
+        }
+        names = Names(self.context["names"].bodies, local, own)
         found = self._read(instance, names)
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
         in_ground = self._pose(on).then(frame)

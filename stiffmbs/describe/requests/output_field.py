@@ -96,21 +96,26 @@ class OutputField:
         """
         if isinstance(found, Output):
             return found
-        text = formula_text(found)
+        given = formula_text(found)
         terms = _Terms(self.names)
         variables = context.get("variables") or {}
         names = context.get("names") or Names()
-        named = with_full_names(parse(text), names, (*self.names.measures, *self.names.actions))
-        text = text_in_full(text, named, names)
+        named = with_full_names(parse(given), names, (*self.names.measures, *self.names.actions))
         whole = with_variables(named, variables)
-        expanded = as_written(whole) if variables else ""
+        shown = text_in_full(given, named, names)
+        text = text_in_full(given, with_variables(named, names.values), names)
+        expanded = as_written(with_variables(whole, names.values)) if variables else ""
         tree = terms.visit(whole)
         tables = context.get("tables") or {}
         check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*self.names.measures, *self.names.actions))
         parameters: Mapping[str, Quantity] = context.get("parameters") or {}
         others = set(_others(tree, parameters))
-        of_formula = _NAMES.quantities(text, tree, {**parameters, **dict.fromkeys(others, Quantity(0.0))})
-        used = {name: quantity for name, quantity in of_formula if name not in others}
+        known = {**parameters, **dict.fromkeys(others, Quantity(0.0))}
+        used = dict(_NAMES.quantities(shown, tree, known))
+        if names.values:
+            tree = with_variables(tree, names.values)
+            used = dict(_NAMES.quantities(text, tree, known))
+        used = {name: quantity for name, quantity in used.items() if name not in others}
         own = {name: quantity for name, quantity in used.items() if name in parameters}
         return Output(text, tree, tuple(terms.found), used, called_tables(tree, tables), own, expanded)
 

@@ -244,3 +244,17 @@ def test_a_parameter_of_a_part_hides_the_variables_that_use_an_outer_one_of_its_
     part = _with(forces=forces, parameters={**ARM["parameters"], "L": "3 m"})
     with pytest.raises(InputError, match=r"parts.arm.forces.f.force.* 'weight'.*\(in a\)"):
         scene({"a": {"part": "arm"}}, parts=part, variables={"weight": "L*1 N/m"})
+
+
+def test_what_parameters_of_parts_stand_for_is_written_with_a_model():
+    """Two instances have other values; the text of the model has no parts."""
+    forces = {"f": {"type": "force", "i": "bar", "force": ["M*2 m/s^2*t/(1 s)", 0]}}
+    use = {"a": {"part": "arm"}, "b": {"part": "arm", "parameters": {"M": "0.5 kg", "l": 0.25}}}
+    found = scene(use, parts=_with(forces=forces))
+    model = stiffmbs.Model("arms", found.gravity)
+    for section in ("markers", "bodies", "joints", "forces", "requests"):
+        getattr(model, section).update(getattr(found, section))
+    again = stiffmbs.read_scene(model.to_scene())
+    first, second = (stiffmbs.run(one, duration=0.2, points=3) for one in (found, again))
+    for channel in ("a.bar.x", "b.bar.x", "a.height", "b.height"):
+        assert second[channel] == pytest.approx(first[channel], abs=1e-9)
