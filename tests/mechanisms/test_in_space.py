@@ -319,3 +319,12 @@ def test_each_closed_loop_has_three_equations_too_many_and_leaves_forces_across_
     open_ = {f"{joint}.{part}" for joint in scene.joints for part in ("fz", "tx", "ty")}
     assert set(solution.not_unique) == open_
     assert len(prepare(spatial.in_space(scene)).redundancy.redundant) == 3 * loops
+
+
+def test_a_scene_that_starts_in_equilibrium_does_so_in_space():
+    """With parts, of which the instances have other parameters."""
+    planar = stiffmbs.load_scene(next(path for path in EXAMPLES if path.stem == "front_axle"))
+    found = stiffmbs.spatial.in_space(planar)
+    first, second = (stiffmbs.run(scene, duration=0.3, points=3, rtol=1e-9) for scene in (planar, found))
+    for channel in ("front.right.knuckle.y", "front.left.knuckle.y", "front.right.camber"):
+        assert second[channel] == pytest.approx(first[channel], abs=1e-6)

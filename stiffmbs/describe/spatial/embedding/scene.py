@@ -19,7 +19,7 @@ from .markers import Written, placement, turned
 from .plane import loose
 
 ORDER = (
-    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "joints", "forces", "requests", "figure", "run", "notes",
+    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "joints", "forces", "requests", "figure", "start", "run", "notes",
 )  # fmt: skip
 """Of the sections in the file."""
 CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
@@ -52,6 +52,7 @@ def scene_in_space(data: PlanarData) -> Written:
             "tables": plain(data.tables, angles),
             "variables": {name: request(found, angles) for name, found in data.variables.items()},
             "figure": _figure(data, requests, angles),
+            "start": data.start if data.start != Scene.model_fields["start"].default else None,
             "run": plain(data.run.model_dump(exclude_unset=True), angles),
             "notes": list(data.notes),
         }
