@@ -61,7 +61,7 @@ def check_same(scene, plane, space, energies=ENERGIES, agrees=AGREES):
         elif channel == "angle" and owner:
             others, sort = others + 2 * np.pi * np.round((values[0] - others[0]) / (2 * np.pi)), "angle"
         else:
-            sort = SORTS[channel] if owner else name
+            sort = SORTS[channel] if owner and name not in plane.requested else name
         largest[sort] = max(largest.get(sort, 1e-3), size)
         differs[name] = (sort, np.nanmax(np.abs(values - others)))
     wrong = {
@@ -78,7 +78,7 @@ PLANAR = sorted(path for path in EXAMPLES.glob("*.yaml") if stiffmbs.load_scene(
 DURATIONS = {
     "bar_pendulum": 1.0, "simple_pendulum": 1.0, "cart_pendulum": 1.0, "four_bars": 0.5, "chain": 0.6,
     "half_car": 0.3, "stick_slip": 0.8, "bouncing_ball": 0.6, "cam_follower": 0.05, "dead_centres": 0.3,
-    "elastic_bearing": 0.01,
+    "elastic_bearing": 0.01, "front_axle": 0.6,
 }  # fmt: skip
 LONG = ("half_car", "stick_slip")
 STIFF = ("elastic_bearing", "half_car", "cam_follower", "stick_slip")
@@ -323,8 +323,8 @@ def test_each_closed_loop_has_three_equations_too_many_and_leaves_forces_across_
 
 def test_a_scene_that_starts_in_equilibrium_does_so_in_space():
     """With parts, of which the instances have other parameters."""
-    planar = stiffmbs.load_scene(next(path for path in EXAMPLES if path.stem == "front_axle"))
-    found = stiffmbs.spatial.in_space(planar)
+    planar = stiffmbs.load_scene(EXAMPLES / "front_axle.yaml")
+    found = spatial.in_space(planar)
     first, second = (stiffmbs.run(scene, duration=0.3, points=3, rtol=1e-9) for scene in (planar, found))
     for channel in ("front.right.knuckle.y", "front.left.knuckle.y", "front.right.camber"):
         assert second[channel] == pytest.approx(first[channel], abs=1e-6)
