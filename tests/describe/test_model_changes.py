@@ -150,13 +150,7 @@ def test_parts_are_removed():
     assert model.check().degrees_of_freedom == 1
 
 
-OF_PARTS = {"front_axle"}
-"""Scenes whose parts give one parameter several values, which the text of a model refuses."""
-
-
-@pytest.mark.parametrize(
-    "path", [path for path in (*USUAL, *EXAMPLES) if path.stem not in OF_PARTS], ids=lambda path: path.stem
-)
+@pytest.mark.parametrize("path", [*USUAL, *EXAMPLES], ids=lambda path: path.stem)
 def test_a_scene_of_a_model_is_the_model(path):
     scene = stiffmbs.load_scene(path)
     model = (stiffmbs if isinstance(scene, PlanarData) else spatial).Model(scene.name, scene.gravity)
