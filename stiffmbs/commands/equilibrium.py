@@ -19,7 +19,7 @@ from .scene import changes_of, in_file, refuse, solving_options
 def equilibrium(scene: str, as_json: bool, **options: Any) -> None:
     """Find the static equilibrium of SCENE from its described pose: poses, forces, and what is free to move.
 
-    Exit status: 0 done, 2 the input is wrong, or there is no equilibrium.
+    Exit status: 0 done, 1 no equilibrium was found, 2 the input is wrong.
     """
     from ..jobs.equilibrium import equilibrium as found_equilibrium
     from ..show.equilibrium import equilibrium_text

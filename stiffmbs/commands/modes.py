@@ -20,7 +20,7 @@ from .scene import changes_of, in_file, refuse, solving_options
 def modes(scene: str, at: float | None, as_json: bool, **options: Any) -> None:
     """Linearise SCENE about a state: frequency, damping and participation of each mode, as many as degrees of freedom.
 
-    Exit status: 0 done, 2 the input is wrong, or there is no such state.
+    Exit status: 0 done, 1 no motion leads to such a state, 2 the input is wrong.
     """
     from ..jobs.modes import modes as found_modes
     from ..show.modes import modes_text

@@ -41,7 +41,7 @@ def response(
     """Linearise SCENE about a state, and show how outputs answer to harmonic inputs: gain and phase.
 
     An input is a force or torque on a body in ground axes, or a parameter of SCENE, such as the height of a road in its formulas.
-    Exit status: 0 done, 1 the file could not be written, 2 the input is wrong, or there is no such state.
+    Exit status: 0 done, 1 the file could not be written or no motion leads to such a state, 2 the input is wrong.
     """
     import numpy as np
 

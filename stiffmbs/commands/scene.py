@@ -13,7 +13,7 @@ import click
 
 from ..describe.files.text_file import STANDARD_INPUT, source_name
 from ..describe.scene import Scene
-from ..errors import AssemblyError, InputError, StiffmbsError
+from ..errors import AssemblyError, InputError, SolverError, StiffmbsError
 
 if TYPE_CHECKING:
     from ..results.solution import Solution
@@ -114,10 +114,11 @@ def file_beside(scene: str, ending: str) -> Path:
 
 
 def refuse(scene: str, error: StiffmbsError, as_json: bool = False) -> NoReturn:
-    """End the command with one sentence on what is wrong with the input."""
+    """End the command with one sentence on what is wrong with the input, or on what the solver did not find."""
     from ..show.summary import error_as_json
 
+    unsolved = isinstance(error, SolverError)
     if as_json:
-        click.echo(error_as_json(scene, str(error)))
+        click.echo(error_as_json(scene, str(error), "stopped" if unsolved else "error"))
     click.echo(f"stiffmbs: {error}", err=True)
-    sys.exit(WRONG_INPUT)
+    sys.exit(STOPPED_EARLY if unsolved else WRONG_INPUT)

@@ -31,6 +31,8 @@ class EquilibriumFound:
         That led there.
     imbalance : float
         Largest generalised force that is left, relative to the largest that acts.
+    moved : dict of str to (float, float)
+        How far each body is from its described pose: its centre of mass, m, and its rotation, rad.
     free : tuple of str
         Bodies that take part in motions that nothing holds; the first one each, with its coordinate.
     notes : tuple of str
@@ -43,6 +45,7 @@ class EquilibriumFound:
     channels: dict[str, float]
     moves: int
     imbalance: float
+    moved: dict[str, tuple[float, float]]
     free: tuple[str, ...]
     notes: tuple[str, ...]
     start: InitialValues
@@ -56,8 +59,9 @@ class EquilibriumFound:
             The file, or what else the scene is called.
         """
         return {
-            "scene": scene, "t": self.t, "moves": self.moves, "imbalance": self.imbalance, "free": list(self.free),
-            "channels": self.channels, "notes": list(self.notes),
+            "scene": scene, "status": "done", "message": f"at rest in equilibrium after {self.moves} moves",
+            "imbalance": self.imbalance, "moved": self.moved, "channels": self.channels,
+            "t": self.t, "free": list(self.free), "notes": list(self.notes),
         }  # fmt: skip
 
 
@@ -93,6 +97,10 @@ def equilibrium(model: Runnable, settings: RunSettings | None = None, **changes:
     rows = job.mechanics.report(np.array([job.grid.start]), found.start.q[None], found.start.u[None], project=False)
     channels = channels_of(job.data, job.mechanics.system, rows)
     kept = {name: float(values[0]) for name, values in channels.items()}
+    system = job.mechanics.system
+    moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
+    straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
+    moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))
     return EquilibriumFound(
-        job.data.name, job.grid.start, kept, found.moves, found.imbalance, found.free, found.notes, found.start
+        job.data.name, job.grid.start, kept, found.moves, found.imbalance, moved, found.free, found.notes, found.start
     )

@@ -69,11 +69,12 @@ class Mode:
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {
-            "motion": self.motion.value,
+            "frequency": self.natural_frequency,
+            "damping": None if np.isnan(self.damping_ratio) else self.damping_ratio,
+            "eigenvalue": [self.eigenvalues[0].real, self.eigenvalues[0].imag],
+            "damped_frequency": self.frequency,
             "eigenvalues": [[value.real, value.imag] for value in self.eigenvalues],
-            "frequency": self.frequency,
-            "natural_frequency": self.natural_frequency,
-            "damping_ratio": None if np.isnan(self.damping_ratio) else self.damping_ratio,
+            "motion": self.motion.value,
             "participation": self.participation,
         }
 

@@ -61,9 +61,9 @@ def check_as_json(scene: str, report: Report) -> str:
     return _line(report.as_dict(scene))
 
 
-def error_as_json(scene: str, message: str) -> str:
-    """The one-line JSON object for a scene that could not be run."""
-    return _line({"scene": scene, "status": "error", "message": message})
+def error_as_json(scene: str, message: str, status: str = "error") -> str:
+    """The one-line JSON object for a scene that could not be run, or that has no result."""
+    return _line({"scene": scene, "status": status, "message": message})
 
 
 def _line(content: Any) -> str:

@@ -110,4 +110,14 @@ def test_the_command_prints_poses_and_json():
     shown = CliRunner().invoke(main, ["equilibrium", scene])
     assert shown.exit_code == 0 and "bar" in shown.output and "hinge" in shown.output
     told = json.loads(CliRunner().invoke(main, ["equilibrium", scene, "--json"]).output)
+    assert told["status"] == "done" and told["imbalance"] < 1e-9
     assert told["channels"]["hinge.fy"] == pytest.approx(1.2 * 9.81)
+    assert told["moved"]["bar"] == pytest.approx([0.3 * np.sqrt(2), np.pi / 2])
+
+
+def test_the_command_tells_that_there_is_none(tmp_path):
+    scene = tmp_path / "stone.yaml"
+    scene.write_text("gravity: [0, -9.81]\nbodies: {stone: {mass: 2, inertia: 1}}")
+    told = CliRunner().invoke(main, ["equilibrium", str(scene), "--json"])
+    assert told.exit_code == 1
+    assert json.loads(told.stdout)["status"] == "stopped" and "stone.fy" in json.loads(told.stdout)["message"]

@@ -196,6 +196,9 @@ def test_the_command_prints_a_table_and_json():
     assert shown.exit_code == 0 and "9 degrees of freedom" in shown.output
     told = json.loads(CliRunner().invoke(main, ["modes", scene, "--json"]).output)
     assert len(told["modes"]) == told["degrees_of_freedom"] == 9
-    assert told["modes"][1]["motion"] == "oscillating"
+    second = told["modes"][1]
+    assert second["motion"] == "oscillating"
+    assert second["frequency"] == pytest.approx(np.hypot(*second["eigenvalue"]) / (2 * np.pi))
+    assert second["damping"] == pytest.approx(-second["eigenvalue"][0] / np.hypot(*second["eigenvalue"]))
     wrong = CliRunner().invoke(main, ["modes", "nowhere.yaml"])
     assert wrong.exit_code == 2
