@@ -24,6 +24,8 @@ from .run import Runnable, prepare
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of places and angles."""
+NO_RATE = 1e-6
+"""Change of a prescribed velocity for each unit of an input, m/s or rad/s, that counts as none."""
 SHIFT = 1e-6
 """Variation of states by which outputs are differentiated: relative to the mechanism's size, or rad."""
 
@@ -96,7 +98,12 @@ def _column(
     system = about.found.mechanics.system
     step = SHIFT * max(1.0, system.size)
     sides = [_with_value(about, given, value, changes) for value in (-step, step)]
-    (force, gap), (more, wider) = (_acting(about, side) for side in sides)
+    (force, gap, rate), (more, wider, faster) = (_acting(about, side) for side in sides)
+    if np.any(np.abs(faster - rate) > NO_RATE * 2 * step):
+        raise InputError(
+            f"input '{name}': found a velocity that a joint prescribes, expected a force, a displacement or a length; "
+            "prescribe the displacement"
+        )
     own = about.linear.own_axes
     change = Input(name, own.T @ (more - force) / (2 * step), (wider - gap) / (2 * step))
     acts = effect(about.linear, about.state, change, about.scale)
@@ -121,11 +128,14 @@ def _with_value(about: _About, given: Parameterised, value: float, changes: Sett
     return job.mechanics
 
 
-def _acting(about: _About, mechanics: Mechanics) -> tuple[np.ndarray, np.ndarray]:
-    """Applied forces, and the constraints of positions, at the state."""
-    state, rows = mechanics.state, about.found.mechanics.system.active & mechanics.system.holonomic
+def _acting(about: _About, mechanics: Mechanics) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What is left of the forces (f - J^T lam - M u'), and the constraints of positions and of velocities, at the state."""
+    state, system = mechanics.state, mechanics.system
+    active = about.found.mechanics.system.active
     state.evaluate("motion", about.found.t)
-    return state.vector("motion", "f"), state.vector("motion", "C")[rows]
+    reactions = state.matrix("motion", "J").T @ about.found.mechanics.state.lam[: system.n_c]
+    left = state.vector("motion", "f") - reactions - system.mass * about.found.acceleration
+    return left, state.vector("motion", "C")[active & system.holonomic], state.vector("motion", "V")[active]
 
 
 def _channels(about: _About, mechanics: Mechanics, x: np.ndarray, v: np.ndarray, outputs: Sequence[str]) -> np.ndarray:

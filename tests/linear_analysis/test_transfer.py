@@ -89,6 +89,37 @@ def test_a_request_that_feels_a_moved_constraint_is_refused_as_its_channels_are(
         transfer(made(0.0), {"travel": made}, ["through"])
 
 
+LEVER = """
+parameters: {offset: 0 m, load: 3 kg}
+gravity: [0, -9.81]
+bodies:
+  bar: {mass: load, inertia: 0.4, markers: {pivot: {point: [offset - 0.3, 0]}, tip: {point: [0.3, 0]}}}
+joints:
+  hinge: {type: revolute, i: bar.pivot, j: {body: ground, point: [-0.3, 0]}}
+forces:
+  spring: {type: spring_damper, i: bar.tip, j: {body: ground, point: [0.3, 0.5]}, stiffness: 400, damping: 5, free_length: 0.4}
+"""
+
+
+@pytest.mark.parametrize("parameter, value", [("offset", 0.0), ("load", 3.0)])
+def test_slow_inputs_move_the_equilibrium(parameter, value):
+    """A pivot on the bar that is shifted changes a constraint and the arms of its reaction; a mass changes weight and inertia."""
+    made = lambda shift: stiffmbs.read_scene(LEVER, [(f"parameters.{parameter}", repr(value + shift))])  # noqa: E731
+    poses = [stiffmbs.equilibrium(made(shift)).channels["bar.angle"] for shift in (-1e-4, 1e-4)]
+    scene = made(0.0).model_copy(update={"start": "equilibrium"})
+    found = transfer(scene, {parameter: made}, ["bar.angle"])
+    slow = found.response(np.array([1e-6]))[0, 0, 0]
+    np.testing.assert_allclose(slow, (poses[1] - poses[0]) / 2e-4, rtol=1e-5)
+
+
+def test_a_prescribed_velocity_is_no_input():
+    made = lambda speed: stiffmbs.read_scene(  # noqa: E731
+        DRIVEN.replace("position: travel", "velocity: travel"), [("parameters.travel", repr(speed))]
+    )
+    with pytest.raises(InputError, match=r"input 'travel': found a velocity that a joint prescribes"):
+        transfer(made(0.0), {"travel": made}, ["bob.angle"])
+
+
 def test_small_runs_follow_the_response():
     """The half car under a small harmonic force, after 12 s of settling: amplitude and phase within 1e-4."""
     scene = stiffmbs.load_scene(EXAMPLES / "half_car.yaml", [("V", "1e-9"), ("parameters.k_b", "1e5")])
