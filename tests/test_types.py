@@ -140,7 +140,7 @@ def test_completion_finds_what_is_offered(module):
     ("described", "names"),
     [
         (stiffmbs.run, Settings.__annotations__),
-        (stiffmbs.Model.check, ["duration", "give_way"]),
+        (stiffmbs.Model.check, ["duration", "drop_first"]),
         (stiffmbs.Revolute, "ij"),
     ],
 )

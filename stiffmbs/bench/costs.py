@@ -57,7 +57,7 @@ def differences(found: list[Run], *counters: str) -> list[list[float]]:
 
 
 def fit(features: list[list[float]], times: list[float]) -> tuple[np.ndarray, np.ndarray]:
-    """The costs of the features, and what they make of each time, in parts of it."""
+    """The costs of the features, and what they make of each time, relative to it."""
     scaled = np.array(features) / np.array(times)[:, None]
     costs = nnls(scaled, np.ones(len(times)))[0]
     return costs, scaled @ costs
@@ -69,12 +69,12 @@ def main() -> None:
     explicit: tuple[list[list[float]], list[float]] = ([], [])
     for make in SCENES.values():
         job, found = runs(make(), solver="bdf")
-        n = cost.unknowns((job.pieces[0] if job.pieces else job).mechanics)
+        n = cost.unknowns((job.subsystems[0] if job.subsystems else job).dynamics)
         for residuals, matrices, spent in differences(found, "residuals", "jacobians"):
             implicit[0].append([residuals, residuals * n, matrices, matrices * n])
             implicit[1].append(spent)
         job, found = runs(make(), solver="projected", scheme="dop853")
-        values = (job.pieces[0] if job.pieces else job).mechanics.system.n_values("acceleration")
+        values = (job.subsystems[0] if job.subsystems else job).dynamics.system.n_values("acceleration")
         for steps, rejected, spent in differences(found, "steps", "rejected"):
             explicit[0].append([steps + rejected, (steps + rejected) * values])
             explicit[1].append(spent)

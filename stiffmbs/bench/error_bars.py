@@ -48,7 +48,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Found:
-    """Widths of bars in parts of the true errors, of as many peaks (or channels) as have an error.
+    """Widths of bars relative to the true errors, of as many peaks (or channels) as have an error.
 
     Attributes
     ----------
@@ -103,13 +103,13 @@ def measured(problem: Problem, rtols: Iterable[float] = RTOLS) -> Iterator[tuple
             yield (
                 solver,
                 rtol,
-                compared(found, truth, less_true, scales(truth, asked.mechanics.system.size, truth.requested)),
+                compared(found, truth, less_true, scales(truth, asked.dynamics.system.size, truth.requested)),
             )
 
 
 def at_more_instants(job: Job) -> Solution:
     """A job solved, and solved again at its own steps and between these besides."""
-    times = more_instants(solved(job), job.mechanics.input_features(job.grid.start, job.grid.end))
+    times = more_instants(solved(job), job.dynamics.input_features(job.grid.start, job.grid.end))
     return solved(replace(job, grid=Grid(job.grid.start, job.grid.end, times)))
 
 
@@ -150,7 +150,7 @@ def _peak(times: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 
 
 def _parts(rows: Iterable[tuple[float, float, float]]) -> np.ndarray:
-    """Half widths in parts of the errors, where these are known."""
+    """Half widths relative to the errors, where these are known."""
     half, error, known = np.array(list(rows)).T
     counted = error > KNOWN * known
     return half[counted] / error[counted]

@@ -28,16 +28,16 @@ from ..solve.error_control.error_test import ErrorControl
 from ..solve.trajectory import Outcome
 
 CONTROLS = {
-    "huge, 0.33": ErrorControl(margin=1.0, newton=0.33, renewal=0.25, doubtful=False),
-    "huge, 0.03": ErrorControl(margin=1.0, newton=0.03, renewal=0.25, doubtful=False),
+    "huge, 0.33": ErrorControl(margin=1.0, newton=0.33, renewal=0.25, predicted_residual=False),
+    "huge, 0.03": ErrorControl(margin=1.0, newton=0.03, renewal=0.25, predicted_residual=False),
     "suppressed, 0.33": ErrorControl(
-        margin=1.0, multipliers=1e-3, suppressed=True, newton=0.33, renewal=0.25, doubtful=False
+        margin=1.0, multipliers=1e-3, suppressed=True, newton=0.33, renewal=0.25, predicted_residual=False
     ),
     "suppressed, 1e3 loose": ErrorControl(
-        margin=1.0, multipliers=1.0, suppressed=True, newton=0.33, renewal=0.25, doubtful=False
+        margin=1.0, multipliers=1.0, suppressed=True, newton=0.33, renewal=0.25, predicted_residual=False
     ),
-    "huge, by stiffness": ErrorControl(margin=1.0, renewal=0.25, doubtful=False),
-    "IDA's test": ErrorControl(margin=0.3, doubtful=False),
+    "huge, by stiffness": ErrorControl(margin=1.0, renewal=0.25, predicted_residual=False),
+    "IDA's test": ErrorControl(margin=0.3, predicted_residual=False),
     "present": None,
 }
 """Multipliers by a huge weight, or by IDASetSuppressAlg with a weight in Newton's test; how far Newton's iteration is taken,
@@ -115,7 +115,7 @@ def _patience(longest: float) -> Callable[[float], None]:
 
 def last(job: Job, control: ErrorControl | None, longest: float = LONGEST) -> tuple[np.ndarray | None, int, int]:
     """Coordinates at the end (None for a run that stopped), steps and residuals."""
-    trajectory = solve(job.mechanics, job.start, job.grid, job.settings, _patience(longest), control)
+    trajectory = solve(job.dynamics, job.start, job.grid, job.settings, _patience(longest), control)
     done = trajectory.outcome is Outcome.DONE
     steps, residuals = (int(trajectory.statistics[name]) for name in ("steps", "residuals"))
     return trajectory.q[-1] if done else None, steps, residuals

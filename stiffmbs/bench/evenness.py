@@ -65,7 +65,7 @@ def evenness(problem: Problem, control: ErrorControl) -> Evenness:
     errors, steps = [], 0
     for rtol in RTOLS:
         own = job("bdf", float(rtol))
-        found = solve(own.mechanics, own.start, own.grid, own.settings, lambda t: None, control)
+        found = solve(own.dynamics, own.start, own.grid, own.settings, lambda t: None, control)
         steps += int(found.statistics["steps"])
         errors.append(float(np.sqrt(np.mean(np.max(np.abs(_states(found) - exact) / largest, axis=0) ** 2))))
     over, of = np.log10(RTOLS), np.log10(errors)

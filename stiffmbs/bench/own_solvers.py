@@ -22,7 +22,7 @@ from .task import Task
 
 TOLERANCES = tuple(float(f"{10.0**-k:.2g}") for k in np.arange(3, 12.1, 0.5))
 STEPS = tuple(10.0**-k for k in np.arange(2, 5.6, 0.25))
-"""Of the fixed schemes, in parts of the duration."""
+"""Of the fixed schemes, relative to the duration."""
 ROUNDS = 3
 CONVERGED = 1e-13
 DIFFERENCE = 1e-3
@@ -87,7 +87,7 @@ def exact_of(task: Task) -> Exact:
     h = DIFFERENCE / np.maximum(np.max(np.abs(rates), axis=1, keepdims=True), 1e-30)
     near, far = (minimal.places(y + d * rates) - minimal.places(y - d * rates) for d in (h, 2 * h))
     q, u = minimal.places(y), (8 * near - far) / (12 * h)
-    report = prepare(task.scene).mechanics.report(task.times, q, u, project=False)
+    report = prepare(task.scene).dynamics.report(task.times, q, u, project=False)
     return Exact(q, u, report.lam)
 
 
@@ -126,6 +126,6 @@ def _measured(
         times.append(time.process_time() - begun)
     if found is None or found.outcome is not Outcome.DONE:
         return
-    report = job.mechanics.report(found.t, found.q, found.u, project=False)
+    report = job.dynamics.report(found.t, found.q, found.u, project=False)
     for quantity, error in exact.errors(found.q, found.u, report.lam):
         yield Row(f"{name}: {quantity}", f"{kind} {value:.3g}", error, min(times), False)

@@ -42,11 +42,11 @@ class Task:
     times : ndarray
         Of output, s.
     minimal : Minimal
-    corners : tuple of float
+    breakpoints : tuple of float
         Times within at which forces change their law, s.
     """
 
     scene: ModelData
     times: np.ndarray
     minimal: Minimal
-    corners: tuple[float, ...] = ()
+    breakpoints: tuple[float, ...] = ()

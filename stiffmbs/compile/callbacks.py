@@ -20,7 +20,7 @@ _PROTOTYPE = ctypes.CFUNCTYPE(
     ctypes.c_double, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p
 )
 DIFFERENCE, LEAST = 6e-6, 1e-3
-"""Step of central differences, in parts of an argument (the cube root of the rounding error), which counts as `LEAST` at least."""
+"""Step of central differences, relative to an argument (the cube root of the rounding error), which counts as `LEAST` at least."""
 COMPLEX_STEP = 1e-30
 
 
@@ -148,7 +148,7 @@ def notes_on_functions(system: System) -> Iterator[str]:
         way = "a complex step" if function.derivatives == "complex_step" else "central differences"
         yield (
             f"the law of '{name}' is the Python function {callback.name} ({callback.calls} calls): its derivatives are by {way}, "
-            "and corners in it are not located"
+            "and breakpoints in it are not located"
         )
 
 

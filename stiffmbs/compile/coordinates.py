@@ -9,7 +9,7 @@ import numpy as np
 
 from .system import System
 
-STILL = -1
+FIXED = -1
 
 
 @dataclass(frozen=True, eq=False)  # arrays have no one truth value: two are the same if they are one object
@@ -21,34 +21,34 @@ class Coordinates:
 
     Attributes
     ----------
-    leader : ndarray of int, shape (n_q,)
-        The coordinate that each moves with, itself where it is independent; `STILL` for those that stand still.
+    independent_of : ndarray of int, shape (n_q,)
+        The coordinate that each moves with, itself where it is independent; `FIXED` for those that stand still.
     ratio : ndarray, shape (n_q,)
-    u_leader, u_ratio : ndarrays, shape (n_u,)
+    u_independent_of, u_ratio : ndarrays, shape (n_u,)
         The same for velocities.
-    fulfilled : ndarray of bool, shape (n_c,)
+    satisfied : ndarray of bool, shape (n_c,)
         The equations that are satisfied whatever the independent coordinates do.
     """
 
-    leader: np.ndarray
+    independent_of: np.ndarray
     ratio: np.ndarray
-    u_leader: np.ndarray
+    u_independent_of: np.ndarray
     u_ratio: np.ndarray
-    fulfilled: np.ndarray
+    satisfied: np.ndarray
 
     @cached_property
     def independent(self) -> np.ndarray:
         """Which coordinates are independent, shape (n_q,)."""
-        return self.leader == np.arange(len(self.leader))
+        return self.independent_of == np.arange(len(self.independent_of))
 
     @cached_property
     def independent_u(self) -> np.ndarray:
         """Which velocities are independent, shape (n_u,)."""
-        return self.u_leader == np.arange(len(self.u_leader))
+        return self.u_independent_of == np.arange(len(self.u_independent_of))
 
     def relation(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Leaders and ratios of the coordinates (``q``) or velocities (``u``)."""
-        return (self.leader, self.ratio) if name == "q" else (self.u_leader, self.u_ratio)
+        return (self.independent_of, self.ratio) if name == "q" else (self.u_independent_of, self.u_ratio)
 
     def state(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """The independent coordinates, then the independent velocities."""
@@ -56,7 +56,7 @@ class Coordinates:
 
     def offset(self, q: np.ndarray) -> np.ndarray:
         """The offsets of all coordinates, from a pose."""
-        return q - self.ratio * q[self.leader]  # the ratio of what stands still is zero
+        return q - self.ratio * q[self.independent_of]  # the ratio of what stands still is zero
 
 
 def all_independent(system: System) -> Coordinates:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .coordinates import STILL, Coordinates, all_independent
+from .coordinates import FIXED, Coordinates, all_independent
 from .formulation import Formulation
 from .machine.layout import EQUATIONS, packed
 from .system import System, Term
@@ -44,7 +44,7 @@ class Equations:
     ) -> None:  # fmt: skip
         self.formulation, self.system = formulation, system
         self.coordinates = coordinates or all_independent(system)
-        independent, solved_for = self.coordinates.independent, system.active & ~self.coordinates.fulfilled
+        independent, solved_for = self.coordinates.independent, system.active & ~self.coordinates.satisfied
         present = {
             "q": independent, "u": self.coordinates.independent_u,
             "mu": system.holonomic & solved_for, "lam": solved_for,
@@ -84,18 +84,18 @@ class Equations:
 
     def _led(self, name: str, rows: np.ndarray) -> np.ndarray:
         """How all coordinates or velocities move with the independent ones."""
-        leader, ratio = self.coordinates.relation(name)
+        independent_of, ratio = self.coordinates.relation(name)
         if not rows.shape[1]:  # nothing moves
-            return np.zeros((len(rows), len(leader)))
-        place = np.cumsum(leader == np.arange(len(leader))) - 1
-        return ratio * rows[:, np.where(leader == STILL, 0, place[leader])]
+            return np.zeros((len(rows), len(independent_of)))
+        place = np.cumsum(independent_of == np.arange(len(independent_of))) - 1
+        return ratio * rows[:, np.where(independent_of == FIXED, 0, place[independent_of])]
 
     def _carried(self, name: str, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where entries that belong to rows, columns or operands of a kind stand among the unknowns, and their factors."""
         if name not in ("q", "u"):
             return self.at[name][own], np.ones(len(own))
-        leader, ratio = self.coordinates.relation(name)
-        return np.where(leader[own] == STILL, ABSENT, self.at[name][leader[own]]), ratio[own]
+        independent_of, ratio = self.coordinates.relation(name)
+        return np.where(independent_of[own] == FIXED, ABSENT, self.at[name][independent_of[own]]), ratio[own]
 
     def _block(self, term_set: str, name: str, rows: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Source, row and column of a block's entries."""
@@ -186,8 +186,8 @@ class Equations:
         empty = np.zeros(1, dtype=np.int64)
         lists: dict[str, np.ndarray] = {}
         for name in ("q", "u"):
-            leader, _ = self.coordinates.relation(name)
-            moving = np.flatnonzero(leader != STILL) if name in self.at else empty[:0]
+            independent_of, _ = self.coordinates.relation(name)
+            moving = np.flatnonzero(independent_of != FIXED) if name in self.at else empty[:0]
             lists |= {
                 f"moving_{name}": moving,
                 f"{name}_from": self._carried(name, moving)[0] if len(moving) else empty,

@@ -35,18 +35,18 @@ WITHIN = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 
 
 def edges_of(system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The edges of all event functions, in the order of the values of the set ``switch``.
+    """The edges of all event functions, in the order of the values of the set ``event_function``.
 
     Returns
     -------
     first : ndarray of int, shape (n + 1,)
         Where the edges of each function begin among all.
     edges : ndarray
-        Increasing for each function; of a switch zero alone.
+        Increasing for each function; of an event function zero alone.
     period : ndarray, shape (n,)
         Of a law that repeats; 0 for others.
     """
-    found = [(np.zeros(1), 0.0)] * system.n_switches + list(_of_arguments(system))
+    found = [(np.zeros(1), 0.0)] * system.n_event_functions + list(_of_arguments(system))
     counts = [len(edges) for edges, _ in found]
     first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     return (

@@ -15,7 +15,7 @@ from .terms import TERM_AXES, TERM_SETS
 SETS = list(TERM_SETS)
 LEFT_OPEN = 1e-5
 """What redundant equations, which are left out, may be off by where the others hold: they are given by so many digits.
-In rad, and in m for mechanisms of 1 m and more; in parts of the size of smaller ones."""
+In rad, and in m for mechanisms of 1 m and more; relative to the size of smaller ones."""
 
 
 class State:

@@ -168,8 +168,8 @@ class System:
         return group.names[element]
 
     def beyond(self, limit: int) -> str:
-        """What is wrong where a limit is passed, a value of the set ``switch``."""
-        group, element = self._writer("switch", limit)
+        """What is wrong where a limit is passed, a value of the set ``event_function``."""
+        group, element = self._writer("event_function", limit)
         return f"'{group.names[element]}': {group.kind.element.beyond}"  # type: ignore[attr-defined]
 
     def _writer(self, term_set: str, at: int) -> tuple[Group, int]:
@@ -192,12 +192,12 @@ class System:
 
     @cached_property
     def first_limit(self) -> int:
-        """Where the limits of all forces begin among the values of the set ``switch``."""
-        return sum(group.count * group.entries("switch") for group in self.groups)
+        """Where the limits of all forces begin among the values of the set ``event_function``."""
+        return sum(group.count * group.entries("event_function") for group in self.groups)
 
     @cached_property
-    def n_switches(self) -> int:
-        """Number of switches and limits, which are the first values of the set ``switch``; arguments of laws follow."""
+    def n_event_functions(self) -> int:
+        """Number of event functions and limits, which are the first values of the set ``event_function``; arguments of laws follow."""
         return self.first_limit + sum(group.count * group.entries("limit") for group in self.groups)
 
     @cached_property

@@ -132,7 +132,7 @@ class Element(Described):
         """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
         yield from ()
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
         """Why the element cannot act where the bodies are drawn."""
         yield from ()
 
@@ -155,7 +155,7 @@ class Element(Described):
 
         return namesake(self, angles)
 
-    def as_drawn(self, model: ModelData) -> Self:
+    def at_initial_pose(self, model: ModelData) -> Self:
         """The element with what it leaves open taken from the bodies' described poses."""
         return self
 
@@ -248,8 +248,8 @@ class Force(Element):
         return 0
 
     @staticmethod
-    def switches(e: Symbolic) -> Any:
-        """Expressions that change their sign where the force has a corner in the state, such as a gap."""
+    def event_functions(e: Symbolic) -> Any:
+        """Expressions that change their sign where the force has a breakpoint in the state, such as a gap."""
         return ()
 
     @classmethod

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class DrawnMarker:
+class InitialMarker:
     """A marker with numbers, in ground axes: what `stiffmbs.compile.symbolic.planar_frames.Frame` is with symbols.
 
     Attributes
@@ -51,7 +51,7 @@ def drawn(element: Element, model: ModelData) -> Any:
 def _drawn(value: Any, model: ModelData) -> Any:
     match value:
         case MarkerReference():
-            return model.drawn_marker(value)
+            return model.initial_marker(value)
         case JointName():
             joint: Joint = model.joints[value.joint]
             e, name = drawn(joint, model), value.coordinate_of(joint)

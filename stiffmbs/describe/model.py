@@ -14,7 +14,7 @@ from .body import Body, BodyHandle
 from .element import Force, Joint
 from .forces.weight import weights
 from .given import Numbers
-from .initial_pose import DrawnMarker
+from .initial_pose import InitialMarker
 from .kinds import Kinds, any_of
 from .marker import GROUND, MarkerReference, Placement
 from .model_builder import ModelBuilder
@@ -53,14 +53,14 @@ class PlanarData(ModelData):
         """The bodies' weights."""
         return weights(bodies, self.gravity)
 
-    def drawn_marker(self, marker: MarkerReference) -> DrawnMarker:
+    def initial_marker(self, marker: MarkerReference) -> InitialMarker:
         """A marker with numbers, in ground axes, as the bodies are drawn."""
         placed = self.place(marker)
         if marker.body == GROUND:
-            return DrawnMarker(np.array(placed.point), placed.angle)
+            return InitialMarker(np.array(placed.point), placed.angle)
         (x, y), phi = self.bodies[marker.body].position, self.bodies[marker.body].angle
         (xi, eta), c, s = placed.point, math.cos(phi), math.sin(phi)
-        return DrawnMarker(np.array([x + c * xi - s * eta, y + s * xi + c * eta]), phi + placed.angle)
+        return InitialMarker(np.array([x + c * xi - s * eta, y + s * xi + c * eta]), phi + placed.angle)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
         """The body that carries a marker, and where it sits on it."""

@@ -108,7 +108,7 @@ class ModelData(Described):
         for where, element in placed.items():
             check_element(where, element, *known)
         for where, element in placed.items():  # which looks at all bodies and markers that elements name
-            for reason in element.misplaced(self):
+            for reason in element.invalid_placement(self):
                 raise ValueError(f"{where}: {reason}")
         self.check_requests()
         return self
@@ -133,7 +133,7 @@ class ModelData(Described):
         """The forces that bodies have by themselves, such as their weights, with the bodies' names."""
 
     @abstractmethod
-    def drawn_marker(self, marker: MarkerReference) -> Any:
+    def initial_marker(self, marker: MarkerReference) -> Any:
         """A marker with numbers, in ground axes, as the bodies are drawn."""
 
     @abstractmethod
@@ -142,14 +142,14 @@ class ModelData(Described):
 
     def elements(self) -> Iterator[tuple[str, Element]]:
         """Every joint, force, counter of turns and weight with its name (a weight has its body's)."""
-        yield from self.drawn_elements()
+        yield from self.elements_at_initial_pose()
         yield from self.angle_counters()
         yield from self.inertial(self.bodies)
 
-    def drawn_elements(self) -> Iterator[tuple[str, Element]]:
+    def elements_at_initial_pose(self) -> Iterator[tuple[str, Element]]:
         """Joints and forces with their names; what they leave open is taken from the described poses."""
         for name, element in (*self.joints.items(), *self.forces.items()):
-            yield name, element.as_drawn(self)
+            yield name, element.at_initial_pose(self)
 
     def size(self) -> float:
         """Diagonal of the box around all bodies and markers at the start, m; 1 where it is a single point."""
@@ -161,7 +161,7 @@ class ModelData(Described):
 
     def point(self, marker: MarkerReference) -> tuple[float, ...]:
         """Where a marker is in ground axes at the start, m."""
-        return tuple(float(x) for x in self.drawn_marker(marker).point)
+        return tuple(float(x) for x in self.initial_marker(marker).point)
 
     def at_one_place(self, i: MarkerReference, j: MarkerReference) -> bool:
         """Whether two markers are at one point at the start, to rounding: the line through them has no direction."""

@@ -138,7 +138,7 @@ def _lacks(element: Any) -> Iterator[str]:
         yield "found no law, expected a static method efforts(e) or powers(e)"
 
 
-STATIC = ("position", "velocity", "point", "loads", "efforts", "powers", "potential", "switches", "limits")
+STATIC = ("position", "velocity", "point", "loads", "efforts", "powers", "potential", "event_functions", "limits")
 """Functions of e alone."""
 
 

@@ -15,7 +15,7 @@ from .units import si
 MOST_OUTPUTS = 10_000_000
 """Output times of a run; a body and a joint take 2 GB at so many, in a temporary file."""
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
-"""Stretches of time that a run must be able to tell apart, and how long each must be, in parts of the times themselves."""
+"""Stretches of time that a run must be able to tell apart, and how long each must be, relative to the times themselves."""
 
 MANY = 1e300
 
@@ -38,7 +38,7 @@ class Settings(TypedDict, total=False):
     max_step: Number
     max_order: int | None
     presolve: bool
-    give_way: Sequence[str]
+    drop_first: Sequence[str]
 
 
 class RunSettings(Described):
@@ -78,7 +78,7 @@ class RunSettings(Described):
         damped vibration (`stiffmbs.solve.error_control.stability_limit`); with it the order is never held down.
     presolve : bool
         Whether the solver is given a smaller problem with the same results where the model allows it.
-    give_way : tuple of str
+    drop_first : tuple of str
         Joints whose equations are dropped first where the scene has redundant ones.
     """
 
@@ -107,7 +107,7 @@ class RunSettings(Described):
         None, description="highest order of bdf's formulas, 1 to 5; without it 5, and 2 for a while where that pays"
     )
     presolve: bool = Field(True, description="whether unknowns that others determine are left out of the solution")
-    give_way: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
+    drop_first: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
 
     if TYPE_CHECKING:
 

@@ -29,7 +29,7 @@ class Table(Described):
         Of the spline: ``natural`` (no curvature), ``clamped`` (no slope), ``periodic`` (first and last value alike),
         ``not-a-knot``.
     lines : bool
-        Straight lines in place of a spline; its points are corners.
+        Straight lines in place of a spline; its points are breakpoints.
     akima : bool
         Akima's cubics in place of a spline, each by the five points around it: no overshoot, and no continuous curvature.
         Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602 (Adams: AKISPL).

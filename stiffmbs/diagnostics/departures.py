@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.state import LEFT_OPEN
-from ..solve.mechanics import Mechanics
+from ..solve.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 
 SAMPLES, LEAST = 20, 4000
 """Poses to look at between two outputs, the second one included, and at least on the whole way."""
 BESIDE = 10.0
-"""Violations of equations left out, in parts of the largest of the others at a pose between outputs, that interpolation makes."""
+"""Violations of equations left out, relative to the largest of the others at a pose between outputs, that interpolation makes."""
 MOST_ASSEMBLIES = 500
 """Poses between outputs that are brought to the constraints."""
 
@@ -37,7 +37,7 @@ class Departure:
     row: int
 
 
-def departure(mechanics: Mechanics, rows: Sequence[int], way: Trajectory) -> Departure | None:
+def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Departure | None:
     """The first instant at which rows left out do not hold where the others do.
 
     Poses between outputs are interpolated; where rows left out are violated by more than that explains, the pose is brought to
@@ -45,19 +45,19 @@ def departure(mechanics: Mechanics, rows: Sequence[int], way: Trajectory) -> Dep
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         Its state is changed.
     rows : sequence of int
         Rows left out.
     way : Trajectory
     """
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     source, row = system.term("position", "C").source, system.term("position", "C").row
     place = np.empty(system.n_c, dtype=np.int64)
     place[row] = source
     left_out, kept = place[list(rows)], place[system.active & system.holonomic]
     allowed, assemblies = LEFT_OPEN * min(1.0, system.size), 0
-    for output, t, q in _poses(mechanics, way):
+    for output, t, q in _poses(dynamics, way):
         state.q[:] = q
         state.count_anew(t)
         state.evaluate("position", t)
@@ -66,16 +66,16 @@ def departure(mechanics: Mechanics, rows: Sequence[int], way: Trajectory) -> Dep
         if not gaps.max() > allowed + BESIDE * values[kept].max(initial=0.0):
             continue
         assemblies += 1
-        if mechanics.assemble(t) < 0:
+        if dynamics.assemble(t) < 0:
             return Departure(output, t, rows[int(np.argmax(gaps))])
         if assemblies == MOST_ASSEMBLIES:
             return None
     return None
 
 
-def _poses(mechanics: Mechanics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
+def _poses(dynamics: Dynamics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
     """The outputs, and poses between them on cubics that have their velocities: the output before, the time, s, and the pose."""
-    of_body, bodies = mechanics.system.of_body, mechanics.system.of_body.n_q * len(mechanics.system.bodies)
+    of_body, bodies = dynamics.system.of_body, dynamics.system.of_body.n_q * len(dynamics.system.bodies)
     count = max(SAMPLES, LEAST // len(way.t))
     parts = np.arange(1, count + 1) / count
     for k in range(len(way.t) - 1):

@@ -9,8 +9,8 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.settings import RunSettings
+from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.divergence import BEYOND, LIGHT, exponential, reaches
-from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.settings import near_constraints
 from ..solve.storage import blocks, release
 
@@ -20,22 +20,22 @@ OPEN, DRIFTED = 1e-6, 1e-2
 """Parts of the mechanism's size by which a joint may be open: on the constraints, and where drift is shown as it is."""
 
 
-def senseless(mechanics: Mechanics, rows: OutputRows, settings: RunSettings) -> Iterator[str]:
+def senseless(dynamics: Dynamics, rows: OutputRows, settings: RunSettings) -> Iterator[str]:
     """What no motion of the scene can be, a sentence each.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         Of the whole; its state is changed.
     rows : OutputRows
         Of the run.
     settings : RunSettings
     """
     with np.errstate(all="ignore"):
-        grown = _grown(mechanics.system, rows)
+        grown = _grown(dynamics.system, rows)
         if grown:
             yield grown
-        open_joint = _open_joint(mechanics, rows, settings)
+        open_joint = _open_joint(dynamics, rows, settings)
         if open_joint:
             yield open_joint
 
@@ -105,16 +105,16 @@ def _strongest(system: System, rows: OutputRows, row: int) -> str:
     return f" ('{name.rpartition('.')[0]}' acts with {acting[name]:.3g} {unit} there)"
 
 
-def _open_joint(mechanics: Mechanics, rows: OutputRows, settings: RunSettings) -> str:
+def _open_joint(dynamics: Dynamics, rows: OutputRows, settings: RunSettings) -> str:
     """A sentence on a joint that is open; empty where none is."""
-    system, violation = mechanics.system, rows.position_violation
+    system, violation = dynamics.system, rows.position_violation
     if not system.n_c or np.isnan(violation).all():
         return ""
     allowed = (OPEN if near_constraints(settings) else DRIFTED) * max(system.size, 1e-3)
     worst = int(np.nanargmax(violation))
     if violation[worst] <= allowed:
         return ""
-    state = mechanics.state
+    state = dynamics.state
     state.q[:], state.u[:] = rows.q[worst], rows.u[worst]
     state.evaluate("motion", rows.t[worst])
     gaps = np.abs(state.vector("motion", "C"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compile.system import System
-from ..solve.mechanics import Mechanics
+from ..solve.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 from ..structure.overconstraint import listed
 from ..structure.redundancy import Redundancy
@@ -12,16 +12,16 @@ from .departures import Departure, departure
 from .unfollowed import Unfollowed, unfollowed
 
 
-def locked(mechanics: Mechanics, redundancy: Redundancy, way: Trajectory) -> tuple[int, str] | None:
+def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple[int, str] | None:
     """How many outputs are sound, at least the start, and a sentence on what does not hold after them; None where all are."""
-    velocity = unfollowed(mechanics, way)
+    velocity = unfollowed(dynamics, way)
     if velocity is not None:
-        return max(1, velocity.output), _unfollowed_sentence(mechanics.system, way, velocity)
+        return max(1, velocity.output), _unfollowed_sentence(dynamics.system, way, velocity)
     others = unproven(redundancy)
-    rows = tuple(row for row in others if mechanics.system.holonomic[row])
-    position = departure(mechanics, rows, way) if rows else None
+    rows = tuple(row for row in others if dynamics.system.holonomic[row])
+    position = departure(dynamics, rows, way) if rows else None
     if position is not None:
-        return position.output + 1, _departure_sentence(mechanics.system, position, others[position.row])
+        return position.output + 1, _departure_sentence(dynamics.system, position, others[position.row])
     return None
 
 

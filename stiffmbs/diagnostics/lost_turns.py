@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..solve.mechanics import Mechanics, OutputRows
+from ..solve.dynamics import Dynamics, OutputRows
 
 APART = 1.0
 """Angle between an orientation and the integral of its rate, rad, from which on the turn is not certain: half a turn changes it."""
@@ -14,17 +14,17 @@ MOST = 2000
 """Instants that are looked at."""
 
 
-def lost_turns_sentence(mechanics: Mechanics, rows: OutputRows) -> Iterator[str]:
+def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     """The angle that is furthest from the counter of its turns, in a sentence; nothing where all are near.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         Of the whole; its state is changed.
     rows : OutputRows
         Of the run.
     """
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     counted = system.term("position", "counted")
     solved = np.flatnonzero(~np.isnan(rows.position_violation))
     if not system.n_counters or not len(solved):

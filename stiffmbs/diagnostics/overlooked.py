@@ -17,8 +17,8 @@ from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.settings import RunSettings
 from ..results.energy_balance_notes import within_steps
+from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
-from ..solve.mechanics import OutputRows
 from .laws import has_law, has_laws
 
 TOLERANCES = 3e5

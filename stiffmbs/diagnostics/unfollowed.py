@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..solve.mechanics import Mechanics
+from ..solve.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 
 PART, LEAST = 1e-2, 1e-3
-"""Violation of a velocity equation, in parts of its summands and at least in m/s or rad/s, that no tolerance explains."""
+"""Violation of a velocity equation, relative to its summands and at least in m/s or rad/s, that no tolerance explains."""
 MOST_OUTPUTS = 200
 """Outputs to look at: a mechanism that has locked does not follow its drive afterwards either."""
 
@@ -33,7 +33,7 @@ class Unfollowed:
     gap: float
 
 
-def unfollowed(mechanics: Mechanics, way: Trajectory) -> Unfollowed | None:
+def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
     """The first output at which an equation without a position form does not hold.
 
     The relaxed formulation lets velocities creep where multipliers grow without bound; equations with a position form cannot
@@ -41,25 +41,25 @@ def unfollowed(mechanics: Mechanics, way: Trajectory) -> Unfollowed | None:
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         Its state is changed.
     way : Trajectory
         As integrated.
     """
-    rows = np.flatnonzero(mechanics.system.active & ~mechanics.system.holonomic)
+    rows = np.flatnonzero(dynamics.system.active & ~dynamics.system.holonomic)
     if not len(rows):
         return None
     last = 0
     for output in np.unique(np.linspace(0, len(way.t) - 1, MOST_OUTPUTS).astype(int)).tolist():
-        if _worst(mechanics, rows, way, output):
-            return next(found for k in range(last, output + 1) if (found := _worst(mechanics, rows, way, k)))
+        if _worst(dynamics, rows, way, output):
+            return next(found for k in range(last, output + 1) if (found := _worst(dynamics, rows, way, k)))
         last = output
     return None
 
 
-def _worst(mechanics: Mechanics, rows: np.ndarray, way: Trajectory, output: int) -> Unfollowed | None:
+def _worst(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, output: int) -> Unfollowed | None:
     """Of some equations that which is off most at an output, if by too much."""
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     V, J = system.term("motion", "V"), system.term("motion", "J")
     u = way.u[output]
     state.q[:], state.u[:] = way.q[output], u

@@ -10,8 +10,8 @@ import numpy as np
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from ..solve.dynamics import Dynamics
 from ..solve.failures import FAILURES
-from ..solve.mechanics import Mechanics
 from ..structure.redundancy import Redundancy
 from .run import Runnable, prepare
 
@@ -24,7 +24,7 @@ class AtState:
     ----------
     data : ModelData
     redundancy : Redundancy
-    mechanics : Mechanics
+    dynamics : Dynamics
         Its state has q, u and lam.
     t : float
         s.
@@ -33,7 +33,7 @@ class AtState:
 
     data: ModelData
     redundancy: Redundancy
-    mechanics: Mechanics
+    dynamics: Dynamics
     t: float
     acceleration: np.ndarray
 
@@ -59,18 +59,18 @@ def at_state(model: Runnable, settings: RunSettings | None = None, at: float | N
     """
     job = prepare(model, settings, **changes)
     t = job.grid.start
-    state = job.mechanics.state
+    state = job.dynamics.state
     state.q[:], state.u[:] = job.start.q, job.start.u
     if at is not None and at != t:
         job = prepare(model, settings, **{**changes, "duration": at - t, "points": 2})
         trajectory = job.integrate()
         if not np.isclose(trajectory.t[-1], at):
             raise SolverError(f"no state was found at t = {at:g} s: {trajectory.message}")
-        t, state = at, job.mechanics.state
+        t, state = at, job.dynamics.state
         state.q[:], state.u[:] = trajectory.q[-1], trajectory.u[-1]
-        job.mechanics.assemble(t)
-        job.mechanics.correct_velocities(t)
-    status, acceleration = job.mechanics.accelerate(t)
+        job.dynamics.assemble(t)
+        job.dynamics.correct_velocities(t)
+    status, acceleration = job.dynamics.accelerate(t)
     if status < 0:
         raise SolverError(f"no accelerations were found at t = {t:g} s: {FAILURES[status]}")
-    return AtState(job.data, job.redundancy, job.mechanics, t, acceleration)
+    return AtState(job.data, job.redundancy, job.dynamics, t, acceleration)

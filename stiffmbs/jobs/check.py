@@ -12,17 +12,17 @@ from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, SolverError
 from ..solve.initial import InitialValues, initial_values
 from ..solve.moves import Move
-from ..solve.subsystems import Piece
-from ..structure.idle_freedoms import OwnFreedom, own_freedoms
-from ..structure.overconstraint import Overconstraint, listed, overconstraints
-from ..structure.told.redundancy import (
-    contradiction_sentences,
+from ..solve.subsystems import Subsystem
+from ..structure.idle_freedoms import IdleFreedom, idle_freedoms
+from ..structure.messages.redundancy import (
+    inconsistency_sentences,
     known_near_start,
     overconstraint_sentences,
     pose_sentences,
     singular_sentence,
 )
-from ..structure.told.unconnected import unconnected_sentence
+from ..structure.messages.unconnected import unconnected_sentence
+from ..structure.overconstraint import Overconstraint, listed, overconstraints
 from .presolve_report import presolve_sentences, unknowns
 from .run import Examined, Runnable, examined, presolved
 
@@ -48,7 +48,7 @@ class Report:
         Channels of reactions that have no unique value.
     overconstraints : tuple of Overconstraint
         What is held more than once, with reasons and remedies.
-    contradictions : tuple of str
+    inconsistencies : tuple of str
         Sentences on equations that no motion satisfies.
     extra_freedoms : int
         Degrees of freedom at the start beyond those in general: more than 0 at a singular pose.
@@ -71,7 +71,7 @@ class Report:
     redundant: tuple[tuple[str, str], ...]
     not_unique: tuple[str, ...]
     overconstraints: tuple[Overconstraint, ...]
-    contradictions: tuple[str, ...]
+    inconsistencies: tuple[str, ...]
     extra_freedoms: int
     unknowns: tuple[int, int]
     presolve: tuple[str, ...]
@@ -109,7 +109,7 @@ class Report:
             f"{self.rank}, {self.unknowns[0]} unknowns"
         )
         presolve = [f"presolve: {sentence}" for sentence in self.presolve]
-        return "\n".join([head, *presolve, *(f"- {message}" for message in self.messages or ("nothing to object to",))])
+        return "\n".join([head, *presolve, *(f"- {message}" for message in self.messages or ("no problems found",))])
 
 
 @takes_settings
@@ -121,7 +121,7 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
     settings : RunSettings, optional
-        Whose ``give_way``, ``start`` and ``duration`` are used; the scene's own by default.
+        Whose ``drop_first``, ``start`` and ``duration`` are used; the scene's own by default.
     **changes
         Fields of the settings to change.
 
@@ -137,7 +137,7 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
     found = examined(model, settings, **changes)
     redundancy, system = found.redundancy, found.redundancy.system
     cases = tuple(overconstraints(redundancy))
-    against = tuple(contradiction_sentences(redundancy))
+    against = tuple(inconsistency_sentences(redundancy))
     held_twice = (
         []
         if against
@@ -149,21 +149,21 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
     )
     problems = [*against, *held_twice]
     problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
-    mechanics, pieces, free = found.mechanics(), tuple[Piece, ...](), list[OwnFreedom]()
+    dynamics, subsystems, free = found.dynamics(), tuple[Subsystem, ...](), list[IdleFreedom]()
     start: InitialValues | None = None
     if not against:
         try:
-            start = initial_values(mechanics, found.grid.start)
-            free = own_freedoms(mechanics, found.grid.start)
-            pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
+            start = initial_values(dynamics, found.grid.start)
+            free = idle_freedoms(dynamics, found.grid.start)
+            subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
             problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
         except (AssemblyError, SolverError) as error:
             problems += [] if redundancy.extra_freedoms else [str(error)]
     return Report(
         name=found.data.name, degrees_of_freedom=redundancy.degrees_of_freedom, equations=system.n_c,
         rank=redundancy.rank, redundant=redundancy.redundant, not_unique=redundancy.not_unique, overconstraints=cases,
-        contradictions=against, extra_freedoms=redundancy.extra_freedoms,
-        unknowns=unknowns(system, pieces, mechanics), presolve=tuple(presolve_sentences(system, pieces, mechanics)),
+        inconsistencies=against, extra_freedoms=redundancy.extra_freedoms,
+        unknowns=unknowns(system, subsystems, dynamics), presolve=tuple(presolve_sentences(system, subsystems, dynamics)),
         moved=start.moved if start else (),
         messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
     )  # fmt: skip
@@ -175,15 +175,15 @@ def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
         yield sentence
 
 
-def _freedom_sentences(found: Examined, system: System, free: Sequence[OwnFreedom]) -> Iterator[str]:
+def _freedom_sentences(found: Examined, system: System, free: Sequence[IdleFreedom]) -> Iterator[str]:
     if found.redundancy.degrees_of_freedom == 0:
         yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
     for freedom in free:
-        yield _own_freedom_sentence(freedom)
+        yield _idle_freedom_sentence(freedom)
     yield from unconnected_sentence(system)
 
 
-def _own_freedom_sentence(freedom: OwnFreedom) -> str:
+def _idle_freedom_sentence(freedom: IdleFreedom) -> str:
     body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
     if not freedom.held_by:
         return f"{body} can {motion} by itself between {between}, which moves no other body"

@@ -93,11 +93,11 @@ def equilibrium(model: Runnable, settings: RunSettings | None = None, **changes:
     if isinstance(data, Scene):
         data = data.model_copy(update={"start": "described"})
     job = prepare(data, settings, **changes)
-    found = settled(job.mechanics, job.start, job.grid.start)
-    rows = job.mechanics.report(np.array([job.grid.start]), found.start.q[None], found.start.u[None], project=False)
-    channels = channels_of(job.data, job.mechanics.system, rows)
+    found = settled(job.dynamics, job.start, job.grid.start)
+    rows = job.dynamics.report(np.array([job.grid.start]), found.start.q[None], found.start.u[None], project=False)
+    channels = channels_of(job.data, job.dynamics.system, rows)
     kept = {name: float(values[0]) for name, values in channels.items()}
-    system = job.mechanics.system
+    system = job.dynamics.system
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
     moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))

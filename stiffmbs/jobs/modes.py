@@ -90,9 +90,9 @@ def modes(
         Where no motion leads to that instant, or a free motion has no mass.
     """
     found = at_state(model, settings, at, **changes)
-    system = found.mechanics.system
+    system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
-    linear = linearised(found.mechanics, found.t, found.acceleration)
+    linear = linearised(found.dynamics, found.t, found.acceleration)
     state = state_matrix(linear, scale)
     shapes = tuple(natural_modes(state, linear.mass, system.bodies, scale))
     notes = tuple(_notes(found, state))
@@ -100,7 +100,7 @@ def modes(
 
 
 def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
-    system = found.mechanics.system
+    system = found.dynamics.system
     sizes = np.abs(found.acceleration) * system.per_velocity(1.0, system.size)
     if sizes.size and sizes.max() > AT_REST * (float(np.linalg.norm(found.data.gravity)) or 1.0):
         most = int(np.argmax(sizes))

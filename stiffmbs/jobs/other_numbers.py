@@ -48,9 +48,9 @@ def with_numbers(job: Job, name: str, **numbers: float) -> Job:
                 )
     changed = type(force)(**{**{field: getattr(force, field) for field in force.model_fields_set}, **numbers})
     data = job.data.model_copy(update={"forces": {**job.data.forces, name: changed}})
-    if job.pieces:  # the presolve's mechanisms hold the force in a form of their own
+    if job.subsystems:  # the presolve's mechanisms hold the force in a form of their own
         return prepare(data, job.settings)
-    write_numbers(job.mechanics.system, name, changed.as_drawn(data), data)
-    job.mechanics.forget_pivots()  # so that the start does not depend on earlier runs
-    start = restarted(job.mechanics, job.grid.start, job.start.q, job.start.u, project=False)
+    write_numbers(job.dynamics.system, name, changed.at_initial_pose(data), data)
+    job.dynamics.forget_pivots()  # so that the start does not depend on earlier runs
+    start = restarted(job.dynamics, job.grid.start, job.start.q, job.start.u, project=False)
     return replace(job, data=data, start=start)

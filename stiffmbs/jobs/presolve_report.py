@@ -7,61 +7,61 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..compile.coordinates import STILL, Coordinates
+from ..compile.coordinates import FIXED, Coordinates
 from ..compile.system import System
-from ..solve.mechanics import Mechanics
-from ..solve.subsystems import Piece
+from ..solve.dynamics import Dynamics
+from ..solve.subsystems import Subsystem
 from ..structure.overconstraint import listed
 
 
-def unknowns(whole: System, pieces: Sequence[Piece], mechanics: Mechanics) -> tuple[int, int]:
+def unknowns(whole: System, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> tuple[int, int]:
     """Unknowns of the formulation SI2 (q, u, mu, lam): of all bodies and equations, and of what is solved for."""
     everything = whole.n_q + whole.n_u + int(whole.holonomic.sum()) + whole.n_c
-    solved = [piece.mechanics for piece in pieces] or [mechanics]
+    solved = [subsystem.dynamics for subsystem in subsystems] or [dynamics]
     return everything, sum(map(_solved_for, solved))
 
 
-def _solved_for(mechanics: Mechanics) -> int:
-    system, coordinates = mechanics.system, mechanics.coordinates
-    rows = system.active & ~coordinates.fulfilled
+def _solved_for(dynamics: Dynamics) -> int:
+    system, coordinates = dynamics.system, dynamics.coordinates
+    rows = system.active & ~coordinates.satisfied
     free = int(coordinates.independent.sum()) + int(coordinates.independent_u.sum())
     return free + int((system.holonomic & rows).sum()) + int(rows.sum())
 
 
-def presolve_sentences(whole: System, pieces: Sequence[Piece], mechanics: Mechanics) -> Iterator[str]:
+def presolve_sentences(whole: System, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> Iterator[str]:
     """A sentence for each thing that is left out; nothing where all is solved for."""
-    redundant = np.flatnonzero(~mechanics.system.active).tolist()
+    redundant = np.flatnonzero(~dynamics.system.active).tolist()
     if redundant:
         yield f"redundant equations left out: {listed([_equation(whole, row) for row in redundant])}"
-    for piece in pieces:
-        yield from _merged(whole, piece)
-    for part in [piece.mechanics for piece in pieces] or [mechanics]:
+    for subsystem in subsystems:
+        yield from _merged(whole, subsystem)
+    for part in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
         yield from _left_out(part)
-    if len(pieces) > 1:
-        inside = [listed([whole.bodies[k] for k in piece.part.bodies]) for piece in pieces]
-        yield f"{len(pieces)} independent mechanisms solved apart: {'; '.join(inside)}"
-    before, after = unknowns(whole, pieces, mechanics)
+    if len(subsystems) > 1:
+        inside = [listed([whole.bodies[k] for k in subsystem.part.bodies]) for subsystem in subsystems]
+        yield f"{len(subsystems)} independent mechanisms solved apart: {'; '.join(inside)}"
+    before, after = unknowns(whole, subsystems, dynamics)
     if after != before:
         yield f"{before} unknowns become {after}"
 
 
-def _merged(whole: System, piece: Piece) -> Iterator[str]:
-    for carrier, count in Counter(piece.part.carrier.tolist()).items():
+def _merged(whole: System, subsystem: Subsystem) -> Iterator[str]:
+    for parent, count in Counter(subsystem.part.parent.tolist()).items():
         if count > 1:
-            names = [whole.bodies[k] for k in piece.part.bodies[piece.part.carrier == carrier]]
+            names = [whole.bodies[k] for k in subsystem.part.bodies[subsystem.part.parent == parent]]
             yield f"fixed joints make one body of {listed(names)}"
 
 
-def _left_out(mechanics: Mechanics) -> Iterator[str]:
-    system, coordinates = mechanics.system, mechanics.coordinates
-    still = np.flatnonzero(coordinates.leader == STILL).tolist()
+def _left_out(dynamics: Dynamics) -> Iterator[str]:
+    system, coordinates = dynamics.system, dynamics.coordinates
+    still = np.flatnonzero(coordinates.independent_of == FIXED).tolist()
     if still:
         names = list(dict.fromkeys(_coordinate(system, k) for k in still))
         yield f"held still by constant equations: {listed(names)}"
-    tied = np.flatnonzero((coordinates.leader != STILL) & ~coordinates.independent).tolist()
+    tied = np.flatnonzero((coordinates.independent_of != FIXED) & ~coordinates.independent).tolist()
     if tied:
         yield f"tied in a constant ratio: {listed([_tie(system, coordinates, k) for k in tied])}"
-    rows = np.flatnonzero(coordinates.fulfilled).tolist()
+    rows = np.flatnonzero(coordinates.satisfied).tolist()
     if rows:
         yield f"their multipliers are computed afterwards: {listed([_equation(system, row) for row in rows])}"
 
@@ -75,7 +75,9 @@ def _coordinate(system: System, k: int) -> str:
 
 
 def _tie(system: System, coordinates: Coordinates, k: int) -> str:
-    return f"{_coordinate(system, k)} ({coordinates.ratio[k]:.6g} of {_coordinate(system, coordinates.leader[k])})"
+    return (
+        f"{_coordinate(system, k)} ({coordinates.ratio[k]:.6g} of {_coordinate(system, coordinates.independent_of[k])})"
+    )
 
 
 def _equation(system: System, row: int) -> str:

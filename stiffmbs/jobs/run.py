@@ -28,17 +28,17 @@ from ..results.missing_rows import reported
 from ..results.solution import Solution
 from ..results.undefined_values import no_number_sentences
 from ..solve import SOLVERS, traits_of
+from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, initial_values
-from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
 from ..solve.storage import blocks, release
-from ..solve.subsystems import Piece, leave_out_coordinates, piece_of, solve_pieces
+from ..solve.subsystems import Subsystem, leave_out_coordinates, solve_subsystems, subsystem_of
 from ..solve.suspect import suspect
-from ..solve.trajectory import Grid, Outcome, Trajectory, Watch
+from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory
+from ..structure.messages.unconnected import unconnected_sentence
 from ..structure.redundancy import Redundancy, examine
-from ..structure.told.unconnected import unconnected_sentence
 from .load_scene import load_scene
 from .presolve_report import presolve_sentences
 from .python_faults import told_faults, up_to_a_fault
@@ -55,10 +55,10 @@ class Examined:
     grid: Grid
     redundancy: Redundancy
 
-    def mechanics(self) -> Mechanics:
+    def dynamics(self) -> Dynamics:
         """Of the system without its redundant equations."""
         system = self.redundancy.system
-        return Mechanics(replace(system, active=self.redundancy.active) if self.redundancy.redundant else system)
+        return Dynamics(replace(system, active=self.redundancy.active) if self.redundancy.redundant else system)
 
 
 @dataclass(frozen=True)
@@ -69,20 +69,20 @@ class Job:
     settings: RunSettings
     grid: Grid
     redundancy: Redundancy
-    mechanics: Mechanics
+    dynamics: Dynamics
     start: InitialValues
-    pieces: tuple[Piece, ...] = ()
+    subsystems: tuple[Subsystem, ...] = ()
 
-    def integrate(self, watch: Watch | None = None) -> Trajectory:
+    def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver].solve, watch or (lambda t: None)
 
         def over(grid: Grid) -> Trajectory:
-            if self.pieces:
-                return solve_pieces(solve, self.pieces, self.start, grid, self.settings, watch)
-            return solve(self.mechanics, self.start, grid, self.settings, watch)
+            if self.subsystems:
+                return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
+            return solve(self.dynamics, self.start, grid, self.settings, watch)
 
-        return solve_up_to_the_inputs_end(self.mechanics, self.grid, over)
+        return solve_up_to_the_inputs_end(self.dynamics, self.grid, over)
 
 
 Runnable: TypeAlias = ModelBuilder[Any, Any, Any] | ModelData | str | Path
@@ -111,24 +111,24 @@ def data_of(model: Runnable) -> ModelData:
 def prepare(model: Runnable, settings: RunSettings | None = None, **changes: Any) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
     found = examined(model, settings, **changes)
-    if found.redundancy.findings:
-        from ..structure.told.redundancy import refuse_contradictions
+    if found.redundancy.rank_results:
+        from ..structure.messages.redundancy import refuse_inconsistencies
 
-        refuse_contradictions(found.redundancy)
-    mechanics = found.mechanics()
-    with told_faults(mechanics.system):
-        start = initial_values(mechanics, found.grid.start)
+        refuse_inconsistencies(found.redundancy)
+    dynamics = found.dynamics()
+    with told_faults(dynamics.system):
+        start = initial_values(dynamics, found.grid.start)
         if isinstance(found.data, Scene) and found.data.start == "equilibrium":
             from .settled import settled
 
-            start = settled(mechanics, start, found.grid.start).start
-        pieces = presolved(found.data, mechanics, start, found.grid, found.settings)
-    return Job(found.data, found.settings, found.grid, found.redundancy, mechanics, start, pieces)
+            start = settled(dynamics, start, found.grid.start).start
+        subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+    return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems)
 
 
 def presolved(
-    model: ModelData, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
-) -> tuple[Piece, ...]:
+    model: ModelData, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
+) -> tuple[Subsystem, ...]:
     """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
 
     For implicit steps their mechanics, or those of the whole, then leave out coordinates that others determine.
@@ -136,7 +136,7 @@ def presolved(
     Parameters
     ----------
     model : ModelData
-    mechanics : Mechanics
+    dynamics : Dynamics
         Of the whole, at its start.
     start : InitialValues
     grid : Grid
@@ -144,22 +144,22 @@ def presolved(
     """
     if not may_presolve(settings):
         return ()
-    parts = parts_of(model, mechanics.system, apart=grid.times is not None)
-    pieces = tuple(piece_of(part, start, grid.start) for part in parts)
+    parts = parts_of(model, dynamics.system, apart=grid.times is not None)
+    subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
     if traits_of(settings).implicit:
-        for solved in [piece.mechanics for piece in pieces] or [mechanics]:
+        for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
             leave_out_coordinates(solved, grid.start)
-    return pieces
+    return subsystems
 
 
 def examined(model: Runnable, settings: RunSettings | None = None, **changes: Any) -> Examined:
     """Compile a model and look for redundant equations; parameters and errors as for `run`."""
     data = data_of(model)
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
-    for name in chosen.give_way:
+    for name in chosen.drop_first:
         if name not in data.joints:
-            raise InputError(f"give_way: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
-    order = [*(name for name in data.joints if name not in chosen.give_way), *chosen.give_way]
+            raise InputError(f"drop_first: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
+    order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
     grid = output_grid(chosen)
     refuse_far_away(data)
     system = compile_model(data)
@@ -169,7 +169,10 @@ def examined(model: Runnable, settings: RunSettings | None = None, **changes: An
 
 @takes_settings
 def run(
-    model: Runnable, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Unpack[Settings]
+    model: Runnable,
+    settings: RunSettings | None = None,
+    watch: ProgressCallback | None = None,
+    **changes: Unpack[Settings],
 ) -> Solution:
     """Solve a model.
 
@@ -200,7 +203,7 @@ def run(
 
 
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
-def solved(job: Job, watch: Watch | None = None) -> Solution:
+def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
     computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
     trajectory, rows = computed.trajectory, computed.rows
@@ -210,37 +213,37 @@ def solved(job: Job, watch: Watch | None = None) -> Solution:
     if near_constraints(job.settings):
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
-    system, channels = job.mechanics.system, channels_of(job.data, job.mechanics.system, rows)
+    system, channels = job.dynamics.system, channels_of(job.data, job.dynamics.system, rows)
     energies = channels["energy.kinetic"], channels["energy.potential"]
     balance = energy_balance(system, rows.t, *energies, rows.values, trajectory.step_times)
-    wrong = tuple(senseless(job.mechanics, rows, job.settings))
+    wrong = tuple(senseless(job.dynamics, rows, job.settings))
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
     known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
-    wrong = (*wrong, *lost_turns_sentence(job.mechanics, rows), *no_number_sentences(rows.t[solved_there], known))
+    wrong = (*wrong, *lost_turns_sentence(job.dynamics, rows), *no_number_sentences(rows.t[solved_there], known))
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
-        presolve=tuple(presolve_sentences(job.mechanics.system, job.pieces, job.mechanics)),
+        presolve=tuple(presolve_sentences(job.dynamics.system, job.subsystems, job.dynamics)),
     )  # fmt: skip
 
 
-def _computed(job: Job, watch: Watch | None) -> Computed:
+def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and report it."""
-    trajectory = _sound_part(job, up_to_a_fault(job.mechanics.system, job.integrate(watch)))
-    return Computed(trajectory, *reported(job.mechanics, trajectory, near_constraints(job.settings)))
+    trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
+    return Computed(trajectory, *reported(job.dynamics, trajectory, near_constraints(job.settings)))
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
     """A trajectory up to where a mechanism locks, for equations that were left out, or for prescribed velocities."""
-    system = job.mechanics.system
+    system = job.dynamics.system
     if not job.redundancy.redundant and system.holonomic.all():
         return trajectory
     from ..diagnostics.locked import locked
 
-    found = locked(job.mechanics, job.redundancy, trajectory)
+    found = locked(job.dynamics, job.redundancy, trajectory)
     if found is None:
         return trajectory
     outputs, sentence = found
@@ -266,23 +269,23 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
         return trajectory.outcome, trajectory.message
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
     sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
-    fault = fault_of(job.mechanics.system)
+    fault = fault_of(job.dynamics.system)
     if fault:
         return Outcome.STOPPED, f"{sentence}; {fault.clause}"
-    return Outcome.STOPPED, sentence + suspect(job.mechanics, t, q, u)
+    return Outcome.STOPPED, sentence + suspect(job.dynamics, t, q, u)
 
 
 def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
     yield from notes_of(job.data)
-    if job.redundancy.findings:
-        from ..structure.told.redundancy import note_sentences
+    if job.redundancy.rank_results:
+        from ..structure.messages.redundancy import note_sentences
 
         yield from note_sentences(job.redundancy)
-    yield from unconnected_sentence(job.mechanics.system)
+    yield from unconnected_sentence(job.dynamics.system)
     yield from job.start.notes
-    yield from notes_on_functions(job.mechanics.system)
+    yield from notes_on_functions(job.dynamics.system)
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    yield from settings_notes(job.settings, job.mechanics.system)
+    yield from settings_notes(job.settings, job.dynamics.system)

@@ -14,9 +14,9 @@ def settings_notes(settings: RunSettings, system: System) -> Iterator[str]:
     """Settings that were given and have no effect, and events that the steps may pass over."""
     traits = traits_of(settings)
     yield from _ignored(settings, traits)
-    if not traits.locates_events and system.n_values("switch"):
+    if not traits.locates_events and system.n_values("event_function"):
         yield (
-            f"{traits.name} does not locate the corners that forces have in the state (contacts, step, abs, tables), and a step of "
+            f"{traits.name} does not locate the breakpoints that forces have in the state (contacts, step, abs, tables), and a step of "
             f"{settings.step:g} s may pass over them; dopri5, dop853 and bdf see them"
         )
 

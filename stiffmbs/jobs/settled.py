@@ -10,9 +10,9 @@ import numpy as np
 from ..errors import SolverError
 from ..linear_analysis.state_space import null_space
 from ..linear_analysis.tangent_space import linearised
+from ..solve.dynamics import Dynamics
 from ..solve.equilibrium import Equilibrium, find_equilibrium
 from ..solve.initial import InitialValues
-from ..solve.mechanics import Mechanics
 
 MOST_FOR_STABILITY = 1500
 """Velocities up to which the stability of an equilibrium is looked at (dense matrices)."""
@@ -47,30 +47,30 @@ class Settled:
     notes: tuple[str, ...]
 
 
-def settled(mechanics: Mechanics, start: InitialValues, t: float) -> Settled:
+def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     """A stable equilibrium, with notes on unstable ones on the way, and what is free to move in it.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
     start : InitialValues
         The pose from which it is sought.
     t : float
         s.
     """
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.q[:] = start.q
-    found = find_equilibrium(mechanics, t)
+    found = find_equilibrium(dynamics, t)
     if system.n_u > MOST_FOR_STABILITY:
         return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
     notes: list[str] = []
     for _ in range(MOST_BRANCHES):
-        unstable, free = _directions(mechanics, t)
+        unstable, free = _directions(dynamics, t)
         if unstable is None:
             held = f"nothing holds {', '.join(free)}: the pose along it is the one nearest to the described one"
             return _settled(found, start, [*notes, *([held] if free else [])], free)
-        poses = [_branch(mechanics, found, sign * unstable, t) for sign in (1.0, -1.0)]
-        notes.append(_branch_sentence(mechanics, unstable, poses))
+        poses = [_branch(dynamics, found, sign * unstable, t) for sign in (1.0, -1.0)]
+        notes.append(_branch_sentence(dynamics, unstable, poses))
         if not any(poses):
             return _settled(found, start, notes)
         found = next(pose for pose in poses if pose is not None)
@@ -84,12 +84,12 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
     return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
 
 
-def _directions(mechanics: Mechanics, t: float) -> tuple[np.ndarray | None, list[str]]:
+def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[str]]:
     """The most unstable direction at an equilibrium (as velocities), and the names of what is free."""
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.u[:] = 0.0
-    _, acceleration = mechanics.accelerate(t)
-    linear = linearised(mechanics, t, acceleration)
+    _, acceleration = dynamics.accelerate(t)
+    linear = linearised(dynamics, t, acceleration)
     scale = system.per_velocity(system.size, 1.0)
     free = null_space(linear.velocity * scale) * scale[:, None]
     if not free.shape[1]:
@@ -103,26 +103,26 @@ def _directions(mechanics: Mechanics, t: float) -> tuple[np.ndarray | None, list
         shape = shapes[:, worst] / np.max(np.abs(shapes[:, worst] / scale))
         return linear.own_axes @ shape, []
     loose = np.flatnonzero(np.abs(values) <= FREE * largest) if largest else range(len(values))
-    return None, list(dict.fromkeys(_name(mechanics, shapes[:, k] / scale) for k in loose))
+    return None, list(dict.fromkeys(_name(dynamics, shapes[:, k] / scale) for k in loose))
 
 
-def _name(mechanics: Mechanics, shape: np.ndarray) -> str:
-    return mechanics.system.name_of(int(np.argmax(np.abs(shape))), mechanics.system.of_body.velocities)
+def _name(dynamics: Dynamics, shape: np.ndarray) -> str:
+    return dynamics.system.name_of(int(np.argmax(np.abs(shape))), dynamics.system.of_body.velocities)
 
 
-def _branch(mechanics: Mechanics, found: Equilibrium, direction: np.ndarray, t: float) -> Equilibrium | None:
+def _branch(dynamics: Dynamics, found: Equilibrium, direction: np.ndarray, t: float) -> Equilibrium | None:
     """The equilibrium that a small move along a direction leads to; None where there is none."""
-    mechanics.state.q[:] = mechanics.system.of_body.moved(found.q, BRANCH * direction)
-    mechanics.assemble(t)
+    dynamics.state.q[:] = dynamics.system.of_body.moved(found.q, BRANCH * direction)
+    dynamics.assemble(t)
     try:
-        return find_equilibrium(mechanics, t)
+        return find_equilibrium(dynamics, t)
     except SolverError:
         return None
 
 
-def _branch_sentence(mechanics: Mechanics, direction: np.ndarray, poses: list[Equilibrium | None]) -> str:
-    scale = mechanics.system.per_velocity(mechanics.system.size, 1.0)
-    label = _name(mechanics, direction / scale)
+def _branch_sentence(dynamics: Dynamics, direction: np.ndarray, poses: list[Equilibrium | None]) -> str:
+    scale = dynamics.system.per_velocity(dynamics.system.size, 1.0)
+    label = _name(dynamics, direction / scale)
     count = sum(pose is not None for pose in poses)
     if not count:
         return f"the equilibrium is unstable in {label}, and no stable one was found beside it"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..diagnostics.overlooked import Overlooked, overlooked
-from ..solve.mechanics import OutputRows
+from ..solve.dynamics import OutputRows
 from ..solve.trajectory import Outcome, Trajectory
 
 if TYPE_CHECKING:
@@ -61,4 +61,4 @@ def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
-    return overlooked(job.mechanics.system, computed.rows, computed.trajectory.step_times, job.settings)
+    return overlooked(job.dynamics.system, computed.rows, computed.trajectory.step_times, job.settings)

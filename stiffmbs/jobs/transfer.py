@@ -17,7 +17,7 @@ from ..linear_analysis.state_space import StateMatrix, state_matrix
 from ..linear_analysis.tangent_space import Linearised, linearised
 from ..linear_analysis.transfer import Input, Transfer, effect
 from ..results.channels import channels_of
-from ..solve.mechanics import Mechanics
+from ..solve.dynamics import Dynamics
 from .at_state import AtState, at_state
 from .inputs import Parameterised, force_on
 from .run import Runnable, prepare
@@ -71,12 +71,12 @@ def transfer(
         As for `stiffmbs.jobs.modes.modes`.
     """
     found = at_state(model, settings, at, **changes)
-    system = found.mechanics.system
+    system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
-    linear = linearised(found.mechanics, found.t, found.acceleration)
+    linear = linearised(found.dynamics, found.t, found.acceleration)
     about = _About(found, linear, state_matrix(linear, scale), scale)
     nothing = np.zeros((1, system.n_u))
-    at_zero = _channels(about, found.mechanics, nothing, nothing, outputs)[0]
+    at_zero = _channels(about, found.dynamics, nothing, nothing, outputs)[0]
     given = inputs if isinstance(inputs, Mapping) else {name: force_on(found.data, name) for name in inputs}
     columns = [_column(about, name, of_input, outputs, changes) for name, of_input in given.items()]
     n = len(about.state.matrix)
@@ -95,7 +95,7 @@ def _column(
     about: _About, name: str, given: Parameterised, outputs: Sequence[str], changes: Settings
 ) -> tuple[np.ndarray, np.ndarray]:
     """What an input does to z' and to the outputs, by the models on both sides of the state."""
-    system = about.found.mechanics.system
+    system = about.found.dynamics.system
     step = SHIFT * max(1.0, system.size)
     sides = [_with_value(about, given, value, changes) for value in (-step, step)]
     (force, gap, rate), (more, wider, faster) = (_acting(about, side) for side in sides)
@@ -114,41 +114,41 @@ def _column(
     return acts.rates, (values[1] - values[0]) / (2 * step)
 
 
-def _with_value(about: _About, given: Parameterised, value: float, changes: Settings) -> Mechanics:
+def _with_value(about: _About, given: Parameterised, value: float, changes: Settings) -> Dynamics:
     """The model for a value of an input, at the state about which it is linearised."""
     job = prepare(given(value), **changes)
-    system, state = job.mechanics.system, about.found.mechanics.state
+    system, state = job.dynamics.system, about.found.dynamics.state
     if (system.bodies, system.equations) != (
-        about.found.mechanics.system.bodies,
-        about.found.mechanics.system.equations,
+        about.found.dynamics.system.bodies,
+        about.found.dynamics.system.equations,
     ):
         raise InputError("found another mechanism for another value of an input, expected the same bodies and joints")
-    job.mechanics.state.q[:], job.mechanics.state.u[:] = state.q, state.u
-    job.mechanics.state.lam[:] = state.lam
-    return job.mechanics
+    job.dynamics.state.q[:], job.dynamics.state.u[:] = state.q, state.u
+    job.dynamics.state.lam[:] = state.lam
+    return job.dynamics
 
 
-def _acting(about: _About, mechanics: Mechanics) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _acting(about: _About, dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What is left of the forces (f - J^T lam - M u'), and the constraints of positions and of velocities, at the state."""
-    state, system = mechanics.state, mechanics.system
-    active = about.found.mechanics.system.active
+    state, system = dynamics.state, dynamics.system
+    active = about.found.dynamics.system.active
     state.evaluate("motion", about.found.t)
-    reactions = state.matrix("motion", "J").T @ about.found.mechanics.state.lam[: system.n_c]
+    reactions = state.matrix("motion", "J").T @ about.found.dynamics.state.lam[: system.n_c]
     left = state.vector("motion", "f") - reactions - system.mass * about.found.acceleration
     return left, state.vector("motion", "C")[active & system.holonomic], state.vector("motion", "V")[active]
 
 
-def _channels(about: _About, mechanics: Mechanics, x: np.ndarray, v: np.ndarray, outputs: Sequence[str]) -> np.ndarray:
+def _channels(about: _About, dynamics: Dynamics, x: np.ndarray, v: np.ndarray, outputs: Sequence[str]) -> np.ndarray:
     """Outputs at states that differ from that of the model, a row each; brought to the constraints."""
-    system, at = about.found.mechanics.system, about.found.mechanics.state
+    system, at = about.found.dynamics.system, about.found.dynamics.state
     own = about.linear.own_axes
     q = np.array([system.of_body.moved(at.q, own @ row) for row in x])
     u = np.array([at.u + own @ row for row in v])
-    with mechanics.state.unchanged():
-        rows = mechanics.report(np.full(len(x), about.found.t), q, u, project=True)
+    with dynamics.state.unchanged():
+        rows = dynamics.report(np.full(len(x), about.found.t), q, u, project=True)
     if len(rows.t) < len(x):
         raise SolverError("no accelerations were found beside the state, expected one about which motions exist")
-    channels = channels_of(about.found.data, mechanics.system, rows)
+    channels = channels_of(about.found.data, dynamics.system, rows)
     for name in outputs:
         if name not in channels:
             raise InputError(
@@ -163,7 +163,7 @@ def _differentiated(about: _About, outputs: Sequence[str]) -> np.ndarray:
     sizes = np.abs(np.vstack([state.poses, state.velocities]) / np.tile(about.scale, 2)[:, None]).max(axis=0)
     steps = SHIFT / np.maximum(sizes, np.finfo(float).tiny)
     x, v = (part * steps for part in (state.poses, state.velocities))
-    values = _channels(about, about.found.mechanics, np.hstack([-x, x]).T, np.hstack([-v, v]).T, outputs)
+    values = _channels(about, about.found.dynamics, np.hstack([-x, x]).T, np.hstack([-v, v]).T, outputs)
     found: np.ndarray = ((values[len(steps) :] - values[: len(steps)]) / (2 * steps[:, None])).T
     return found
 
@@ -173,7 +173,7 @@ def _refuse_rates(about: _About, name: str, outputs: Sequence[str]) -> None:
 
     Displacements do not; velocities are i w times these, accelerations and reactions feel the input's own acceleration.
     """
-    system, data = about.found.mechanics.system, about.found.data
+    system, data = about.found.dynamics.system, about.found.data
     rates = (*system.of_body.velocities, *system.of_body.accelerations)
     felt = {f"{body}.{label}" for body in system.bodies for label in rates}
     felt |= {f"{joint}.{label}" for joint in data.joints for label in system.of_body.reactions}

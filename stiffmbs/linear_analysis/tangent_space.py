@@ -14,7 +14,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ..compile.quaternions import rotated
 from ..compile.system import System
-from ..solve.mechanics import Mechanics
+from ..solve.dynamics import Dynamics
 
 
 @dataclass(frozen=True)
@@ -53,12 +53,12 @@ class Linearised:
     spin: csr_array
 
 
-def linearised(mechanics: Mechanics, t: float, acceleration: np.ndarray) -> Linearised:
+def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linearised:
     """The linearised equations at the state of a system.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         At a state that satisfies the constraints, with the multipliers of that state.
     t : float
         s.
@@ -70,7 +70,7 @@ def linearised(mechanics: Mechanics, t: float, acceleration: np.ndarray) -> Line
     Linearised
         Of the equations that are not redundant.
     """
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.a[:] = acceleration
     state.evaluate("all_levels_tangent", t)
 

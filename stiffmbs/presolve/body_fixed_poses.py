@@ -13,22 +13,22 @@ from ..compile.quaternions import CONJUGATE, rotated, times
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 
-class Seats(Protocol):
+class BodyFixedPoses(Protocol):
     """The places of k bodies, each on its carrier."""
 
     @property
     def moved(self) -> bool:
         """Whether any body is elsewhere than its carrier."""
 
-    def inverse(self) -> Seats:
+    def inverse(self) -> BodyFixedPoses:
         """The carriers' places on the bodies."""
 
-    def like(self, q: np.ndarray, carrier: np.ndarray) -> Seats:
+    def like(self, q: np.ndarray, parent: np.ndarray) -> BodyFixedPoses:
         """The same places, in numbers that give the bodies the coordinates q, shape (k, n_q), where these can be chosen.
 
         Parameters
         ----------
-        carrier : ndarray of int, shape (k,)
+        parent : ndarray of int, shape (k,)
             The number of each body's carrier.
         """
 
@@ -37,7 +37,7 @@ class Seats(Protocol):
 
 
 @dataclass(frozen=True)
-class PlanarSeats:
+class PlanarPoses:
     """In the plane.
 
     Attributes
@@ -50,12 +50,12 @@ class PlanarSeats:
     angle: np.ndarray
 
     @classmethod
-    def none(cls, count: int) -> PlanarSeats:
+    def none(cls, count: int) -> PlanarPoses:
         """Of bodies that are where their carriers are."""
         return cls(np.zeros((count, 2)), np.zeros(count))
 
     @classmethod
-    def of(cls, placements: Sequence[Any]) -> PlanarSeats:
+    def of(cls, placements: Sequence[Any]) -> PlanarPoses:
         """Those of planar placements."""
         return cls(np.array([place.point for place in placements]), np.array([place.angle for place in placements]))
 
@@ -63,10 +63,10 @@ class PlanarSeats:
     def moved(self) -> bool:
         return bool(self.point.any() or self.angle.any())
 
-    def inverse(self) -> PlanarSeats:
-        return PlanarSeats(-_turned(-self.angle, self.point), -self.angle)
+    def inverse(self) -> PlanarPoses:
+        return PlanarPoses(-_turned(-self.angle, self.point), -self.angle)
 
-    def like(self, q: np.ndarray, carrier: np.ndarray) -> PlanarSeats:
+    def like(self, q: np.ndarray, parent: np.ndarray) -> PlanarPoses:
         return self
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -77,7 +77,7 @@ class PlanarSeats:
 
 
 @dataclass(frozen=True)
-class SpatialSeats:
+class SpatialPoses:
     """In space.
 
     Attributes
@@ -90,12 +90,12 @@ class SpatialSeats:
     turn: np.ndarray
 
     @classmethod
-    def none(cls, count: int) -> SpatialSeats:
+    def none(cls, count: int) -> SpatialPoses:
         """Of bodies that are where their carriers are."""
         return cls(np.zeros((count, 3)), np.tile(IDENTITY, (count, 1)))
 
     @classmethod
-    def of(cls, placements: Sequence[Any]) -> SpatialSeats:
+    def of(cls, placements: Sequence[Any]) -> SpatialPoses:
         """Those of placements in space."""
         return cls(
             np.array([place.point for place in placements]), np.array([place.orientation for place in placements])
@@ -105,16 +105,16 @@ class SpatialSeats:
     def moved(self) -> bool:
         return bool(self.point.any() or np.any(self.turn != IDENTITY))
 
-    def inverse(self) -> SpatialSeats:
+    def inverse(self) -> SpatialPoses:
         back = CONJUGATE * self.turn
-        return SpatialSeats(-rotated(back, self.point), back)
+        return SpatialPoses(-rotated(back, self.point), back)
 
-    def like(self, q: np.ndarray, carrier: np.ndarray) -> SpatialSeats:
+    def like(self, q: np.ndarray, parent: np.ndarray) -> SpatialPoses:
         """Of both quaternions of a turn the one that goes on from that of the carrier's first body."""
-        _, first, number = np.unique(carrier, return_index=True, return_inverse=True)
-        of_carrier = times(q[first, 3:], CONJUGATE * self.turn[first])[number]
-        against = np.sum(times(of_carrier, self.turn) * q[:, 3:], axis=1) < 0
-        return SpatialSeats(self.point, np.where(against[:, None], -self.turn, self.turn))
+        _, first, number = np.unique(parent, return_index=True, return_inverse=True)
+        of_parent = times(q[first, 3:], CONJUGATE * self.turn[first])[number]
+        against = np.sum(times(of_parent, self.turn) * q[:, 3:], axis=1) < 0
+        return SpatialPoses(self.point, np.where(against[:, None], -self.turn, self.turn))
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         p, w = q[..., 3:], u[..., 3:]
@@ -130,4 +130,4 @@ def _turned(phi: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.stack([c * xi - s * eta, s * xi + c * eta], axis=-1)
 
 
-SEATS: dict[int, type[PlanarSeats] | type[SpatialSeats]] = {2: PlanarSeats, 3: SpatialSeats}
+BODY_FIXED_POSES: dict[int, type[PlanarPoses] | type[SpatialPoses]] = {2: PlanarPoses, 3: SpatialPoses}

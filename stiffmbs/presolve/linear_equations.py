@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..compile.coordinates import STILL, Coordinates
+from ..compile.coordinates import FIXED, Coordinates
 from ..compile.state import State
 from ..compile.system import System
 from .dependence import Dependence, dependence
@@ -41,15 +41,15 @@ def independent_coordinates(system: System, state: State, t: float) -> Coordinat
     state.evaluate("position", t)
     C_q = dependence(system, state.values["position"])
     while True:
-        moves = found.leader != STILL
-        open_rows = candidates & ~found.fulfilled
+        moves = found.independent_of != FIXED
+        open_rows = candidates & ~found.satisfied
         straight = found.extended(_constant_rows(C_q, moves, open_rows, system))
         if not (found.turned(_held_orientations(C_q, moves, open_rows, system), system) or straight):
             return found.coordinates(system)
 
 
 def _candidates(system: System) -> np.ndarray:
-    """Rows that may be left out: solved for, with a position form, without time or corners, in no force of friction.
+    """Rows that may be left out: solved for, with a position form, without time or breakpoints, in no force of friction.
 
     Multipliers that forces depend on are needed.
     """

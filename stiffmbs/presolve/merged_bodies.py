@@ -16,7 +16,7 @@ from ..describe.model_data import ModelData
 
 
 @dataclass(frozen=True)
-class Welded:
+class MergedBodies:
     """A model whose bodies between fixed joints are merged.
 
     Attributes
@@ -52,7 +52,7 @@ class Welded:
 
     def elements(self) -> Iterator[tuple[str, Element]]:
         """What acts on the bodies that are left, what they have of themselves (weights) too, and counters of turns."""
-        for name, element in self.model.drawn_elements():
+        for name, element in self.model.elements_at_initial_pose():
             if name not in self.joints_left_out:
                 yield name, element
         yield from self.model.angle_counters()
@@ -63,11 +63,11 @@ class Welded:
         body, placed = self.model.carried(marker)
         if body == GROUND:
             return body, placed
-        carrier, member = self.members[body]
-        return carrier, _geometry(self.dimensions).on(member, placed)
+        parent, member = self.members[body]
+        return parent, _geometry(self.dimensions).on(member, placed)
 
 
-def weld(model: ModelData, held: Container[str]) -> Welded | None:
+def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
     """Merge the bodies between fixed joints.
 
     Apart stay bodies whose coordinates a formula uses by name, bodies that a force or another joint acts between, and
@@ -81,7 +81,7 @@ def weld(model: ModelData, held: Container[str]) -> Welded | None:
 
     Returns
     -------
-    Welded or None
+    MergedBodies or None
         None where there is nothing to merge.
     """
     if not any(joint.kind == Fixed.kind for joint in model.joints.values()):
@@ -100,7 +100,7 @@ def weld(model: ModelData, held: Container[str]) -> Welded | None:
         parts = [(model.bodies[name], placed) for name, placed in placements.items()]
         bodies[first], places = groups.geometry.composite(parts)
         members |= {name: (first, placed) for name, placed in zip(placements, places, strict=True)}
-    return Welded(model, bodies, members, tuple(used))
+    return MergedBodies(model, bodies, members, tuple(used))
 
 
 def _candidates(model: ModelData) -> Iterator[str]:

@@ -13,8 +13,8 @@ import numpy as np
 from ..compile.compile_model import compile_model
 from ..compile.system import System
 from ..describe.model_data import ModelData
-from .body_fixed_poses import SEATS, Seats
-from .merged_bodies import Welded, weld
+from .body_fixed_poses import BODY_FIXED_POSES, BodyFixedPoses
+from .merged_bodies import MergedBodies, merge
 from .subsystems import counters_of, mechanisms, part_of
 
 MOST_APART = 8
@@ -30,9 +30,9 @@ class Part:
     system : System
     bodies : ndarray of int
         Numbers of the bodies of the whole.
-    carrier : ndarray of int
+    parent : ndarray of int
         For each of them the number of the body in `system` that carries it.
-    seats : Seats
+    poses : BodyFixedPoses
         Where each of them is on that.
     counters : ndarray of int
         The coordinates of the whole that count what the part's own counters of turns do.
@@ -40,29 +40,29 @@ class Part:
 
     system: System
     bodies: np.ndarray
-    carrier: np.ndarray
-    seats: Seats
+    parent: np.ndarray
+    poses: BodyFixedPoses
     counters: np.ndarray
 
     def reduced(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The coordinates and velocities of the part's bodies, from those of the whole that satisfy its constraints."""
-        of, first = np.unique(self.carrier, return_index=True)
+        of, first = np.unique(self.parent, return_index=True)
         assert len(of) == len(self.system.bodies)
         counted, rates = q[self.counters], u.reshape(-1, self.system.of_body.n_u)
         places = q[: self.system.of_body.n_q * len(rates)].reshape(len(rates), -1)
         places, rates = places[self.bodies], rates[self.bodies]
-        if self.seats.moved:
-            places, rates = self.seats.inverse().carried(places, rates)
+        if self.poses.moved:
+            places, rates = self.poses.inverse().carried(places, rates)
         return np.concatenate([places[first].ravel(), counted]), rates[first].ravel()
 
     def put(self, q: np.ndarray, u: np.ndarray, into_q: np.ndarray, into_u: np.ndarray) -> None:
         """Write the states of the bodies of the whole, one state a row, from those of the part's bodies."""
         n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
         of_bodies, into_q[:, self.counters] = np.split(q, [n_q * count], axis=1)
-        of = of_bodies.reshape(len(q), count, n_q)[:, self.carrier]
-        rates = u.reshape(len(u), count, n_u)[:, self.carrier]
-        if self.seats.moved:
-            of, rates = self.seats.carried(of, rates)
+        of = of_bodies.reshape(len(q), count, n_q)[:, self.parent]
+        rates = u.reshape(len(u), count, n_u)[:, self.parent]
+        if self.poses.moved:
+            of, rates = self.poses.carried(of, rates)
         into_q[:, n_q * self.bodies[:, None] + np.arange(n_q)] = of
         into_u[:, n_u * self.bodies[:, None] + np.arange(n_u)] = rates
 
@@ -79,34 +79,34 @@ def parts_of(model: ModelData, whole: System, apart: bool = True) -> tuple[Part,
         Whether independent mechanisms may be solved apart.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
-    welded = weld(model, held)
-    system = _compiled(welded, whole) if welded else whole
+    merged = merge(model, held)
+    system = _compiled(merged, whole) if merged else whole
     found = mechanisms(system) if apart else []
     if not 1 < len(found) <= MOST_APART:
-        if not welded:
+        if not merged:
             return ()
         found = [np.arange(len(system.bodies))]
-    return tuple(_part(bodies, system, whole, welded) for bodies in found)
+    return tuple(_part(bodies, system, whole, merged) for bodies in found)
 
 
-def _compiled(welded: Welded, whole: System) -> System:
+def _compiled(merged: MergedBodies, whole: System) -> System:
     """The merged model, compiled, with the same equations redundant and the same size as the whole."""
-    system = compile_model(welded)
+    system = compile_model(merged)
     on = dict(zip(whole.equations, whole.active, strict=True))
     return replace(system, active=np.array([on[equation] for equation in system.equations], dtype=bool))
 
 
-def _part(bodies: np.ndarray, system: System, whole: System, welded: Welded | None) -> Part:
+def _part(bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None) -> Part:
     own = part_of(system, bodies)
     number = {name: k for k, name in enumerate(own.bodies)}
     of_whole, of_part = counters_of(whole), counters_of(own)
     counters = np.array([of_whole[key] for key in sorted(of_part, key=of_part.__getitem__)], dtype=np.int64)
-    seats = SEATS[whole.of_body.dimensions]
-    if welded is None:
-        return Part(own, bodies, np.arange(len(bodies)), seats.none(len(bodies)), counters)
-    carried = [(k, *welded.members[name]) for k, name in enumerate(whole.bodies) if welded.members[name][0] in number]
+    poses = BODY_FIXED_POSES[whole.of_body.dimensions]
+    if merged is None:
+        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), counters)
+    carried = [(k, *merged.members[name]) for k, name in enumerate(whole.bodies) if merged.members[name][0] in number]
     numbers = np.array([k for k, _, _ in carried])
-    carrier = np.array([number[name] for _, name, _ in carried])
-    as_drawn = whole.q[: whole.n_q - whole.n_counters].reshape(len(whole.bodies), -1)[numbers]
-    placed = seats.of([place for _, _, place in carried]).like(as_drawn, carrier)
-    return Part(own, numbers, carrier, placed, counters)
+    parent = np.array([number[name] for _, name, _ in carried])
+    at_initial_pose = whole.q[: whole.n_q - whole.n_counters].reshape(len(whole.bodies), -1)[numbers]
+    placed = poses.of([place for _, _, place in carried]).like(at_initial_pose, parent)
+    return Part(own, numbers, parent, placed, counters)

@@ -7,106 +7,108 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..compile.coordinates import STILL, Coordinates, all_independent
+from ..compile.coordinates import FIXED, Coordinates, all_independent
 from ..compile.system import System
 
 SAME = 1e-13
-"""Difference, in parts of a row's largest derivative, that is rounding; a smaller coefficient is none."""
+"""Difference, relative to a row's largest derivative, that is rounding; a smaller coefficient is none."""
 INDEPENDENT = 1e-6
-"""Least singular value, in parts of the largest, of rows that hold as many coordinates as they are."""
+"""Least singular value, relative to the largest, of rows that hold as many coordinates as they are."""
 
 
 @dataclass
 class Relations:
     """What is known so far: leaders and ratios as in `Coordinates`, and the equations that are used up."""
 
-    leader: np.ndarray
+    independent_of: np.ndarray
     ratio: np.ndarray
-    fulfilled: np.ndarray
+    satisfied: np.ndarray
     held: list[int] = field(default_factory=list)
     """Bodies whose orientation stands still."""
 
     @classmethod
     def none(cls, system: System) -> Relations:
         start = all_independent(system)
-        return cls(start.leader, start.ratio, start.fulfilled)
+        return cls(start.independent_of, start.ratio, start.satisfied)
 
     def coordinates(self, system: System) -> Coordinates:
         """With the velocities, which are related as the coordinates that they are rates of."""
         q, u = system.of_body.straight(len(system.bodies))
-        of_q = np.full(system.n_q, STILL)
+        of_q = np.full(system.n_q, FIXED)
         of_q[q] = u
-        leader, ratio = np.arange(system.n_u), np.ones(system.n_u)
-        led = self.leader[q]
-        leader[u], ratio[u] = np.where(led == STILL, STILL, of_q[led]), self.ratio[q]
+        independent_of, ratio = np.arange(system.n_u), np.ones(system.n_u)
+        led = self.independent_of[q]
+        independent_of[u], ratio[u] = np.where(led == FIXED, FIXED, of_q[led]), self.ratio[q]
         for body in self.held:
             turning = slice(system.of_body.n_u * body + system.of_body.linear, system.of_body.n_u * (body + 1))
-            leader[turning], ratio[turning] = STILL, 0.0
-        return Coordinates(self.leader, self.ratio, leader, ratio, self.fulfilled)
+            independent_of[turning], ratio[turning] = FIXED, 0.0
+        return Coordinates(self.independent_of, self.ratio, independent_of, ratio, self.satisfied)
 
     def extended(self, rows: dict[int, list[tuple[int, float]]]) -> bool:
         """Use the rows with one or two leaders, else some in the same leaders; whether there was any."""
         used = False
         for row, entries in rows.items():
-            coefficients = self._by_leader(entries)
-            match sorted(coefficients, key=lambda leader: abs(coefficients[leader])):
+            coefficients = self._by_independent(entries)
+            match sorted(coefficients, key=lambda independent_of: abs(coefficients[independent_of])):
                 case [only]:
-                    self._follow(only, STILL, 0.0)
+                    self._follow(only, FIXED, 0.0)
                 case [other, larger]:
                     self._follow(larger, other, -coefficients[other] / coefficients[larger])
                 case _:
                     continue
-            self.fulfilled[row] = used = True
+            self.satisfied[row] = used = True
         return used or self._tied(rows)
 
     def _tied(self, rows: dict[int, list[tuple[int, float]]]) -> bool:
         """Use rows in the same leaders, as many as these or one less, as across a line that is slanted to all axes."""
         alike: dict[frozenset[int], dict[int, dict[int, float]]] = {}
         for row, entries in rows.items():
-            coefficients = self._by_leader(entries)
+            coefficients = self._by_independent(entries)
             alike.setdefault(frozenset(coefficients), {})[row] = coefficients
-        for leaders, same in alike.items():
-            order, free = sorted(leaders), len(leaders) - len(same)
+        for independents, same in alike.items():
+            order, free = sorted(independents), len(independents) - len(same)
             if not order or free not in (0, 1):
                 continue
-            _, values, axes = np.linalg.svd(np.array([[part[leader] for leader in order] for part in same.values()]))
+            _, values, axes = np.linalg.svd(
+                np.array([[part[independent_of] for independent_of in order] for part in same.values()])
+            )
             if values[-1] > INDEPENDENT * values[0]:
                 self._move_along(order, free * axes[-1])
-                self.fulfilled[list(same)] = True
+                self.satisfied[list(same)] = True
                 return True
         return False
 
-    def _move_along(self, leaders: list[int], direction: np.ndarray) -> None:
+    def _move_along(self, independents: list[int], direction: np.ndarray) -> None:
         """Let leaders follow that which moves most in a direction; those that do not move there stand still."""
         chief = int(np.argmax(np.abs(direction)))
-        for leader, part in zip(leaders, direction.tolist(), strict=True):
+        for independent_of, part in zip(independents, direction.tolist(), strict=True):
             if abs(part) <= SAME:
-                self._follow(leader, STILL, 0.0)
-            elif leader != leaders[chief]:
-                self._follow(leader, leaders[chief], part / direction[chief])
+                self._follow(independent_of, FIXED, 0.0)
+            elif independent_of != independents[chief]:
+                self._follow(independent_of, independents[chief], part / direction[chief])
 
     def turned(self, bodies: Iterable[tuple[int, list[int]]], system: System) -> bool:
         """Let orientations that some rows hold stand still; whether there was any."""
         used = False
         for body, rows in bodies:
             orientation = slice(system.of_body.n_q * body + system.of_body.linear, system.of_body.n_q * (body + 1))
-            self.leader[orientation], self.ratio[orientation] = STILL, 0.0
-            self.fulfilled[rows] = used = True
+            self.independent_of[orientation], self.ratio[orientation] = FIXED, 0.0
+            self.satisfied[rows] = used = True
             self.held.append(body)
         return used
 
-    def _by_leader(self, entries: list[tuple[int, float]]) -> dict[int, float]:
+    def _by_independent(self, entries: list[tuple[int, float]]) -> dict[int, float]:
         """The coefficients of a row by the coordinates that lead its own."""
         coefficients: dict[int, float] = {}
         for column, value in entries:
-            leader = int(self.leader[column])
-            if leader != STILL:
-                coefficients[leader] = coefficients.get(leader, 0.0) + value * self.ratio[column]
+            independent_of = int(self.independent_of[column])
+            if independent_of != FIXED:
+                coefficients[independent_of] = coefficients.get(independent_of, 0.0) + value * self.ratio[column]
         negligible = SAME * max(abs(value) for _, value in entries)
-        return {leader: value for leader, value in coefficients.items() if abs(value) > negligible}
+        return {independent_of: value for independent_of, value in coefficients.items() if abs(value) > negligible}
 
-    def _follow(self, follower: int, leader: int, ratio: float) -> None:
+    def _follow(self, follower: int, independent_of: int, ratio: float) -> None:
         """Let a leader, and all that follow it, follow another, or stand still."""
-        followers = self.leader == follower
-        self.leader[followers] = leader
+        followers = self.independent_of == follower
+        self.independent_of[followers] = independent_of
         self.ratio[followers] *= ratio

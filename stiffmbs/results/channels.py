@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.model_data import ModelData
-from ..solve.mechanics import OutputRows
+from ..solve.dynamics import OutputRows
 from .body_axes import in_own_axes
 from .energy import kinetic_energy, potential_energy
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..compile.system import System
 from ..describe.settings import RunSettings
 from ..solve import traits_of
-from ..solve.mechanics import OutputRows
+from ..solve.dynamics import OutputRows
 from .energy_balance import Balance, potentials
 
 FINER = ("rtol", "max_step", "step")

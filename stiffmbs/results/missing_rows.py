@@ -7,30 +7,30 @@ from typing import Any
 
 import numpy as np
 
+from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.failures import FAILURES
-from ..solve.mechanics import Mechanics, OutputRows
 from ..solve.trajectory import Trajectory
 
 MOST = 100
 """Gaps after which the results end."""
 
 
-def reported(mechanics: Mechanics, trajectory: Trajectory, project: bool) -> tuple[OutputRows, list[str]]:
+def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool) -> tuple[OutputRows, list[str]]:
     """What is reported at the instants of a trajectory, and a note for each that is left out.
 
     An instant without a solution between two that have one keeps its coordinates and velocities as they were
     integrated; all else there is not a number.  Where two in succession have none, the rows end.
     """
     t, q, u = trajectory.t, trajectory.q, trajectory.u
-    parts: list[OutputRows] = [mechanics.report(t, q, u, project)]
+    parts: list[OutputRows] = [dynamics.report(t, q, u, project)]
     notes: list[str] = []
     done = len(parts[0].t)
     while 0 < done < len(t) - 1 and len(notes) < MOST:
         status = parts[-1].status
-        if not len(mechanics.report(t[done + 1 : done + 2], q[done + 1 : done + 2], u[done + 1 : done + 2], project).t):
+        if not len(dynamics.report(t[done + 1 : done + 2], q[done + 1 : done + 2], u[done + 1 : done + 2], project).t):
             break
-        following = mechanics.report(t[done + 1 :], q[done + 1 :], u[done + 1 :], project)
-        pose = mechanics.system.of_body.moved(q[done], np.zeros_like(u[done]))  # quaternions of length 1
+        following = dynamics.report(t[done + 1 :], q[done + 1 :], u[done + 1 :], project)
+        pose = dynamics.system.of_body.moved(q[done], np.zeros_like(u[done]))  # quaternions of length 1
         parts += [_unknown(parts[0], t[done], pose, u[done]), following]
         notes.append(
             f"no accelerations and reactions at t = {t[done]:.9g} s: {FAILURES[status]}; they are left out there"

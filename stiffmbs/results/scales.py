@@ -13,7 +13,7 @@ SMALL = {"force": 1e-2, "torque": 1e-2}
 LITTLE = 0.1
 """Part of the largest of a kind that an element or body counts for at the least: who asks for the force of a small
 bushing wants it, but a body that hardly moves is not looked at for its motion."""
-STILL = 1e-8
+FIXED = 1e-8
 """Motions smaller than this, in sizes of the mechanism and rad, are no motions."""
 CROSSED = 1e-3
 """The same for torques beside forces, and for rotations beside motions, at the size of the mechanism."""
@@ -85,7 +85,7 @@ def scales(
     for (_, kind), value in own.items():
         largest[kind] = max(largest.get(kind, 0.0), value)
     for kind, unit in (("position", size), ("angle", 1.0), ("orientation", 1.0)):
-        largest[kind] = max(largest.get(kind, 0.0), STILL * unit)
+        largest[kind] = max(largest.get(kind, 0.0), FIXED * unit)
     for kind, of in TURNING.items():
         largest[kind] = max(largest.get(kind, 0.0), CROSSED * largest.get(of, 0.0) / size)
     largest["torque"] = max(largest.get("torque", 0.0), CROSSED * largest.get("force", 0.0) * size)

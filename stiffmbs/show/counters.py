@@ -14,7 +14,7 @@ AS_MANY_AS = {"newton_iterations": "residuals", "factorizations": "jacobians"}
 """Counters that are told only where they differ from others."""
 IN_VAIN = {"error_test_failures": "failed the error test", "convergence_failures": "did not converge"}
 """Steps that were repeated, and why."""
-STARTS = {"corners": "corners of inputs", "events": "events"}
+STARTS = {"breakpoints": "breakpoints of inputs", "events": "events"}
 """Instants at which the solver stops and starts anew."""
 
 

@@ -113,7 +113,7 @@ def _print(scene: str, solution: Solution, console: Console) -> None:
         say(f"verified: {sentence}")
     table = force_table(solution)
     if table.row_count:
-        say("force and torque on the first body, least .. greatest (N, N m):")
+        say("force and torque on the first body, min .. max (N, N m):")
         console.print(table)
     if solution.not_unique:
         say(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values")

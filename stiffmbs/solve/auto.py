@@ -16,6 +16,7 @@ from ..compile.callbacks import has_fault
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from . import bdf, cost
+from .dynamics import Dynamics
 from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
@@ -24,10 +25,9 @@ from .explicit.projected import TRAITS
 from .fastest_rate import fastest_rate
 from .ida.engine import Reached
 from .initial import InitialValues
-from .mechanics import Mechanics
 from .segments import Leg, joined
 from .solver import Traits
-from .trajectory import Grid, Outcome, Trajectory, Watch
+from .trajectory import Grid, Outcome, ProgressCallback, Trajectory
 
 LOOK = 32
 """Explicit steps between two looks at what holds them back."""
@@ -50,10 +50,12 @@ def traits(settings: RunSettings) -> Traits:
     return replace(bdf.traits(settings), name="auto", switches=True)
 
 
-def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+def solve(
+    dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
+) -> Trajectory:
     """Integrate with `dop853`, and with `bdf` while that is cheaper; the contract is in `stiffmbs.solve.trajectory`."""
-    mechanics.forget_pivots()
-    return _Shared(mechanics, grid, settings, watch).run(start)
+    dynamics.forget_pivots()
+    return _Shared(dynamics, grid, settings, watch).run(start)
 
 
 @dataclass
@@ -77,18 +79,18 @@ class _Effort:
 class _Shared:
     """One run that two integrators share."""
 
-    def __init__(self, mechanics: Mechanics, grid: Grid, settings: RunSettings, watch: Watch) -> None:
-        self._mechanics, self._grid, self._watch = mechanics, grid, watch
+    def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings, watch: ProgressCallback) -> None:
+        self._dynamics, self._grid, self._watch = dynamics, grid, watch
         self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
-        self._unknowns = n = cost.unknowns(mechanics)
-        self._explicit_step = cost.of_explicit_step(mechanics)
+        self._unknowns = n = cost.unknowns(dynamics)
+        self._explicit_step = cost.of_explicit_step(dynamics)
         self._implicit_step = cost.of_implicit_step(n)
         self._trial = cost.of_implicit_start(n) + FAIR_TRIAL * self._implicit_step  # what one costs at the most
         self._implicit: bdf.Integrator | None = None
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
-        self._legs: list[Leg] = []
+        self._segments: list[Leg] = []
         self._told: list[str] = []
         self._gave_up = False  # whether explicit steps could not go on
 
@@ -101,12 +103,12 @@ class _Shared:
         explicit = not self._is_stiff_at_once(start)
         while t is not None:
             try:
-                at = start if t == self._grid.start else restarted(self._mechanics, t, *self._state)
+                at = start if t == self._grid.start else restarted(self._dynamics, t, *self._state)
             except SolverError as error:
-                stopped = replace(self._legs[-1].trajectory, outcome=Outcome.STOPPED, message=str(error))
-                self._legs[-1] = replace(self._legs[-1], trajectory=stopped)
+                stopped = replace(self._segments[-1].trajectory, outcome=Outcome.STOPPED, message=str(error))
+                self._segments[-1] = replace(self._segments[-1], trajectory=stopped)
                 break
-            t = self._explicit_leg(at, t) if explicit else self._implicit_leg(at, t)
+            t = self._explicit_segment(at, t) if explicit else self._implicit_segment(at, t)
             explicit = not explicit and not self._gave_up
         return self._together()
 
@@ -119,7 +121,7 @@ class _Shared:
 
     def _worth_a_trial(self, t: float, q: np.ndarray, u: np.ndarray) -> tuple[bool, float]:
         """Whether steps as short as stability asks for at a state are so many that trying BDF costs little; the rate."""
-        rate = fastest_rate(self._mechanics, t, q, u)
+        rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         return (self._grid.end - t) * self._explicit_cost > WORTH_A_TRIAL * self._trial, rate
 
@@ -130,17 +132,17 @@ class _Shared:
             return self._grid
         return replace(self._grid, start=t, times=None if times is None else np.append(t, times[times > t]))
 
-    def _explicit_leg(self, start: InitialValues, t: float) -> float | None:
+    def _explicit_segment(self, start: InitialValues, t: float) -> float | None:
         """Explicit steps from t on; the time at which they were left, or None at the end."""
         self._pace = _Pace(t)
-        run = AdaptiveRun(DOP853, self._mechanics, start, self._rest(t), self._settings, self._watch)
-        leg = run.integrate(Leaving(LOOK, self._should_try_implicit))
-        if run.left and leg.outcome is Outcome.STOPPED and not has_fault(self._mechanics.system):
-            self._gave_up, self._legs = True, []
-            self._told = [f"bdf, as explicit steps {leg.message}"]
+        run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
+        segment = run.integrate(Leaving(LOOK, self._should_try_implicit))
+        if run.left and segment.outcome is Outcome.STOPPED and not has_fault(self._dynamics.system):
+            self._gave_up, self._segments = True, []
+            self._told = [f"bdf, as explicit steps {segment.message}"]
             return self._grid.start
-        self._legs.append(Leg(replace(leg, solver="projected"), TRAITS["dop853"]))
-        if not run.left or leg.outcome is Outcome.STOPPED:
+        self._segments.append(Leg(replace(segment, solver="projected"), TRAITS["dop853"]))
+        if not run.left or segment.outcome is Outcome.STOPPED:
             return None
         self._state = run.work.q.copy(), run.work.u.copy()
         return run.work.t
@@ -166,16 +168,16 @@ class _Shared:
             )
         return worth
 
-    def _implicit_leg(self, start: InitialValues, t: float) -> float | None:
+    def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
         """Implicit steps from t on; the time at which they were left, or None at the end."""
-        self._implicit = self._implicit or bdf.Integrator(self._mechanics, self._settings)
+        self._implicit = self._implicit or bdf.Integrator(self._dynamics, self._settings)
         self._implicit.engine.pause_after(FAIR_TRIAL)
         self._pace, self._before = _Pace(t), self._effort()
         pays = None if self._gave_up else self._implicit_pays
-        leg = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
-        self._legs.append(Leg(replace(leg, solver="bdf"), bdf.traits(self._settings)))
+        segment = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
+        self._segments.append(Leg(replace(segment, solver="bdf"), bdf.traits(self._settings)))
         reached = self._implicit.reached
-        if leg.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
+        if segment.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
         self._state = self._implicit.split(reached.y)
         self._amends = max(AMENDS * self._trial, 2.0 * self._amends)
@@ -186,7 +188,7 @@ class _Shared:
         """Whether BDF keeps ahead of explicit steps, over so many of its steps that its start does not count."""
         effort = self._effort()
         taken, way = effort.steps - self._before.steps, reached.t - self._pace.t
-        if taken < FAIR_TRIAL or self._is_corner(reached.t):
+        if taken < FAIR_TRIAL or self._is_breakpoint(reached.t):
             return True
         spent, explicit = effort.cost - self._before.cost, way * self._explicit_cost
         self._pace, self._before = _Pace(reached.t), effort
@@ -195,16 +197,16 @@ class _Shared:
             self._trial = cost.of_implicit_start(self._unknowns) + spent - explicit  # as seen: the way is not lost
         return pays
 
-    def _is_corner(self, t: float) -> bool:
+    def _is_breakpoint(self, t: float) -> bool:
         """Whether inputs may still show at t what they were before: no integrator can start there."""
-        corners = self._mechanics.input_features(self._grid.start, self._grid.end).corners
-        return bool(np.any((corners >= just_before(t)) & (corners <= just_after(t))))
+        breakpoints = self._dynamics.input_features(self._grid.start, self._grid.end).breakpoints
+        return bool(np.any((breakpoints >= just_before(t)) & (breakpoints <= just_after(t))))
 
     def _effort(self) -> _Effort:
-        """The implicit integrator's, but for the small steps after each of its starts at corners and events."""
+        """The implicit integrator's, but for the small steps after each of its starts at breakpoints and events."""
         assert self._implicit is not None
         counted = self._implicit.statistics()
-        starts = int(counted["corners"]) + int(counted["events"])
+        starts = int(counted["breakpoints"]) + int(counted["events"])
         small = cost.STEPS_OF_A_START * starts
         work = cost.of_implicit_work(self._unknowns, int(counted["residuals"]), int(counted["jacobians"]))
         return _Effort(int(counted["steps"]) - small, work - small * self._implicit_step)
@@ -214,10 +216,12 @@ class _Shared:
         told = self._told[:MOST_TOLD]
         if len(self._told) > MOST_TOLD:
             told += [f"and so on, {len(self._told)} changes in all"]
-        note = "auto chose " + ", then ".join(told if self._legs[0].traits.implicit else ["projected dop853", *told])
-        parts = [leg.trajectory for leg in self._legs]
+        note = "auto chose " + ", then ".join(
+            told if self._segments[0].traits.implicit else ["projected dop853", *told]
+        )
+        parts = [segment.trajectory for segment in self._segments]
         return replace(
-            parts[0] if len(parts) == 1 else joined(self._legs),
+            parts[0] if len(parts) == 1 else joined(self._segments),
             note="; ".join([note, *dict.fromkeys(part.note for part in parts if part.note)]),
             solver=", ".join(dict.fromkeys(part.solver for part in parts)),
         )

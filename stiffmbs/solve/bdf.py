@@ -10,6 +10,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from .dynamics import Dynamics
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.precision import governed_by_rounding, too_fine
@@ -17,7 +18,7 @@ from .error_control.relaxation import relax
 from .events.chattering import Chattering
 from .events.divergence import refuse_beyond_sense
 from .events.limits import refuse_beyond_limits
-from .events.masked import HeldSwitches
+from .events.masked import MaskedEvents
 from .events.restart import just_after, restarted
 from .events.velocity_jumps import VelocityJumps
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
@@ -27,10 +28,9 @@ from .ida.libraries import available
 from .ida.native_engine import NativeEngine
 from .ida.sundae import SundaeEngine
 from .initial import InitialValues
-from .mechanics import Mechanics
 from .solver import Traits
 from .suspect import suspect
-from .trajectory import Ending, Grid, Rows, Trajectory, Watch
+from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
 SHORT = 8
 """Stretches of a run before its counters are looked at: reading them costs as much as some steps."""
@@ -45,22 +45,22 @@ def traits(settings: RunSettings) -> Traits:
 
 
 def solve(
-    mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch,
+    dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback,
     control: ErrorControl | None = None,
 ) -> Trajectory:  # fmt: skip
     """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`.
 
-    At corners in time, and where a force changes its law (a contact closes), the integrator stops and starts anew.
+    At breakpoints in time, and where a force changes its law (a contact closes), the integrator stops and starts anew.
     """
-    mechanics.forget_pivots()
-    return integrated(Integrator(mechanics, settings, control), start, grid, watch)
+    dynamics.forget_pivots()
+    return integrated(Integrator(dynamics, settings, control), start, grid, watch)
 
 
 def integrated(
     integrator: Integrator,
     start: InitialValues,
     grid: Grid,
-    watch: Watch,
+    watch: ProgressCallback,
     pays: Callable[[Reached], bool] | None = None,
 ) -> Trajectory:
     """Integrate with an integrator that may be used again.
@@ -70,7 +70,7 @@ def integrated(
     pays : callable, optional
         Asked now and then whether to go on; where it does not, the run is left where `integrator.reached` says.
     """
-    system = integrator.mechanics.system
+    system = integrator.dynamics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
@@ -85,7 +85,7 @@ def integrated(
                 break
             if reached.t < grid.end:
                 state = integrator.split(reached.y)
-                refuse_beyond_sense(integrator.mechanics, rows, reached.t, *state, integrator.steps())
+                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *state, integrator.steps())
     statistics = {**integrator.statistics(), "seconds": ending.seconds}
     history = integrator.engine.history()
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, history, integrator.note())
@@ -95,10 +95,10 @@ def _failure(integrator: Integrator, reached: Reached) -> str:
     """Why a run ends where it has come; empty where it goes on."""
     q, u = integrator.split(reached.y)
     if governed_by_rounding(integrator.statistics()):
-        reason = too_fine(integrator.mechanics.system, integrator.settings, q)
+        reason = too_fine(integrator.dynamics.system, integrator.settings, q)
         if reason:
             return reason
-    return reached.failure and reached.failure + suspect(integrator.mechanics, reached.t, q, u)
+    return reached.failure and reached.failure + suspect(integrator.dynamics, reached.t, q, u)
 
 
 def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:
@@ -107,26 +107,26 @@ def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:
     return times[first:end]
 
 
-def _natural(mechanics: Mechanics, settings: RunSettings) -> Equations:
+def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
     """The equations with their unknowns in the natural order."""
-    return Equations(FORMULATIONS[settings.formulation](settings), mechanics.system, mechanics.coordinates)
+    return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)
 
 
-def _native(mechanics: Mechanics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine]:
+def _native(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine]:
     """The native driver, where SUNDIALS' libraries are as it needs them."""
-    equations, matrix = chosen(_natural(mechanics, settings))
-    return equations, NativeEngine(equations, mechanics.state, matrix, settings, control)
+    equations, matrix = chosen(_natural(dynamics, settings))
+    return equations, NativeEngine(equations, dynamics.state, matrix, settings, control)
 
 
-def _through_callbacks(mechanics: Mechanics, settings: RunSettings) -> tuple[Equations, Engine]:
+def _through_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
     """The driver by scikit-sundae's callbacks."""
-    equations = _natural(mechanics, settings)
+    equations = _natural(dynamics, settings)
     tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # Newton's iteration stays as IDA has it
-    return equations, SundaeEngine(equations, mechanics.state, *tolerances, settings.max_step, settings.max_order or 5)
+    return equations, SundaeEngine(equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5)
 
 
 class Integrator:
-    """IDA over the pieces of a run: from corner to corner, from event to event.
+    """IDA over the pieces of a run: from breakpoint to breakpoint, from event to event.
 
     Attributes
     ----------
@@ -134,29 +134,29 @@ class Integrator:
         Where it was last heard of.
     """
 
-    def __init__(self, mechanics: Mechanics, settings: RunSettings, control: ErrorControl | None = None) -> None:
-        control = control or CHOSEN[mechanics.system.of_body.dimensions]
-        self.mechanics, self.settings, self.control = mechanics, settings, control
+    def __init__(self, dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None) -> None:
+        control = control or CHOSEN[dynamics.system.of_body.dimensions]
+        self.dynamics, self.settings, self.control = dynamics, settings, control
         self.reached: Reached | None = None
         self._notes: list[str] = []
         native, reason = available()
         if native:
-            self.equations, self.engine = mechanics.kept(
-                "bdf", (settings, control), lambda: _native(mechanics, settings, control)
+            self.equations, self.engine = dynamics.kept(
+                "bdf", (settings, control), lambda: _native(dynamics, settings, control)
             )
             self.engine.forget()
         else:
-            self.equations, self.engine = _through_callbacks(mechanics, settings)
+            self.equations, self.engine = _through_callbacks(dynamics, settings)
             self._notes.append(
                 f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
             )
-            if mechanics.system.n_values("switch"):
+            if dynamics.system.n_values("event_function"):
                 self._notes.append(
                     "contacts and other events that begin and end within one step are not seen this way; set max_step"
                 )
-        self._jumps = VelocityJumps(mechanics)
+        self._jumps = VelocityJumps(dynamics)
         self._of_inputs = ""
-        self._events = self._corners = 0
+        self._events = self._breakpoints = 0
 
     def note(self) -> str:
         """What the user should know: how IDA runs, jumps of velocities, an order held down."""
@@ -171,17 +171,17 @@ class Integrator:
         """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
         t = grid.start
         self._jumps.clear()
-        features = self.mechanics.input_features(grid.start, grid.end)
+        features = self.dynamics.input_features(grid.start, grid.end)
         self.engine.see_inputs(features)
         self._of_inputs = features.note
-        chattering = Chattering(self.mechanics, grid.end, self.settings.rtol)
-        self._held = HeldSwitches(self.mechanics, chattering)
-        for stop in (*grid.with_stops(features.corners).tolist(), grid.end):
+        chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
+        self._held = MaskedEvents(self.dynamics, chattering)
+        for stop in (*grid.with_stops(features.breakpoints).tolist(), grid.end):
             while just_after(t) < stop:
-                refuse_beyond_limits(self.mechanics, t, start.q, start.u)
+                refuse_beyond_limits(self.dynamics, t, start.q, start.u)
                 self._begin(start, t)
                 chattering.begin(t, start.q, start.u)
-                for reached in self._leg(t, stop, grid):
+                for reached in self._segment(t, stop, grid):
                     yield reached if not reached.failure else self._explained(reached)
                     if reached.t < stop and not (reached.fired or reached.failure):
                         chattering.look(reached.t, *self.split(reached.y), self.steps())
@@ -194,13 +194,13 @@ class Integrator:
                     q, u = self.split(reached.y)
                     if self._held.any:
                         self._held.note(t, q, u, self.steps(), reached.fired)
-                    if t >= stop:  # min(2*t, 1) still rises at its corner: what follows is told behind it
+                    if t >= stop:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
                         t = just_after(t)
-                    start = restarted(self.mechanics, t, q, u)
+                    start = restarted(self.dynamics, t, q, u)
                     self._jumps.note(before, start.u - u)
                     yield from self._at_once(start, before, t, grid)
                     self._events += before < stop
-                    self._corners += before >= stop
+                    self._breakpoints += before >= stop
 
     def steps(self) -> int:
         """Taken so far."""
@@ -211,14 +211,14 @@ class Integrator:
         jumping = self._held.failed(reached.t, *self.split(reached.y))
         return replace(reached, failure=jumping or reached.failure)
 
-    def _leg(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
+    def _segment(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
         """Integrate from t to `stop` or to the first event."""
         if grid.times is None:
             return self.engine.by_steps(stop)
         return self.engine.to_times(_within(grid.times, just_after(t), stop), stop)
 
     def _at_once(self, start: InitialValues, before: float, t: float, grid: Grid) -> Iterator[Reached]:
-        """Output times that rounding alone keeps from t, as 0.1 s * 7 from a corner at 0.7 s: the state at t is theirs.
+        """Output times that rounding alone keeps from t, as 0.1 s * 7 from a breakpoint at 0.7 s: the state at t is theirs.
 
         Those up to `before` have been given.
         """
@@ -229,24 +229,24 @@ class Integrator:
 
     def _begin(self, start: InitialValues, t: float) -> None:
         equations, at = self.equations, self.equations.at
-        state, coordinates = self.mechanics.state, equations.coordinates
+        state, coordinates = self.dynamics.state, equations.coordinates
         state.q[:], state.u[:], state.a[:] = start.q, start.u, start.acceleration
         state.lam[:], state.mu[:] = start.lam, 0.0
         equations.start_from(start.q)
         y, yp = np.zeros(equations.n), np.zeros(equations.n)
         y[equations.independent] = coordinates.state(start.q, start.u)
         yp[equations.independent] = coordinates.state(
-            self.mechanics.position_rates(start.q, start.u), start.acceleration
+            self.dynamics.position_rates(start.q, start.u), start.acceleration
         )
         solved = at["lam"] != ABSENT
         multipliers = yp if equations.formulation.integrated else y
         multipliers[at["lam"][solved]] = start.lam[solved]
-        relax(self.mechanics, self.settings, t)
-        stiffness = stiffness_at(self.mechanics, t)
+        relax(self.dynamics, self.settings, t)
+        stiffness = stiffness_at(self.dynamics, t)
         newton = self.control.newton or newton_tolerance(stiffness, self.settings)
         self.engine.leave_out(self._held.waits)
         self.engine.begin(t, y, yp, newton, stiffness)
 
     def statistics(self) -> dict[str, int | float | str]:
         """The linear solver, IDA's counters, and how often it started anew."""
-        return {**self.engine.statistics(), "corners": self._corners, "events": self._events}
+        return {**self.engine.statistics(), "breakpoints": self._breakpoints, "events": self._events}

@@ -6,7 +6,7 @@ no clock, so that a scene is solved the same way each time.
 
 from __future__ import annotations
 
-from .mechanics import Mechanics
+from .dynamics import Dynamics
 
 EXPLICIT_STEP = (0.96, 0.061)
 """Of order 8, with 12 accelerations: for itself, and for a value of the kernels of accelerations."""
@@ -17,22 +17,22 @@ RESIDUAL, MATRIX = (0.12, 0.0213), (0.0, 0.0138)
 RESIDUALS, MATRICES = 1.5, 0.2
 """Of a step of BDF on average."""
 START = 250.0
-"""Consistent values and the integrators' memory, when a run changes hands."""
+"""Consistent values and the integrators' memory, when a run switches integrator."""
 STEPS_OF_A_START = 40
 """Of BDF, from order 1 on to where its own steps are."""
 
 
-def of_explicit_step(mechanics: Mechanics) -> float:
+def of_explicit_step(dynamics: Dynamics) -> float:
     """A step of DOP853."""
     itself, value = EXPLICIT_STEP
-    by_elimination = itself + value * mechanics.system.n_values("acceleration")
-    return by_elimination if mechanics.eliminated.serves else BY_LU * by_elimination
+    by_elimination = itself + value * dynamics.system.n_values("acceleration")
+    return by_elimination if dynamics.eliminated.serves else BY_LU * by_elimination
 
 
-def unknowns(mechanics: Mechanics) -> int:
+def unknowns(dynamics: Dynamics) -> int:
     """Of the implicit integrator: coordinates, velocities, and multipliers for both."""
-    coordinates = mechanics.coordinates
-    solved_for = mechanics.system.active & ~coordinates.fulfilled
+    coordinates = dynamics.coordinates
+    solved_for = dynamics.system.active & ~coordinates.satisfied
     free = coordinates.independent.sum() + coordinates.independent_u.sum()
     return int(free) + 2 * int(solved_for.sum())
 

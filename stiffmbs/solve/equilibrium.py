@@ -18,8 +18,8 @@ from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ..errors import SolverError
+from .dynamics import Dynamics
 from .failures import FAILURES
-from .mechanics import Mechanics
 
 MOST_MOVES = 500
 TRANSLATION, ROTATION = 0.25, 0.2
@@ -64,12 +64,12 @@ class _Balance:
         return float(np.sqrt(np.sum(self.left**2 / mass)))
 
 
-def find_equilibrium(mechanics: Mechanics, t: float) -> Equilibrium:
+def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
     """The equilibrium that a system comes to from its pose if it moves slowly; the state is at rest there afterwards.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         At an assembled pose.
     t : float
         At which forces and drives are taken, s.
@@ -79,10 +79,10 @@ def find_equilibrium(mechanics: Mechanics, t: float) -> Equilibrium:
     SolverError
         Where none is found; names the body with the largest imbalance.
     """
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.u[:] = 0.0
     limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
-    shift, known = 1.0, _balance(mechanics, t)
+    shift, known = 1.0, _balance(dynamics, t)
     for count in range(MOST_MOVES):
         if np.max(np.abs(known.left), initial=0.0) <= BALANCED * known.largest:
             return Equilibrium(
@@ -92,7 +92,7 @@ def find_equilibrium(mechanics: Mechanics, t: float) -> Equilibrium:
                 float(np.max(np.abs(known.left), initial=0.0) / (known.largest or 1.0)),
             )
         before = state.q.copy()
-        move = _move(mechanics, t, shift**2, known)
+        move = _move(dynamics, t, shift**2, known)
         longest = float(np.max(np.abs(move) / limits, initial=0.0))
         if known.left @ move < 0 and shift < STIFFEST:  # towards an unstable equilibrium
             shift *= RISES
@@ -101,7 +101,7 @@ def find_equilibrium(mechanics: Mechanics, t: float) -> Equilibrium:
             shift = max(2.0 * shift, shift * float(np.sqrt(longest)))
             continue
         state.q[:] = system.of_body.moved(before, move)
-        found = _balance(mechanics, t) if mechanics.assemble(t) >= 0 else None
+        found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
         off = _misjudged(system.mass, known, found, shift**2, move)
         if found is None or off > REFUSED:
             state.q[:] = before
@@ -112,38 +112,38 @@ def find_equilibrium(mechanics: Mechanics, t: float) -> Equilibrium:
         known = found
         if off < TRUSTED:
             shift = max(SLOWEST, FALLS * shift)
-    raise SolverError(_unbalanced(mechanics, known))
+    raise SolverError(_unbalanced(dynamics, known))
 
 
-def _balance(mechanics: Mechanics, t: float) -> _Balance:
+def _balance(dynamics: Dynamics, t: float) -> _Balance:
     """Multipliers that balance forces best (in the metric of the masses), and what they leave."""
-    state, system = mechanics.state, mechanics.system
+    state, system = dynamics.state, dynamics.system
     state.u[:] = 0.0
-    status, acceleration = mechanics.accelerate(t)
+    status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
     state.evaluate("motion", t)
     largest = max(
-        np.max(np.abs(state.vector("motion", "f")), initial=0.0), np.max(np.abs(_entries(mechanics)), initial=0.0)
+        np.max(np.abs(state.vector("motion", "f")), initial=0.0), np.max(np.abs(_entries(dynamics)), initial=0.0)
     )
     return _Balance(system.mass * acceleration, state.lam[: system.n_c].copy(), float(largest))
 
 
-def _entries(mechanics: Mechanics) -> np.ndarray:
+def _entries(dynamics: Dynamics) -> np.ndarray:
     """The single contributions to applied forces: they may cancel in the sum."""
-    term = mechanics.system.term("motion", "f")
-    entries: np.ndarray = mechanics.state.values["motion"][term.source]
+    term = dynamics.system.term("motion", "f")
+    entries: np.ndarray = dynamics.state.values["motion"][term.source]
     return entries
 
 
-def _move(mechanics: Mechanics, t: float, shift: float, known: _Balance) -> np.ndarray:
-    system, state = mechanics.system, mechanics.state
+def _move(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> np.ndarray:
+    system, state = dynamics.system, dynamics.state
     state.lam[: system.n_c] = known.lam
     state.evaluate("tangent", t)
     rows = np.flatnonzero(system.active)
-    rates = _sparse(mechanics, "tangent", "Z") + _identity(mechanics)
-    stiffness = (_sparse(mechanics, "tangent", "G_lam") - _sparse(mechanics, "tangent", "f_q")) @ rates
-    jacobian = _sparse(mechanics, "tangent", "J")[rows]
+    rates = _sparse(dynamics, "tangent", "Z") + _identity(dynamics)
+    stiffness = (_sparse(dynamics, "tangent", "G_lam") - _sparse(dynamics, "tangent", "f_q")) @ rates
+    jacobian = _sparse(dynamics, "tangent", "J")[rows]
     state.evaluate("motion", t)
     matrix = block_array([[diags_array(shift * system.mass) + stiffness, jacobian.T], [jacobian, None]], format="csc")
     right = np.concatenate([known.left, np.zeros(len(rows))])
@@ -154,18 +154,18 @@ def _move(mechanics: Mechanics, t: float, shift: float, known: _Balance) -> np.n
     return found
 
 
-def _identity(mechanics: Mechanics) -> csc_array:
+def _identity(dynamics: Dynamics) -> csc_array:
     """q' of the coordinates whose rate is a velocity."""
-    system = mechanics.system
+    system = dynamics.system
     q, u = system.of_body.straight(len(system.bodies))
     return csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
 
 
-def _sparse(mechanics: Mechanics, term_set: str, name: str) -> csc_array:
-    system = mechanics.system
+def _sparse(dynamics: Dynamics, term_set: str, name: str) -> csc_array:
+    system = dynamics.system
     term = system.term(term_set, name)
     shape = {"Z": (system.n_q, system.n_u), "J": (system.n_c, system.n_u)}.get(name, (system.n_u, system.n_q))
-    return csc_array((mechanics.state.values[term_set][term.source], (term.row, term.column)), shape=shape)
+    return csc_array((dynamics.state.values[term_set][term.source], (term.row, term.column)), shape=shape)
 
 
 def _misjudged(mass: np.ndarray, known: _Balance, found: _Balance | None, shift: float, move: np.ndarray) -> float:
@@ -176,8 +176,8 @@ def _misjudged(mass: np.ndarray, known: _Balance, found: _Balance | None, shift:
     return float(off / known.norm(mass))
 
 
-def _unbalanced(mechanics: Mechanics, known: _Balance) -> str:
-    system = mechanics.system
+def _unbalanced(dynamics: Dynamics, known: _Balance) -> str:
+    system = dynamics.system
     worst = int(np.argmax(np.abs(known.left)))
     name = system.name_of(worst, system.of_body.reactions)
     return (

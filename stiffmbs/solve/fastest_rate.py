@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.machine.routines import Routine
-from .mechanics import Mechanics
+from .dynamics import Dynamics
 
 FASTEST_RATE = Routine(
     "stiffmbs.solve.native.fastest_rate",
@@ -14,15 +14,15 @@ FASTEST_RATE = Routine(
 )
 
 
-def fastest_rate(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> float:
+def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:
     """The largest |lambda|, 1/s, of the motion about a state on the constraints, from below.
 
     Its cost is that of a step of order 8.
     """
-    state, eliminated = mechanics.state, mechanics.eliminated
+    state, eliminated = dynamics.state, dynamics.eliminated
     state.q[:], state.u[:] = q, u
-    work = np.empty(3 * mechanics.system.n_u + mechanics.system.n_q)
-    addresses = (mechanics.system.mass, work, eliminated.table, mechanics.table)
+    work = np.empty(3 * dynamics.system.n_u + dynamics.system.n_q)
+    addresses = (dynamics.system.mass, work, eliminated.table, dynamics.table)
     rate = FASTEST_RATE.load()(t, eliminated.serves, *(array.ctypes.data for array in addresses))
-    mechanics.forget_pivots()
+    dynamics.forget_pivots()
     return float(rate)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AssemblyError
+from .dynamics import POSITION_TOLERANCE, Dynamics
 from .failures import FAILURES
-from .mechanics import POSITION_TOLERANCE, Mechanics
 from .moves import Move, moves, position_words, velocity_words
 from .native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
 from .nearest_turns import take_nearest_turns
@@ -69,7 +69,7 @@ class InitialValues:
         )
 
 
-def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
+def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
     """Make the described start consistent.
 
     Positions by Newton's smallest moves, velocities by the smallest correction in the mass matrix (of those that are not
@@ -82,20 +82,20 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
         When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
         friction and reactions find no balance.
     """
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     q0, u0 = system.q.copy(), system.u.copy()
-    take_nearest_turns(mechanics, t)
-    status = mechanics.assemble(t)
+    take_nearest_turns(dynamics, t)
+    status = dynamics.assemble(t)
     if status < 0:
-        raise AssemblyError(_sentence(mechanics, NO_CONVERGENCE if status == SINGULAR else status, t))
-    _close_open_rates(mechanics, t)
-    status = mechanics.correct_velocities(t)
+        raise AssemblyError(_sentence(dynamics, NO_CONVERGENCE if status == SINGULAR else status, t))
+    _close_open_rates(dynamics, t)
+    status = dynamics.correct_velocities(t)
     if status < 0:
-        raise AssemblyError(_sentence(mechanics, status, t))
+        raise AssemblyError(_sentence(dynamics, status, t))
     state.count_anew(t)
-    status, acceleration = mechanics.accelerate(t)
+    status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise AssemblyError(_sentence(mechanics, status, t))
+        raise AssemblyError(_sentence(dynamics, status, t))
     change = np.where(system.open_rates, 0.0, state.u - u0)
     moved = moves(system, system.move(q0, state.q), change)
     return InitialValues(
@@ -103,9 +103,9 @@ def initial_values(mechanics: Mechanics, t: float) -> InitialValues:
     )
 
 
-def _close_open_rates(mechanics: Mechanics, t: float) -> None:
+def _close_open_rates(dynamics: Dynamics, t: float) -> None:
     """Have velocities that are not given follow those that are: their smallest change that satisfies J u + C_t = 0 best."""
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     ways = np.flatnonzero(system.open_rates)
     if not len(ways):
         return
@@ -116,30 +116,30 @@ def _close_open_rates(mechanics: Mechanics, t: float) -> None:
     state.u[ways] += follow / np.sqrt(system.mass[ways])
 
 
-def _sentence(mechanics: Mechanics, status: int, t: float) -> str:
+def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
     """Why there is no consistent start, with the element that is to blame."""
     if status == NO_CONVERGENCE:
-        return _gap_sentence(mechanics, t)
+        return _gap_sentence(dynamics, t)
     if status == SINGULAR:
-        return _dependent_sentence(mechanics)
+        return _dependent_sentence(dynamics)
     if status == NO_BALANCE:
-        return _balance_sentence(mechanics)
+        return _balance_sentence(dynamics)
     if status == NOT_FINITE:
-        return _undefined_sentence(mechanics, t)
+        return _undefined_sentence(dynamics, t)
     return f"no consistent start was found: {FAILURES[status]}"
 
 
-def _balance_sentence(mechanics: Mechanics) -> str:
-    rubbing = [n for group in mechanics.system.groups if group.record.patterns.get("f_lam") for n in group.names]
+def _balance_sentence(dynamics: Dynamics) -> str:
+    rubbing = [n for group in dynamics.system.groups if group.record.patterns.get("f_lam") for n in group.names]
     return f"the start has no accelerations: {FAILURES[NO_BALANCE]}, expected less of it in {', '.join(rubbing)}"
 
 
-def _gap_sentence(mechanics: Mechanics, t: float) -> str:
-    system, state = mechanics.system, mechanics.state
+def _gap_sentence(dynamics: Dynamics, t: float) -> str:
+    system, state = dynamics.system, dynamics.state
     state.evaluate("position", t)
     gaps = np.abs(state.vector("position", "C"))
     if not np.all(np.isfinite(gaps)):
-        return _undefined_sentence(mechanics, t)
+        return _undefined_sentence(dynamics, t)
     joint, equation = system.equations[int(np.argmax(gaps))]
     return (
         f"the scene cannot be assembled: the largest gap is left in joint '{joint}' (equation {equation}, "
@@ -147,8 +147,8 @@ def _gap_sentence(mechanics: Mechanics, t: float) -> str:
     )
 
 
-def _dependent_sentence(mechanics: Mechanics) -> str:
-    state, system = mechanics.state, mechanics.system
+def _dependent_sentence(dynamics: Dynamics) -> str:
+    state, system = dynamics.state, dynamics.system
     solved_for = np.flatnonzero(system.active)
     jacobian = state.matrix("motion", "J")[solved_for]
     joint, equation = system.equations[solved_for[_most_dependent_row(jacobian)]]
@@ -166,8 +166,8 @@ def _most_dependent_row(jacobian: np.ndarray) -> int:
     return int(order[-1])
 
 
-def _undefined_sentence(mechanics: Mechanics, t: float) -> str:
-    state, system = mechanics.state, mechanics.system
+def _undefined_sentence(dynamics: Dynamics, t: float) -> str:
+    state, system = dynamics.state, dynamics.system
     for term_set in ("motion", "acceleration"):
         state.evaluate(term_set, t)
         for name in (name for group in system.groups for name in group.names):

@@ -8,14 +8,14 @@ from ..compile.inputs.features import InputFeatures
 from ..compile.inputs.of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
+from .dynamics import Dynamics
 from .events.limits import refuse_beyond_limits
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .failures import FAILURES
 from .initial import InitialValues
-from .mechanics import Mechanics
 from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
 from .solver import Traits
-from .trajectory import Ending, Grid, Rows, Trajectory, Watch
+from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
 LARGEST_SURPRISE = 0.05
 """Part of a step's own length by which the positions found may miss the predicted ones."""
@@ -34,12 +34,14 @@ def traits(settings: RunSettings) -> Traits:
     return Traits("kinematic", exact=True)
 
 
-def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+def solve(
+    dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
+) -> Trajectory:
     """Follow the motion that the drives prescribe; the contract is in `stiffmbs.solve.trajectory`.
 
     Each step predicts q + h u + h^2/2 u' and corrects it by Newton; it is halved until positions and velocities come
     out near their prediction, so that the solution cannot jump to another branch.  A mechanism that locks (a dead
-    centre under its drive) stops there with a message that names instant and pose.  At corners of the drives in time,
+    centre under its drive) stops there with a message that names instant and pose.  At breakpoints of the drives in time,
     where velocities may jump, they are taken anew, and no step is longer than what the drives do in between.
 
     Raises
@@ -47,22 +49,22 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     InputError
         When the drives leave a freedom or prescribe one twice.
     """
-    _refuse_freedoms(mechanics)
+    _refuse_freedoms(dynamics)
     times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, 1001)
-    system = mechanics.system
+    system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
-    features = mechanics.input_features(grid.start, grid.end)
-    motion = _Motion(mechanics, start, times[0], SHORTEST * (grid.end - grid.start), features)
-    corners = iter((*features.corners, np.inf))
-    corner = next(corners)
+    features = dynamics.input_features(grid.start, grid.end)
+    motion = _Motion(dynamics, start, times[0], SHORTEST * (grid.end - grid.start), features)
+    breakpoints = iter((*features.breakpoints, np.inf))
+    breakpoint = next(breakpoints)
     rows.append(times[0], motion.q, motion.u)
     with Ending() as ending:
         for t in times[1:]:
-            while corner <= t:
-                motion.go_past(corner)
-                corner = next(corners)
+            while breakpoint <= t:
+                motion.go_past(breakpoint)
+                breakpoint = next(breakpoints)
             motion.go_to(t)
-            refuse_beyond_limits(mechanics, t, motion.q, motion.u)
+            refuse_beyond_limits(dynamics, t, motion.q, motion.u)
             rows.append(t, motion.q, motion.u)
             watch(t)
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": ending.seconds}
@@ -71,8 +73,8 @@ def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunS
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
-def _refuse_freedoms(mechanics: Mechanics) -> None:
-    system = mechanics.system
+def _refuse_freedoms(dynamics: Dynamics) -> None:
+    system = dynamics.system
     equations = int(np.sum(system.active & system.holonomic))
     if equations != system.n_u:
         raise InputError(
@@ -85,18 +87,18 @@ class _Motion:
     """The state that is followed in time, with its velocities and accelerations."""
 
     def __init__(
-        self, mechanics: Mechanics, start: InitialValues, t: float, shortest: float, features: InputFeatures
+        self, dynamics: Dynamics, start: InitialValues, t: float, shortest: float, features: InputFeatures
     ) -> None:
-        self._mechanics, self._shortest, self._features = mechanics, shortest, features
+        self._dynamics, self._shortest, self._features = dynamics, shortest, features
         self.t, self.steps, self.moves = t, 0, 0
         self._begun = t
         self._status = 0
         self.q, self.u, self.a = start.q, start.u, start.acceleration
-        state = mechanics.state
+        state = dynamics.state
         state.q[:], state.u[:] = start.q, start.u
         self._polish(t)
         self.q, self.u = state.q.copy(), state.u.copy()
-        self._counters = slice(mechanics.system.n_q - mechanics.system.n_counters, mechanics.system.n_q)
+        self._counters = slice(dynamics.system.n_q - dynamics.system.n_counters, dynamics.system.n_q)
         self._turning = self._rates_of_counters(t)
 
     def go_to(self, end: float) -> None:
@@ -115,30 +117,30 @@ class _Motion:
             else:
                 raise SolverError(self._stuck())
 
-    def go_past(self, corner: float) -> None:
-        """Follow the motion to just before a corner, and take velocities and accelerations anew just behind it."""
-        self.go_to(corner - self._shortest)
-        state, t = self._mechanics.state, corner + self._shortest
+    def go_past(self, breakpoint: float) -> None:
+        """Follow the motion to just before a breakpoint, and take velocities and accelerations anew just behind it."""
+        self.go_to(breakpoint - self._shortest)
+        state, t = self._dynamics.state, breakpoint + self._shortest
         state.q[:], state.u[:] = self.q, self.u
-        self._status = min(self._mechanics.assemble(t, most=MOST_MOVES), 0) or self._mechanics.correct_velocities(t)
+        self._status = min(self._dynamics.assemble(t, most=MOST_MOVES), 0) or self._dynamics.correct_velocities(t)
         if self._status < 0 or not self._take(t):
             raise SolverError(self._stuck())
 
     def _step(self, t: float, h: float) -> bool:
         """Try one step; whether positions and velocities came out near their prediction."""
-        state, mechanics = self._mechanics.state, self._mechanics
+        state, dynamics = self._dynamics.state, self._dynamics
         step = h * self.u + h * h / 2 * self.a
         self._status = 0
-        if np.abs(step * mechanics.system.per_velocity(0.0, 1.0)).max() > LARGEST_ROTATION:
+        if np.abs(step * dynamics.system.per_velocity(0.0, 1.0)).max() > LARGEST_ROTATION:
             return False
-        predicted_q, predicted_u = mechanics.system.of_body.moved(self.q, step), self.u + h * self.a
+        predicted_q, predicted_u = dynamics.system.of_body.moved(self.q, step), self.u + h * self.a
         predicted_q[self._counters] += h * self._turning
         state.q[:], state.u[:] = predicted_q, predicted_u
-        moves = mechanics.assemble(t, most=MOST_MOVES)
+        moves = dynamics.assemble(t, most=MOST_MOVES)
         self._status = min(moves, 0)
         if moves < 0 or not self._near(state.q, predicted_q, h):
             return False
-        self._status = mechanics.correct_velocities(t)
+        self._status = dynamics.correct_velocities(t)
         if self._status < 0:
             return False
         size = max(np.linalg.norm(self.u), np.linalg.norm(state.u))
@@ -151,12 +153,12 @@ class _Motion:
 
     def _take(self, t: float) -> bool:
         """Make the state at hand, with its accelerations, the one that is reached; whether it has them."""
-        state = self._mechanics.state
+        state = self._dynamics.state
         self._polish(t)
         turning = self._rates_of_counters(t)
         state.q[self._counters] = self.q[self._counters] + (t - self.t) / 2 * (self._turning + turning)
         state.count_anew(t)
-        self._status, acceleration = self._mechanics.accelerate(t)
+        self._status, acceleration = self._dynamics.accelerate(t)
         if self._status == 0:
             self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration
             self._turning = turning
@@ -164,20 +166,20 @@ class _Motion:
 
     def _rates_of_counters(self, t: float) -> np.ndarray:
         """How fast the counters of turns run at the state at hand, rad/s."""
-        state = self._mechanics.state
-        if self._mechanics.system.n_counters:
+        state = self._dynamics.state
+        if self._dynamics.system.n_counters:
             state.evaluate("acceleration", t)
-        return self._mechanics.position_rates(state.q, state.u)[self._counters]
+        return self._dynamics.position_rates(state.q, state.u)[self._counters]
 
     def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
         own = np.linalg.norm(h * self.u) + np.linalg.norm(h * h / 2 * self.a)
-        miss = self._mechanics.system.move(predicted, q)
+        miss = self._dynamics.system.move(predicted, q)
         return bool(np.linalg.norm(miss) <= LARGEST_SURPRISE * own + 1e-9)
 
     def _polish(self, t: float) -> None:
         """Take positions to rounding, by two more moves whether they get there or not, and velocities with them."""
-        self._mechanics.assemble(t, tolerance=0.0, most=2)
-        self._mechanics.correct_velocities(t)
+        self._dynamics.assemble(t, tolerance=0.0, most=2)
+        self._dynamics.correct_velocities(t)
 
     def _stuck(self) -> str:
         """Why even the shortest step fails: the mechanism locks, unless the last try failed for a reason of its own."""
@@ -186,7 +188,7 @@ class _Motion:
         return self._locked()
 
     def _locked(self) -> str:
-        system, state = self._mechanics.system, self._mechanics.state
+        system, state = self._dynamics.system, self._dynamics.state
         state.q[:], state.u[:] = self.q, self.u
         state.evaluate("motion", self.t)
         directions, _, _ = np.linalg.svd(state.matrix("motion", "J")[system.active])

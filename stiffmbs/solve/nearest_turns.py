@@ -7,35 +7,35 @@ import math
 import numpy as np
 
 from ..compile.group import Group
-from .mechanics import Mechanics
+from .dynamics import Dynamics
 
 TURN = 2 * math.pi
 
 
-def take_nearest_turns(mechanics: Mechanics, t: float) -> None:
+def take_nearest_turns(dynamics: Dynamics, t: float) -> None:
     """Start the first angle of each equation in the turn in which the equation has the least left.
 
     A drive from 200 degrees finds its joint at -160 degrees, one turn short; without this, assembly would look for the
     turn in other poses.
     """
-    groups = [group for group in mechanics.system.groups if group.record.n_counters and group.record.n_holonomic]
+    groups = [group for group in dynamics.system.groups if group.record.n_counters and group.record.n_holonomic]
     if not groups:
         return
-    state = mechanics.state
+    state = dynamics.state
     first = np.concatenate([group.counters[:, 0] for group in groups])
     state.q[first] = 0.0
-    left = _violations(mechanics, groups, t)
+    left = _violations(dynamics, groups, t)
     state.q[first] = TURN
-    of_a_turn = _violations(mechanics, groups, t) - left
+    of_a_turn = _violations(dynamics, groups, t) - left
     squares = np.sum(of_a_turn**2, axis=1)
     turns = -np.sum(of_a_turn * left, axis=1) / np.where(squares > 0, squares, np.inf)
     state.q[first] = TURN * np.round(turns)
 
 
-def _violations(mechanics: Mechanics, groups: list[Group], t: float) -> np.ndarray:
+def _violations(dynamics: Dynamics, groups: list[Group], t: float) -> np.ndarray:
     """C of each element of some groups, one element a row, filled up with zeros."""
-    mechanics.state.evaluate("position", t)
-    C = mechanics.state.vector("position", "C")
+    dynamics.state.evaluate("position", t)
+    C = dynamics.state.vector("position", "C")
     widest = max(group.record.n_equations for group in groups)
     rows = []
     for group in groups:

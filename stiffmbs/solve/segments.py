@@ -19,29 +19,29 @@ class Leg:
     traits: Traits
 
 
-def joined(legs: Sequence[Leg]) -> Trajectory:
+def joined(segments: Sequence[Leg]) -> Trajectory:
     """Legs as one trajectory; each begins with the row at which the last one ended."""
-    parts = [leg.trajectory for leg in legs]
+    parts = [segment.trajectory for segment in segments]
     t, q, u = (
         np.concatenate([getattr(part, name)[int(k > 0) :] for k, part in enumerate(parts)]) for name in ("t", "q", "u")
     )
-    counted = _last_of_each_kind(legs)
+    counted = _last_of_each_kind(segments)
     return replace(parts[-1], t=t, q=q, u=u, statistics=_summed(parts, counted), history=_history(counted))
 
 
-def _last_of_each_kind(legs: Sequence[Leg]) -> list[Trajectory]:
+def _last_of_each_kind(segments: Sequence[Leg]) -> list[Trajectory]:
     """Every explicit leg, and the last implicit one: its integrator counts from its first start on."""
-    explicit = [leg.trajectory for leg in legs if not leg.traits.implicit]
-    return explicit + [leg.trajectory for leg in legs if leg.traits.implicit][-1:]
+    explicit = [segment.trajectory for segment in segments if not segment.traits.implicit]
+    return explicit + [segment.trajectory for segment in segments if segment.traits.implicit][-1:]
 
 
-def _summed(legs: Sequence[Trajectory], counted: Sequence[Trajectory]) -> dict[str, int | float | str]:
+def _summed(segments: Sequence[Trajectory], counted: Sequence[Trajectory]) -> dict[str, int | float | str]:
     """The counters of those that count, and the time of all."""
-    seconds = summed([{"seconds": leg.statistics["seconds"]} for leg in legs])
-    return {**summed([leg.statistics for leg in counted]), **seconds}
+    seconds = summed([{"seconds": segment.statistics["seconds"]} for segment in segments])
+    return {**summed([segment.statistics for segment in counted]), **seconds}
 
 
 def _history(counted: Sequence[Trajectory]) -> History:
     """The steps of all legs; orders where all are known."""
-    t = np.concatenate([leg.history.t for leg in counted])
+    t = np.concatenate([segment.history.t for segment in counted])
     return History(np.sort(t), np.empty(0, dtype=int))

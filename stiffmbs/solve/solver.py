@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..describe.settings import RunSettings
 from .trajectory import Solver
 
-FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "give_way"})
+FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first"})
 """Settings that are read before a solver begins; every other one is for the solvers that declare it."""
 
 
@@ -31,7 +31,7 @@ class Traits:
     locates_events : bool
         Whether it stops where a force changes its law, or has no need to.
     switches : bool
-        Whether it switches between integrators during a run.
+        Whether it event functions between integrators during a run.
     """
 
     name: str

@@ -10,31 +10,31 @@ import numpy as np
 from ..describe.settings import RunSettings
 from ..presolve.linear_equations import independent_coordinates
 from ..presolve.presolve import Part
+from .dynamics import Dynamics
 from .events.restart import restarted
 from .initial import InitialValues
-from .mechanics import Mechanics
 from .storage import room
-from .trajectory import Grid, History, Outcome, Solver, Trajectory, Watch, summed
+from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
 
 @dataclass(frozen=True)
-class Piece:
+class Subsystem:
     """A mechanism ready to be solved.
 
     Attributes
     ----------
     part : Part
         Which bodies of the whole it moves.
-    mechanics : Mechanics
+    dynamics : Dynamics
     start : InitialValues
     """
 
     part: Part
-    mechanics: Mechanics
+    dynamics: Dynamics
     start: InitialValues
 
 
-def piece_of(part: Part, start: InitialValues, t: float) -> Piece:
+def subsystem_of(part: Part, start: InitialValues, t: float) -> Subsystem:
     """A part's mechanics and start, from the start of the whole.
 
     Raises
@@ -42,22 +42,27 @@ def piece_of(part: Part, start: InitialValues, t: float) -> Piece:
     SolverError
         When its accelerations are not determined.
     """
-    mechanics = Mechanics(part.system)
-    return Piece(part, mechanics, restarted(mechanics, t, *part.reduced(start.q, start.u), project=False))
+    dynamics = Dynamics(part.system)
+    return Subsystem(part, dynamics, restarted(dynamics, t, *part.reduced(start.q, start.u), project=False))
 
 
-def leave_out_coordinates(mechanics: Mechanics, t: float) -> None:
+def leave_out_coordinates(dynamics: Dynamics, t: float) -> None:
     """Let integrators take the independent coordinates alone for unknowns; the state must satisfy the constraints.
 
     Where nothing moves all stay, as an integrator needs an unknown.
     """
-    found = independent_coordinates(mechanics.system, mechanics.state, t)
+    found = independent_coordinates(dynamics.system, dynamics.state, t)
     if found.independent.any():
-        mechanics.coordinates = found
+        dynamics.coordinates = found
 
 
-def solve_pieces(
-    solve: Solver, pieces: Sequence[Piece], start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch
+def solve_subsystems(
+    solve: Solver,
+    subsystems: Sequence[Subsystem],
+    start: InitialValues,
+    grid: Grid,
+    settings: RunSettings,
+    watch: ProgressCallback,
 ) -> Trajectory:
     """Solve one mechanism after the other; the contract is in `stiffmbs.solve.trajectory`.
 
@@ -73,13 +78,15 @@ def solve_pieces(
     """
     found: list[Trajectory] = []
     rows = None if grid.times is None else len(grid.times)
-    for k, piece in enumerate(pieces):
+    for k, subsystem in enumerate(subsystems):
         within = grid if rows is None else _up_to(grid, rows)
-        found.append(solve(piece.mechanics, piece.start, within, settings, _share(watch, grid, k, len(pieces))))
+        found.append(
+            solve(subsystem.dynamics, subsystem.start, within, settings, _share(watch, grid, k, len(subsystems)))
+        )
         rows = len(found[-1].t)
         if rows < 2:
             break
-    return _together(pieces, found, start)
+    return _together(subsystems, found, start)
 
 
 def _up_to(grid: Grid, rows: int) -> Grid:
@@ -89,18 +96,18 @@ def _up_to(grid: Grid, rows: int) -> Grid:
     return replace(grid, end=float(grid.times[rows - 1]), times=grid.times[:rows])
 
 
-def _share(watch: Watch, grid: Grid, k: int, count: int) -> Watch:
+def _share(watch: ProgressCallback, grid: Grid, k: int, count: int) -> ProgressCallback:
     """Progress of one of several runs over the same time, as progress of all."""
     return lambda t: watch(grid.start + (k * (grid.end - grid.start) + t - grid.start) / count)
 
 
-def _together(pieces: Sequence[Piece], found: Sequence[Trajectory], start: InitialValues) -> Trajectory:
+def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], start: InitialValues) -> Trajectory:
     """The motion of the whole, up to the last instant that all have reached; what was not solved stays at the start."""
-    rows = min(len(trajectory.t) for trajectory in found) if len(found) == len(pieces) else 1
+    rows = min(len(trajectory.t) for trajectory in found) if len(found) == len(subsystems) else 1
     q, u = room(rows, len(start.q)), room(rows, len(start.u))
     q[:], u[:] = start.q, start.u
-    for piece, trajectory in zip(pieces, found, strict=False):
-        piece.part.put(trajectory.q[:rows], trajectory.u[:rows], q, u)
+    for subsystem, trajectory in zip(subsystems, found, strict=False):
+        subsystem.part.put(trajectory.q[:rows], trajectory.u[:rows], q, u)
     ending = next((each for each in found if each.outcome is not Outcome.DONE), found[-1])
     return replace(
         ending, t=found[0].t[:rows], q=q, u=u, statistics=summed([each.statistics for each in found]), history=_merged([each.history for each in found]),

@@ -7,16 +7,16 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..compile.system import System
-from .mechanics import Mechanics
+from .dynamics import Dynamics
 
 AHEAD = (0.0, 1e-12, 1e-9, 1e-6)
-"""How far beyond the last state a value is looked for that does not exist, in parts of the time, s."""
+"""How far beyond the last state a value is looked for that does not exist, relative to the time, s."""
 OPEN = 1e-5
 """Violation of a constraint, m or rad, that tells a mechanism that locks."""
 TERM_SETS = ("motion", "acceleration")
 
 
-def suspect(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> str:
+def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     """A clause on the element that has no finite value at, or just beyond, a state; else on a joint that is open; else on
     the element that pulls hardest.
 
@@ -34,18 +34,18 @@ def suspect(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> str
     """
     for ahead in AHEAD:
         later = ahead * max(1.0, abs(t))
-        _move(mechanics, mechanics.system.of_body.moved(q, later * u), u)
+        _move(dynamics, dynamics.system.of_body.moved(q, later * u), u)
         for term_set in TERM_SETS:
-            mechanics.state.evaluate(term_set, t + later)
-            name = _undefined(mechanics.system, mechanics.state.values[term_set], term_set)
+            dynamics.state.evaluate(term_set, t + later)
+            name = _undefined(dynamics.system, dynamics.state.values[term_set], term_set)
             if name:
                 return f"; '{name}' has no finite value {'beyond' if ahead else 'at'} that instant"
-    _move(mechanics, q, u)
-    return _open(mechanics, t) or _hardest(mechanics, t)
+    _move(dynamics, q, u)
+    return _open(dynamics, t) or _hardest(dynamics, t)
 
 
-def _move(mechanics: Mechanics, q: np.ndarray, u: np.ndarray) -> None:
-    mechanics.state.q[:], mechanics.state.u[:] = q, u
+def _move(dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> None:
+    dynamics.state.q[:], dynamics.state.u[:] = q, u
 
 
 def _undefined(system: System, values: np.ndarray, term_set: str) -> str:
@@ -54,9 +54,9 @@ def _undefined(system: System, values: np.ndarray, term_set: str) -> str:
     return system.writer(term_set, int(wrong[0])) if len(wrong) else ""
 
 
-def _open(mechanics: Mechanics, t: float) -> str:
+def _open(dynamics: Dynamics, t: float) -> str:
     """The joint whose equations are furthest from satisfied, where that is more than an error of integration."""
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     gaps = np.abs(state.vector("motion", "C")) * system.active
     if not len(gaps) or gaps.max() < OPEN:
@@ -65,14 +65,14 @@ def _open(mechanics: Mechanics, t: float) -> str:
     return f"; joint '{joint}' (equation {equation}) is open by {gaps.max():.3g}"
 
 
-def _hardest(mechanics: Mechanics, t: float) -> str:
+def _hardest(dynamics: Dynamics, t: float) -> str:
     """The element that accelerates a body most."""
-    if mechanics.accelerate(t)[0] < 0:
+    if dynamics.accelerate(t)[0] < 0:
         return ""
-    largest, name, k = max(_pulls(mechanics, t), default=(0.0, "", 0))
+    largest, name, k = max(_pulls(dynamics, t), default=(0.0, "", 0))
     if not largest > 0.0:
         return ""
-    return f"; '{name}' pulls hardest there ({_acceleration(mechanics.system, k)} by {largest:.3g})"
+    return f"; '{name}' pulls hardest there ({_acceleration(dynamics.system, k)} by {largest:.3g})"
 
 
 def _acceleration(system: System, k: int) -> str:
@@ -83,9 +83,9 @@ def _acceleration(system: System, k: int) -> str:
     return system.name_of(k, of_body.accelerations)
 
 
-def _pulls(mechanics: Mechanics, t: float) -> Iterator[tuple[float, str, int]]:
+def _pulls(dynamics: Dynamics, t: float) -> Iterator[tuple[float, str, int]]:
     """The hardest pull of a force, and that of a joint: its size, the element, and the velocity that it changes."""
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     values, lam = state.values["motion"], state.lam
     force, jacobian = system.term("motion", "f"), system.term("motion", "J")

@@ -25,10 +25,10 @@ from ..errors import SolverError
 from .storage import BLOCK, release, room
 
 if TYPE_CHECKING:
+    from .dynamics import Dynamics
     from .initial import InitialValues
-    from .mechanics import Mechanics
 
-Watch = Callable[[float], None]
+ProgressCallback = Callable[[float], None]
 
 
 class Outcome(Enum):
@@ -59,7 +59,7 @@ class History:
 class Grid:
     """When to report: the ends of the run, and output times (ends included) or None for the solver's own steps.
 
-    Solvers that choose their steps start anew at `stops`, as at corners of inputs.
+    Solvers that choose their steps start anew at `stops`, as at breakpoints of inputs.
     """
 
     start: float
@@ -67,11 +67,11 @@ class Grid:
     times: np.ndarray | None
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
 
-    def with_stops(self, corners: np.ndarray) -> np.ndarray:
-        """Where to start anew: at corners of inputs, and at the stops within the run."""
+    def with_stops(self, breakpoints: np.ndarray) -> np.ndarray:
+        """Where to start anew: at breakpoints of inputs, and at the stops within the run."""
         if not len(self.stops):
-            return corners
-        return np.union1d(corners, self.stops[(self.stops > self.start) & (self.stops < self.end)])
+            return breakpoints
+        return np.union1d(breakpoints, self.stops[(self.stops > self.start) & (self.stops < self.end)])
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ class Solver(Protocol):
     """See above."""
 
     def __call__(
-        self, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch, /
+        self, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback, /
     ) -> Trajectory: ...
 
 

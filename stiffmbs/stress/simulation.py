@@ -12,7 +12,7 @@ from ..errors import StiffmbsError
 from ..jobs.run import run
 from ..results.solution import Solution
 from ..solve.trajectory import Outcome as Ending
-from ..solve.trajectory import Watch
+from ..solve.trajectory import ProgressCallback
 from .case import Case, Outcome, Verdict, measured, told
 
 PATIENCE = 20.0
@@ -67,7 +67,7 @@ def _judged(
     return measured(found, allowed, f"{solution.solver['steps']} steps" + (f"; {notes}" if notes else ""))
 
 
-def patience(seconds: float) -> Watch:
+def patience(seconds: float) -> ProgressCallback:
     """Interrupts a run, as its user would, when it takes longer than that from now."""
     begun = time.process_time()
 

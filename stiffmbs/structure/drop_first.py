@@ -1,4 +1,4 @@
-"""Which of a loop's redundant equations give way, and which others say the same."""
+"""Which of a loop's redundant equations are dropped, and which others say the same."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ WELL_CHOSEN = (0.1, 1e-2, 1e-4, 1e-7)
 """Parts of the largest that a row's share in what is redundant must have, at every pose looked at; the next smaller one
 is tried where not enough rows have it.  A row with little share leaves equations that nearly depend on each other."""
 TAKES_PART = 1e-6
-"""Share in a combination, in parts of its largest, below which a row has no part in it."""
+"""Share in a combination, relative to its largest, below which a row has no part in it."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Redundant:
     Attributes
     ----------
     row : int
-        The equation that gives way, counted in its loop.
+        The equation that is dropped, counted in its loop.
     others : tuple of int
         The rows that say the same together.
     """
@@ -42,7 +42,7 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
     Parameters
     ----------
     order : sequence of str
-        Names of all joints; the last gives way first.
+        Names of all joints; the last is dropped first.
     holonomic : ndarray of bool
         Which of the loop's rows have a position form.
     """
@@ -66,7 +66,7 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
 
 
 def _preference(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) -> list[int]:
-    """The loop's rows, those that should give way first in front."""
+    """The loop's rows, with those to drop first in front."""
     rank = {name: k for k, name in enumerate(order)}
     joint_of = [rank[joint.name] for joint in found.equations.loop.joints for _ in joint.rows]
     shares = _least_shares([space for _, space in found.null_spaces]).round(6)
@@ -80,7 +80,7 @@ def _least_shares(spaces: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _shares(space: np.ndarray) -> np.ndarray:
-    """Each row's share in a null space, in parts of the largest."""
+    """Each row's share in a null space, relative to the largest."""
     norms = np.linalg.norm(space, axis=1)
     return norms / max(norms.max(), TAKES_PART)
 

@@ -11,7 +11,7 @@ from ..compile.system import System
 from ..compile.terms import TERM_SETS
 
 ROUNDING = 1e-12
-"""Stiffness, in parts of the largest on the body, that is rounding."""
+"""Stiffness, relative to the largest on the body, that is rounding."""
 
 
 def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:

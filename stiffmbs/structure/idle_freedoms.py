@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.system import System
-from ..solve.mechanics import Mechanics
+from ..solve.dynamics import Dynamics
 from .elastic import held, screwed, stiffnesses
 from .unproven import by_functions
 
 FREE = 1e-8
-"""Singular value, in parts of the largest, of a motion that no joint hinders."""
+"""Singular value, relative to the largest, of a motion that no joint hinders."""
 PERTURBATION = 0.1
 """Size of a move (sizes of the system, rad) to a second pose: what is free at one alone is a matter of that pose."""
 FURTHER = 0.3
@@ -23,7 +23,7 @@ TURNS = 1e-6
 
 
 @dataclass(frozen=True)
-class OwnFreedom:
+class IdleFreedom:
     """A motion of one body that moves no other.
 
     Attributes
@@ -43,7 +43,7 @@ class OwnFreedom:
     held_by: tuple[str, ...] = ()
 
 
-def own_freedoms(mechanics: Mechanics, t: float) -> list[OwnFreedom]:
+def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
     """The bodies that can move by themselves although joints and elastic forces hold them between others.
 
     The motions are those that J of a body alone leaves free.  A force holds one where its tangent stiffness there is not
@@ -51,25 +51,25 @@ def own_freedoms(mechanics: Mechanics, t: float) -> list[OwnFreedom]:
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         At an assembled pose; left as it is.
     t : float
         s.
     """
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     around = _joints_around(system)
     for body in _held_by_functions(system):  # a formula that is flat here may hold the body elsewhere
         around.pop(body, None)
-    ways = dict(_free_ways(mechanics, list(around), t))
+    ways = dict(_free_ways(dynamics, list(around), t))
     if not ways:
         return []
     q = state.q.copy()
     step = PERTURBATION * np.random.default_rng(1).uniform(-1, 1, system.n_u) * system.per_velocity(system.size, 1.0)
     state.q[:] = system.of_body.moved(q, step)
-    also = dict(_free_ways(mechanics, list(ways), t)) if mechanics.assemble(t) >= 0 else {}
+    also = dict(_free_ways(dynamics, list(ways), t)) if dynamics.assemble(t) >= 0 else {}
     state.q[:] = q
     always = {body: free for body, free in ways.items() if len(free) == len(also.get(body, ()))}
-    found = [_classified(mechanics, body, free, around[body], t) for body, free in always.items()]
+    found = [_classified(dynamics, body, free, around[body], t) for body, free in always.items()]
     return [freedom for freedom in found if freedom]
 
 
@@ -90,33 +90,33 @@ def _held_by_functions(system: System) -> set[int]:
 
 
 def _classified(
-    mechanics: Mechanics, body: int, free: np.ndarray, joints: dict[str, set[int]], t: float
-) -> OwnFreedom | None:
+    dynamics: Dynamics, body: int, free: np.ndarray, joints: dict[str, set[int]], t: float
+) -> IdleFreedom | None:
     """What is told of a body's motions that no joint hinders; None where it is held against one other only, or by forces."""
-    system = mechanics.system
-    elastic = stiffnesses(mechanics.state, t).get(body, {})
+    system = dynamics.system
+    elastic = stiffnesses(dynamics.state, t).get(body, {})
     others = _others_of_forces(system)
     by_joints = set[int]().union(*joints.values())
     by_forces = set[int]().union(*(others[name] - {body} for name in elastic))
     if len(by_joints | by_forces) < 2:
         return None
     name, straight = system.bodies[body], system.of_body.linear
-    holding, loose = _held(mechanics, body, free, t)
+    holding, loose = _held(dynamics, body, free, t)
     if len(loose):
-        return OwnFreedom(name, (*joints, *(elastic if len(by_joints) < 2 else ())), _motion(loose, straight))
+        return IdleFreedom(name, (*joints, *(elastic if len(by_joints) < 2 else ())), _motion(loose, straight))
     if len(by_joints) < 2:
         return None
-    return OwnFreedom(name, tuple(joints), _motion(free, straight), tuple(holding))
+    return IdleFreedom(name, tuple(joints), _motion(free, straight), tuple(holding))
 
 
-def _held(mechanics: Mechanics, body: int, free: np.ndarray, t: float) -> tuple[list[str], np.ndarray]:
+def _held(dynamics: Dynamics, body: int, free: np.ndarray, t: float) -> tuple[list[str], np.ndarray]:
     """The forces that are stiff against motions of a body, and the motions that none is stiff against, here and further along."""
-    state = mechanics.state
-    scale = mechanics.system.per_velocity(mechanics.system.size, 1.0)[: mechanics.system.of_body.n_u]
+    state = dynamics.state
+    scale = dynamics.system.per_velocity(dynamics.system.size, 1.0)[: dynamics.system.of_body.n_u]
     names, loose = held(stiffnesses(state, t).get(body, {}), free, scale)
     q = state.q.copy()
     for way in loose:
-        state.q[:] = screwed(mechanics.system, q, body, FURTHER * scale * way)
+        state.q[:] = screwed(dynamics.system, q, body, FURTHER * scale * way)
         more, loose = held(stiffnesses(state, t).get(body, {}), loose, scale)
         names = list(dict.fromkeys([*names, *more]))
         state.q[:] = q
@@ -129,9 +129,9 @@ def _others_of_forces(system: System) -> dict[str, set[int]]:
     return {name: set(bodies) for g in groups for name, bodies in zip(g.names, g.bodies.tolist(), strict=True)}
 
 
-def _free_ways(mechanics: Mechanics, bodies: list[int], t: float) -> Iterator[tuple[int, np.ndarray]]:
+def _free_ways(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tuple[int, np.ndarray]]:
     """Of some bodies those that no joint hinders from motions of their own, and these, a row each, in sizes and rad."""
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     term, width = system.term("motion", "J"), system.of_body.n_u
     value = state.values["motion"][term.source] / system.per_velocity(1.0, system.size)[term.column]

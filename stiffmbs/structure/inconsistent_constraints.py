@@ -28,7 +28,7 @@ REGULAR = 1e-5
 
 
 @dataclass(frozen=True)
-class Contradiction:
+class Inconsistency:
     """Redundant equations that disagree with those that hold the same.
 
     Attributes
@@ -58,7 +58,7 @@ def time_dependent(equations: LoopEquations, pose: Pose, duration: float) -> np.
     return equations.timed | np.any(np.array(rates) != 0.0, axis=0)
 
 
-def contradictions(found: LoopRank, redundant: list[Redundant], duration: float) -> list[Contradiction]:
+def inconsistencies(found: LoopRank, redundant: list[Redundant], duration: float) -> list[Inconsistency]:
     """Redundant equations of a loop that cannot hold together with the others, at the first instant where that shows.
 
     Each redundant equation must hold where the others do: in position at the assembled pose, and in velocity
@@ -75,7 +75,7 @@ def contradictions(found: LoopRank, redundant: list[Redundant], duration: float)
             gaps = _nearby(equations, redundant, pose)
             asked = _blamed(pose, gaps)
         if against := [r for r in asked if r.row in gaps]:
-            return [Contradiction(r.row, _joints(equations, r, driven), pose.t, level, gaps[r.row]) for r in against]
+            return [Inconsistency(r.row, _joints(equations, r, driven), pose.t, level, gaps[r.row]) for r in against]
     return []
 
 

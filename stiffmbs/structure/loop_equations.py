@@ -8,10 +8,10 @@ import numpy as np
 
 from ..compile.state import State
 from .loops import Loop
-from .sparse_matrix import Entries
+from .sparse_matrix import SparseMatrix
 
 CLOSED = 1e-11
-"""Largest violation, in parts of the loop's size, of a pose that counts as assembled."""
+"""Largest violation, relative to the loop's size, of a pose that counts as assembled."""
 AGREES = 1e-6
 """The same, where equations are redundant and given by some digits only."""
 MOST_STEPS = 40
@@ -19,7 +19,7 @@ MOST_STEPS = 40
 LONGEST_STEP = 1.0
 """Longest move of one step (arms, rad), so that assembly stays near the pose described."""
 STATIONARY = 1e-9
-"""Slope of |C|, in parts of itself, below which equations that disagree come no closer to holding."""
+"""Slope of |C|, relative to itself, below which equations that disagree come no closer to holding."""
 LEAST_DAMPING = 1e-13
 """Keeps C_q C_q^T regular where equations are redundant; far below the squares of singular values that count."""
 LEAST_NORM = 1e-9
@@ -40,7 +40,7 @@ class Pose:
         Largest violation of the positions.
     C : ndarray, shape (n,)
         Violations.
-    C_q, J : Entries, shape (n, velocities)
+    C_q, J : SparseMatrix, shape (n, velocities)
         Derivatives of the positions by moves, and of the velocity level.
     rates : ndarray, shape (n,)
         J u + C_t at u = 0, 1/s.
@@ -50,8 +50,8 @@ class Pose:
     t: float
     gap: float
     C: np.ndarray
-    C_q: Entries
-    J: Entries
+    C_q: SparseMatrix
+    J: SparseMatrix
     rates: np.ndarray
 
 
@@ -94,7 +94,7 @@ class LoopEquations:
         self.row_scale = np.ones(len(loop.rows))
         self.scale_rows([J.scaled(self.row_scale, self._column_scale)])
 
-    def scale_rows(self, matrices: list[Entries]) -> None:
+    def scale_rows(self, matrices: list[SparseMatrix]) -> None:
         """Scale rows so that the longest form that each takes in matrices scaled so far has length one."""
         norms = np.max([J.norms() for J in matrices], axis=0)
         self.row_scale /= np.maximum(norms, LEAST_NORM * np.median(norms) or 1.0)
@@ -159,15 +159,15 @@ class LoopEquations:
         inside = self._row_at[term.row] >= 0
         return term.source[inside], self._row_at[term.row[inside]], self._column_at[term.column[inside]]
 
-    def _pattern_of_J(self) -> tuple[np.ndarray, np.ndarray, Entries]:
+    def _pattern_of_J(self) -> tuple[np.ndarray, np.ndarray, SparseMatrix]:
         """Sources of the entries of J, the place to which each adds, and the places."""
         source, row, column = self._places("J")
         width = len(self.loop.columns)
         places, add_to = np.unique(row * width + column, return_inverse=True)
         shape = (len(self.loop.rows), width)
-        return source, add_to, Entries(places // width, places % width, np.zeros(len(places)), shape)
+        return source, add_to, SparseMatrix(places // width, places % width, np.zeros(len(places)), shape)
 
-    def _J(self) -> Entries:
+    def _J(self) -> SparseMatrix:
         source, add_to, entries = self._pattern
         return replace(entries, value=np.bincount(add_to, self.state.values["motion"][source], len(entries.value)))
 
@@ -178,7 +178,7 @@ class LoopEquations:
         return result
 
 
-def _root_mean_square_arm(J: Entries, turning: np.ndarray, size: float) -> float:
+def _root_mean_square_arm(J: SparseMatrix, turning: np.ndarray, size: float) -> float:
     """Of the rows that hold points: the part in angular velocities (`turning`) over that in velocities, m."""
     along, about = (J.of_columns(part).norms() for part in (~turning, turning))
     of_points = along * size > 1e-6 * about

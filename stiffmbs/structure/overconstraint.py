@@ -12,10 +12,10 @@ from ..compile.system import System
 from .drop_first import TAKES_PART, Redundant
 from .loop_equations import Pose
 from .loops import LoopJoint
-from .rank_result import LoopFinding
+from .rank_result import LoopRankResult
 from .redundancy import Redundancy
 from .sharing import elastic_joints
-from .uniqueness import Undetermined, undetermined
+from .uniqueness import Indeterminate, indeterminate
 
 if TYPE_CHECKING:
     from .replacements import Choice
@@ -32,8 +32,8 @@ class Overconstraint:
     joints : tuple of str
         All that take part.
     redundant : tuple of (str, str)
-        Joint and name of the equations that give way.
-    undetermined : tuple of Undetermined
+        Joint and name of the equations that are dropped.
+    indeterminate : tuple of Indeterminate
         The reactions that have no unique value because of it.
     shared : bool
         Whether all hold the same bodies against each other, so that what they carry together is unique.
@@ -49,7 +49,7 @@ class Overconstraint:
 
     joints: tuple[str, ...]
     redundant: tuple[tuple[str, str], ...]
-    undetermined: tuple[Undetermined, ...]
+    indeterminate: tuple[Indeterminate, ...]
     shared: bool
     remedies: tuple[tuple[str, ...], ...]
     elastic: tuple[str, ...]
@@ -60,10 +60,10 @@ class Overconstraint:
 
 def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
     """What is held more than once in a system, independent cases apart."""
-    blocks = [(finding, block) for finding in redundancy.findings for block in _blocks(finding)]
+    blocks = [(rank_result, block) for rank_result in redundancy.rank_results for block in _blocks(rank_result)]
     what = "all reactions" if len(blocks) == 1 else "these reactions"
-    for finding, block in blocks:
-        yield _overconstraint(redundancy.system, finding, block, what)
+    for rank_result, block in blocks:
+        yield _overconstraint(redundancy.system, rank_result, block, what)
 
 
 def listed(names: Sequence[str]) -> str:
@@ -73,11 +73,11 @@ def listed(names: Sequence[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
-def _blocks(finding: LoopFinding) -> list[list[Redundant]]:
+def _blocks(rank_result: LoopRankResult) -> list[list[Redundant]]:
     """Redundant equations that are repeated by common rows, or among the same joints, together."""
-    joint_of = [joint.name for joint in finding.rank.equations.loop.joints for _ in joint.rows]
+    joint_of = [joint.name for joint in rank_result.rank.equations.loop.joints for _ in joint.rows]
     blocks: list[tuple[set[int], list[Redundant]]] = []
-    for part in finding.redundant:
+    for part in rank_result.redundant:
         blocks.append(({part.row, *part.others}, [part]))
         while other := _alike(blocks, joint_of):
             blocks.remove(other)
@@ -95,25 +95,25 @@ def _alike(
     return next((o for o in others if o[0] & rows or {joint_of[row] for row in o[0]} == joints), None)
 
 
-def _overconstraint(system: System, finding: LoopFinding, block: list[Redundant], what: str) -> Overconstraint:
+def _overconstraint(system: System, rank_result: LoopRankResult, block: list[Redundant], what: str) -> Overconstraint:
     """What is said of one block; `what` becomes unique by a remedy."""
-    loop = finding.rank.equations.loop
+    loop = rank_result.rank.equations.loop
     joint_of = [joint for joint in loop.joints for _ in joint.rows]
     rows = sorted({row for part in block for row in (part.row, *part.others)})
     joints = list({joint_of[row].name: joint_of[row] for row in rows}.values())
-    driven = list(dict.fromkeys(joint_of[row].name for row in rows if finding.driven[row]))
+    driven = list(dict.fromkeys(joint_of[row].name for row in rows if rank_result.driven[row]))
     names = {joint.name for joint in joints}
-    spaces = [(pose, _of_block(finding, space, block)) for pose, space in finding.rank.null_spaces]
-    remedies = list(_remedies(finding, spaces[-1][1], joints))
-    shares = [spaces[-1][1][rows] for rows in _own_rows(finding, joints)]
+    spaces = [(pose, _of_block(rank_result, space, block)) for pose, space in rank_result.rank.null_spaces]
+    remedies = list(_remedies(rank_result, spaces[-1][1], joints))
+    shares = [spaces[-1][1][rows] for rows in _own_rows(rank_result, joints)]
     elastic = elastic_joints(joints, shares)
-    chosen = _in_space(finding, spaces, joints) if system.of_body.dimensions == 3 else []
-    parts = undetermined(finding.rank, spaces)
-    channels = {name for part in finding.undetermined if part.element in names for name in part.channels}
+    chosen = _in_space(rank_result, spaces, joints) if system.of_body.dimensions == 3 else []
+    parts = indeterminate(rank_result.rank, spaces)
+    channels = {name for part in rank_result.indeterminate if part.element in names for name in part.channels}
     return Overconstraint(
         joints=tuple(joint.name for joint in joints),
         redundant=tuple(system.equations[row] for row in sorted(loop.rows[part.row] for part in block)),
-        undetermined=tuple(parts),
+        indeterminate=tuple(parts),
         shared=_between_the_same(joints) and {name for part in parts for name in part.channels} == channels,
         remedies=tuple(tuple(joint.name for joint in some) for some in remedies),
         elastic=tuple(joint.name for joint in elastic),
@@ -143,24 +143,26 @@ def _between_the_same(joints: list[LoopJoint]) -> bool:
 
 
 def _in_space(
-    finding: LoopFinding, spaces: Sequence[tuple[Pose, np.ndarray]], joints: Sequence[LoopJoint]
+    rank_result: LoopRankResult, spaces: Sequence[tuple[Pose, np.ndarray]], joints: Sequence[LoopJoint]
 ) -> list[Choice]:
     from .replacements import replacements
 
-    return replacements(finding.rank.equations, spaces, joints)
+    return replacements(rank_result.rank.equations, spaces, joints)
 
 
-def _of_block(finding: LoopFinding, space: np.ndarray, block: list[Redundant]) -> np.ndarray:
+def _of_block(rank_result: LoopRankResult, space: np.ndarray, block: list[Redundant]) -> np.ndarray:
     """The null vectors that belong to redundant equations, one for each."""
-    chosen = [finding.redundant.index(part) for part in block]
-    one_each: np.ndarray = space @ np.linalg.inv(space[[part.row for part in finding.redundant]])
+    chosen = [rank_result.redundant.index(part) for part in block]
+    one_each: np.ndarray = space @ np.linalg.inv(space[[part.row for part in rank_result.redundant]])
     return one_each[:, chosen]
 
 
-def _remedies(finding: LoopFinding, space: np.ndarray, joints: list[LoopJoint]) -> Iterator[tuple[LoopJoint, ...]]:
+def _remedies(
+    rank_result: LoopRankResult, space: np.ndarray, joints: list[LoopJoint]
+) -> Iterator[tuple[LoopJoint, ...]]:
     """Each joint that alone would settle it; where there is none, a few that do together."""
     count = space.shape[1]
-    own = list(_own_rows(finding, joints))
+    own = list(_own_rows(rank_result, joints))
     alone = [joint for joint, rows in zip(joints, own, strict=True) if _rank(space[rows]) == count]
     if alone:
         yield from ((joint,) for joint in alone)
@@ -186,15 +188,15 @@ def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> 
         rest = rest - (rest @ taken.T) @ taken
 
 
-def _own_rows(finding: LoopFinding, joints: list[LoopJoint]) -> Iterator[np.ndarray]:
+def _own_rows(rank_result: LoopRankResult, joints: list[LoopJoint]) -> Iterator[np.ndarray]:
     """The rows of each joint in the loop."""
-    first = {joint.name: row for row, joint in _first_rows(finding)}
+    first = {joint.name: row for row, joint in _first_rows(rank_result)}
     yield from (np.arange(first[joint.name], first[joint.name] + len(joint.rows)) for joint in joints)
 
 
-def _first_rows(finding: LoopFinding) -> Iterator[tuple[int, LoopJoint]]:
+def _first_rows(rank_result: LoopRankResult) -> Iterator[tuple[int, LoopJoint]]:
     first = 0
-    for joint in finding.rank.equations.loop.joints:
+    for joint in rank_result.rank.equations.loop.joints:
         yield first, joint
         first += len(joint.rows)
 

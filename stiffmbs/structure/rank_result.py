@@ -1,7 +1,7 @@
 """All that is found about one loop.
 
-`loop_rank` finds the rank of its equations, `give_way` those to leave out, `uniqueness` the reactions that stay
-undetermined, `contradictions` equations that cannot hold together.
+`loop_rank` finds the rank of its equations, `drop_first` those to leave out, `uniqueness` the reactions that stay
+undetermined, `inconsistencies` equations that cannot hold together.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ import numpy as np
 
 from ..compile.state import State
 from .drop_first import Redundant, redundant_rows
-from .inconsistent_constraints import Contradiction, contradictions, time_dependent
+from .inconsistent_constraints import Inconsistency, inconsistencies, time_dependent
 from .loop_equations import LoopEquations
 from .loop_rank import SOUND, LoopRank, loop_rank
 from .loops import Loop
-from .uniqueness import Undetermined, forces_change, undetermined
+from .uniqueness import Indeterminate, forces_change, indeterminate
 
 
 @dataclass(frozen=True)
-class LoopFinding:
+class LoopRankResult:
     """A loop whose equations are not independent at the start, and what follows.
 
     Attributes
     ----------
     rank : LoopRank
     redundant : list of Redundant
-        The equations that give way.
-    undetermined : list of Undetermined
-    contradictions : list of Contradiction
+        The equations that are dropped.
+    indeterminate : list of Indeterminate
+    inconsistencies : list of Inconsistency
     driven : ndarray of bool
         Which of the loop's rows depend on time.
     motion_unique : bool
@@ -39,8 +39,8 @@ class LoopFinding:
 
     rank: LoopRank
     redundant: list[Redundant]
-    undetermined: list[Undetermined]
-    contradictions: list[Contradiction]
+    indeterminate: list[Indeterminate]
+    inconsistencies: list[Inconsistency]
     driven: np.ndarray
     motion_unique: bool
 
@@ -55,7 +55,9 @@ class LoopFinding:
         return not self.extra_freedoms and self.rank.least < SOUND
 
 
-def finding_of(loop: Loop, state: State, start: float, duration: float, order: Sequence[str]) -> LoopFinding | None:
+def rank_result_of(
+    loop: Loop, state: State, start: float, duration: float, order: Sequence[str]
+) -> LoopRankResult | None:
     """Examine one loop near the pose described.
 
     Parameters
@@ -65,11 +67,11 @@ def finding_of(loop: Loop, state: State, start: float, duration: float, order: S
     start, duration : float
         Of the run, s.
     order : sequence of str
-        Names of all joints; the last gives way first.
+        Names of all joints; the last is dropped first.
 
     Returns
     -------
-    LoopFinding or None
+    LoopRankResult or None
         None where all equations are independent, or not defined (the search for initial values names the element).
     """
     equations = LoopEquations(loop, state, start)
@@ -81,7 +83,7 @@ def finding_of(loop: Loop, state: State, start: float, duration: float, order: S
         return None
     redundant = redundant_rows(rank, order, state.system.holonomic[loop.rows])
     spaces = rank.null_spaces if redundant else []
-    return LoopFinding(
-        rank, redundant, undetermined(rank, spaces) if redundant else [], contradictions(rank, redundant, duration),
+    return LoopRankResult(
+        rank, redundant, indeterminate(rank, spaces) if redundant else [], inconsistencies(rank, redundant, duration),
         time_dependent(rank.equations, rank.start, duration), not forces_change(rank, spaces),
     )  # fmt: skip

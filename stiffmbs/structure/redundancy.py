@@ -1,7 +1,7 @@
 """Degrees of freedom, redundant equations, and reactions without a unique value.
 
 The degrees of freedom are n_u minus the rank of the velocity Jacobian J.  Rows of a tree are always independent, so
-only loops are looked at, each by itself: `loops` finds them, and `finding` puts together what there is to say of one.
+only loops are looked at, each by itself: `loops` finds them, and `rank_result` puts together what there is to say of one.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from ..compile.system import System
 from .loops import loops
 
 if TYPE_CHECKING:
-    from .rank_result import LoopFinding
-    from .uniqueness import Undetermined
+    from .rank_result import LoopRankResult
+    from .uniqueness import Indeterminate
 
 
 @dataclass(frozen=True)
@@ -29,14 +29,14 @@ class Redundancy:
     ----------
     system : System
         As examined.
-    findings : tuple of LoopFinding
+    rank_results : tuple of LoopRankResult
         Of the loops whose equations are not independent at the start.
     active : ndarray of bool, shape (n_c,)
         Which equations stay.
     """
 
     system: System
-    findings: tuple[LoopFinding, ...]
+    rank_results: tuple[LoopRankResult, ...]
     active: np.ndarray
 
     @property
@@ -51,23 +51,23 @@ class Redundancy:
 
     @property
     def redundant(self) -> tuple[tuple[str, str], ...]:
-        """Joint and name of the equations that give way."""
+        """Joint and name of the equations that are dropped."""
         return tuple(self.system.equations[row] for row in np.flatnonzero(~self.active))
 
     @property
-    def undetermined(self) -> tuple[Undetermined, ...]:
+    def indeterminate(self) -> tuple[Indeterminate, ...]:
         """The reactions without a unique value."""
-        return tuple(part for finding in self.findings for part in finding.undetermined)
+        return tuple(part for rank_result in self.rank_results for part in rank_result.indeterminate)
 
     @property
     def not_unique(self) -> tuple[str, ...]:
         """Their channels."""
-        return tuple(dict.fromkeys(name for part in self.undetermined for name in part.channels))
+        return tuple(dict.fromkeys(name for part in self.indeterminate for name in part.channels))
 
     @property
     def extra_freedoms(self) -> int:
         """Degrees of freedom at the start beyond those in general."""
-        return sum(finding.extra_freedoms for finding in self.findings)
+        return sum(rank_result.extra_freedoms for rank_result in self.rank_results)
 
 
 def examine(system: System, start: float, duration: float, order: Sequence[str]) -> Redundancy:
@@ -79,17 +79,17 @@ def examine(system: System, start: float, duration: float, order: Sequence[str])
     start, duration : float
         Of the run, s.
     order : sequence of str
-        Names of all joints; the last gives way first.
+        Names of all joints; the last is dropped first.
     """
     state = State(system)
     active = np.ones(system.n_c, dtype=bool)
-    findings = []
+    rank_results = []
     for loop in loops(system, state, start):
-        from .rank_result import finding_of  # trees do not pay for it
+        from .rank_result import rank_result_of  # trees do not pay for it
 
-        finding = finding_of(loop, state, start, duration, order)
-        if finding is None:
+        rank_result = rank_result_of(loop, state, start, duration, order)
+        if rank_result is None:
             continue
-        active[loop.rows[[part.row for part in finding.redundant]]] = False
-        findings.append(finding)
-    return Redundancy(system, tuple(findings), active)
+        active[loop.rows[[part.row for part in rank_result.redundant]]] = False
+        rank_results.append(rank_result)
+    return Redundancy(system, tuple(rank_results), active)

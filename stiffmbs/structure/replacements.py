@@ -19,7 +19,7 @@ from .transmitted import COMPONENTS, transmitted
 from .uniqueness import changes_of
 
 CLEARLY = 1e-3
-"""Least singular value, in parts of the largest reaction, of components that are independent."""
+"""Least singular value, relative to the largest reaction, of components that are independent."""
 MOST_JOINTS, MOST_CHANGED, MOST_TRIALS = 10, 4, 2000
 """Joints to choose from, the last ones; joints to change at once; choices looked at."""
 IDEAL = ("spherical", "cylindrical", "revolute", "prismatic", "planar")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .sparse_matrix import Entries
+from .sparse_matrix import SparseMatrix
 
 SMALL = 1e-3
 """Singular values below this are not taken from eigenvalues of J J^T, which know them to 1e-8 only."""
@@ -17,14 +17,14 @@ MORE, SHIFT, ITERATIONS = 10, 1e-10, 4
 SHIFT/SMALL^2 against those of zero."""
 
 
-def small_singular(J: Entries) -> tuple[np.ndarray, np.ndarray]:
+def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
     """Singular values, shape (n,), the largest first, and the left singular vectors of the last of them.
 
     Of a large matrix, those above `SMALL` but for the last ones are not computed: one of these stands for them.
 
     Parameters
     ----------
-    J : Entries
+    J : SparseMatrix
         With n rows.
     """
     n = J.shape[0]
@@ -49,7 +49,7 @@ def _of_all(J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate([np.sqrt(squares[large]), values]), np.hstack([vectors[:, large], small @ turn.T])
 
 
-def _by_iteration(J: Entries, width: int) -> tuple[np.ndarray, np.ndarray]:
+def _by_iteration(J: SparseMatrix, width: int) -> tuple[np.ndarray, np.ndarray]:
     """By inverse iteration on a subspace (Bathe and Wilson, Large eigenvalue problems in dynamic analysis, J. Eng. Mech.
     Div. 98, 1972), and the decomposition of J^T on it."""
     n = J.shape[0]

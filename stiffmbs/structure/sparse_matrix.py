@@ -12,7 +12,7 @@ DENSE_UP_TO = 300
 
 
 @dataclass(frozen=True)
-class Entries:
+class SparseMatrix:
     """A matrix by the entries that are not zero for its structure, each place once.
 
     Attributes
@@ -38,23 +38,23 @@ class Entries:
         result[self.row, self.column] = self.value
         return result
 
-    def scaled(self, rows: np.ndarray, columns: np.ndarray) -> Entries:
+    def scaled(self, rows: np.ndarray, columns: np.ndarray) -> SparseMatrix:
         """Each row and each column multiplied by a factor."""
         with np.errstate(invalid="ignore"):  # where equations are not defined; the caller looks for finite numbers
             return replace(self, value=rows[self.row] * self.value * columns[self.column])
 
-    def of_rows(self, kept: np.ndarray) -> Entries:
+    def of_rows(self, kept: np.ndarray) -> SparseMatrix:
         """The rows that are marked."""
         inside = kept[self.row]
         number = np.cumsum(kept) - 1
-        return Entries(
+        return SparseMatrix(
             number[self.row[inside]], self.column[inside], self.value[inside], (int(kept.sum()), self.shape[1])
         )
 
-    def of_columns(self, kept: np.ndarray) -> Entries:
+    def of_columns(self, kept: np.ndarray) -> SparseMatrix:
         """The matrix with zeros in the columns that are not marked."""
         inside = kept[self.column]
-        return Entries(self.row[inside], self.column[inside], self.value[inside], self.shape)
+        return SparseMatrix(self.row[inside], self.column[inside], self.value[inside], self.shape)
 
     def norms(self) -> np.ndarray:
         """The length of each row."""

@@ -13,14 +13,14 @@ from .loop_equations import LoopEquations, Pose
 from .loop_rank import LoopRank
 
 CHANGES = 1e-6
-"""Change of a reaction, in parts of the largest, from which on it is not unique."""
+"""Change of a reaction, relative to the largest, from which on it is not unique."""
 TORQUES = ("torque", "tx", "ty", "tz")
 SPEED = 1.0
 """Velocity (arms and rad per second) at which forces that depend on reactions are looked at: friction has none at rest."""
 
 
 @dataclass(frozen=True)
-class Undetermined:
+class Indeterminate:
     """What of a joint's or force's reaction has no unique value.
 
     Attributes
@@ -37,7 +37,7 @@ class Undetermined:
     directions: tuple[Direction, ...] = ()
 
 
-def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> list[Undetermined]:
+def indeterminate(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> list[Indeterminate]:
     """The reactions that change along the null space of J^T.
 
     Parameters
@@ -58,7 +58,7 @@ def undetermined(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) ->
             of_owner.setdefault(owner_of(name), []).append(name)
     poses = [pose for pose, _ in null_spaces]
     return [
-        Undetermined(owner, tuple(names), tuple(directions(equations, poses, changes, owner, CHANGES)))
+        Indeterminate(owner, tuple(names), tuple(directions(equations, poses, changes, owner, CHANGES)))
         for owner, names in of_owner.items()
     ]
 

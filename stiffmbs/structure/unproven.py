@@ -23,9 +23,9 @@ def unproven(redundancy: Redundancy) -> dict[int, tuple[int, ...]]:
         return {}
     of_functions = by_functions(redundancy.system)
     found = {}
-    for finding in redundancy.findings:
-        rows = finding.rank.equations.loop.rows
-        for part in finding.redundant:
+    for rank_result in redundancy.rank_results:
+        rows = rank_result.rank.equations.loop.rows
+        for part in rank_result.redundant:
             row, others = int(rows[part.row]), rows[list(part.others)]
             if of_functions[row] or of_functions[others].any():
                 found[row] = tuple(others.tolist())
@@ -38,7 +38,7 @@ def by_functions(system: System) -> np.ndarray:
     for group in system.groups:
         if group.record.n_equations and _has_functions(group.elements[0]):  # those of one kind have the same formulas
             last = group.first_row + group.count * group.record.n_equations
-            rows[group.first_row : last] = (curved(system, group) | _timed_or_cornered(group)).ravel()
+            rows[group.first_row : last] = (curved(system, group) | _timed_or_nonsmooth(group)).ravel()
     return rows
 
 
@@ -46,8 +46,8 @@ def _has_functions(element: Element) -> bool:
     return any(True for sort in (Formula, Table) for _ in element.parts(sort))
 
 
-def _timed_or_cornered(group: Group) -> np.ndarray:
-    """Which equations of one element know time or corners, or velocities alone."""
+def _timed_or_nonsmooth(group: Group) -> np.ndarray:
+    """Which equations of one element know time or breakpoints, or velocities alone."""
     found = np.ones(group.record.n_equations, dtype=bool)
     found[: group.record.n_holonomic] = ~np.array(group.record.removable, dtype=bool)
     return found

@@ -16,7 +16,7 @@ from ..results.error_bars import ErrorBar, Fine
 from ..results.solution import Solution
 from ..solve import traits_of
 from .dense_sampling import Between
-from .parting import SENSITIVE, Parting, distance, parting
+from .divergence import SENSITIVE, Divergence, distance, divergence
 from .poses import poses_of
 from .solve_again import Again
 
@@ -77,7 +77,7 @@ class Comparison:
         of_solver = max(bar.least - bar.sampled_least, bar.greatest - bar.sampled_greatest)
         return of_solver / self.sizes[name]
 
-    def partings(self) -> list[Parting | None]:
+    def divergences(self) -> list[Divergence | None]:
         """Where the first run parts from the next tighter one, that from the next, and the first from the other's."""
         runs = [self.first.channels, *({name: run.reported(name) for name in self.first} for run in self.tighter)]
         pairs = [*itertools.pairwise(runs)]
@@ -86,21 +86,21 @@ class Comparison:
         found = []
         for one, two in pairs:
             count = min(len(one["energy.total"]), len(two["energy.total"]))
-            found.append(parting(self.first.time, distance(one, two, count, self.sizes)) if count else None)
+            found.append(divergence(self.first.time, distance(one, two, count, self.sizes)) if count else None)
         return found
 
     @property
     def suspicious(self) -> bool:
         """Whether differences are larger than they should be."""
-        return bool(self.uncertain) or any(self.partings())
+        return bool(self.uncertain) or any(self.divergences())
 
 
 def doubts(comparison: Comparison) -> Iterator[str]:
     """Everything that the runs give reason to doubt, a sentence each; nothing where they agree as they should."""
-    partings = comparison.partings()
-    met = [found for found in partings if found is not None]
+    divergences = comparison.divergences()
+    met = [found for found in divergences if found is not None]
     if met:
-        yield _parting_sentence(comparison, partings, min(met, key=lambda found: found.t))
+        yield _divergence_sentence(comparison, divergences, min(met, key=lambda found: found.t))
     if comparison.uncertain:
         yield _uncertain_sentence(comparison, parted=bool(met))
     missed = _missed(comparison)
@@ -108,7 +108,7 @@ def doubts(comparison: Comparison) -> Iterator[str]:
         yield _missed_sentence(comparison, missed)
 
 
-def _parting_sentence(comparison: Comparison, partings: list[Parting | None], first: Parting) -> str:
+def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | None], first: Divergence) -> str:
     pose = _pose(comparison, first)
     settings = comparison.job.settings
     if pose is not None:
@@ -122,7 +122,7 @@ def _parting_sentence(comparison: Comparison, partings: list[Parting | None], fi
             "agree, exact dimensions, or a gear or stop that decides the branch"
         )
     names = _run_names(comparison)
-    of_levels = partings[: len(comparison.tighter)]
+    of_levels = divergences[: len(comparison.tighter)]
     if len(of_levels) > 1 and of_levels[0] and of_levels[1]:
         begin = comparison.job.grid.start
         later = of_levels[1].t - begin
@@ -145,7 +145,7 @@ def _run_names(comparison: Comparison) -> list[str]:
     return ["this run", *(run.name for run in comparison.tighter), *others]
 
 
-def _pose(comparison: Comparison, found: Parting) -> SingularPose | None:
+def _pose(comparison: Comparison, found: Divergence) -> SingularPose | None:
     """The singular pose on the way to where the runs part, if there is one."""
     solution = comparison.between.solution if comparison.between else comparison.first
     return poses_of(comparison.job, solution).nearest(found.begun, found.t)

@@ -12,7 +12,7 @@ from ..results.solution import Solution
 
 def poses_of(job: Job, solution: Solution) -> PosesOnTheWay:
     """How near to singular ones the poses of a solution are."""
-    system = job.mechanics.system
+    system = job.dynamics.system
     names = [f"{body}.{name}" for body in system.bodies for name in system.of_body.positions]
     q = from_own_axes(system, np.column_stack([solution[name] for name in names]))
     counters = np.zeros((len(q), system.n_counters))  # of no account where only J is asked for

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..results.scales import kind_of
 from .diagnostics import Comparison
-from .parting import distance, parting
+from .divergence import distance, divergence
 from .solve_again import Again
 from .stepped_over import Along, SteppedOver
 
@@ -50,7 +50,7 @@ def doubts_of_steps(comparison: Comparison, along: Along, shorter: Again | None)
 
 def by_luck(comparison: Comparison, shorter: Again | None) -> bool:
     """Whether a run agrees with one of shorter steps, but not with others."""
-    if not any(comparison.partings()) or not _whole(shorter):
+    if not any(comparison.divergences()) or not _whole(shorter):
         return False
     return not _parts(comparison, comparison.first.channels, shorter)
 
@@ -64,7 +64,7 @@ def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: 
     assert shorter is not None
     first = comparison.first
     other = {name: shorter.reported(name) for name in first}
-    found = parting(first.time, distance(channels, other, len(first.time), comparison.sizes))
+    found = divergence(first.time, distance(channels, other, len(first.time), comparison.sizes))
     return f"from t = {found.t:.4g} s on {found.body} is elsewhere" if found is not None else ""
 
 
@@ -95,7 +95,7 @@ def _off(comparison: Comparison, shorter: Again | None) -> str:
 
 def _different(comparison: Comparison, shorter: Again | None) -> str:
     """Where a run with shorter steps parts from one of the same tolerance that the first agrees with; empty where it does not."""
-    if not _whole(shorter) or not comparison.tighter or any(comparison.partings()):
+    if not _whole(shorter) or not comparison.tighter or any(comparison.divergences()):
         return ""
     tight = {name: comparison.tighter[-1].reported(name) for name in comparison.first}
     if len(tight["energy.total"]) < len(comparison.first.time):

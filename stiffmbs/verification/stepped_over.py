@@ -28,8 +28,8 @@ from ..results.energy_balance_notes import may_be_missing
 from ..results.missing_rows import reported
 from ..results.solution import Solution
 from ..solve import traits_of
+from ..solve.dynamics import OutputRows
 from ..solve.events.restart import restarted
-from ..solve.mechanics import OutputRows
 from ..solve.settings import changed, near_constraints
 from ..solve.trajectory import Grid, Outcome
 from .dense_sampling import apart
@@ -74,7 +74,7 @@ class SteppedOver:
     element : str
         What acts there; empty where nothing has a name.
     missed : float
-        Change of the velocities that is missing, in parts of the largest, weighted with masses.
+        Change of the velocities that is missing, relative to the largest, weighted with masses.
     """
 
     begin: float
@@ -135,8 +135,8 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
         return Along(None, obstacle=str(error))
     if trajectory.outcome is Outcome.INTERRUPTED:
         return Along(None, obstacle="not looked along: no time was left")
-    rows, _ = reported(job.mechanics, trajectory, near_constraints(job.settings))
-    system, values = job.mechanics.system, rows.values
+    rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
+    system, values = job.dynamics.system, rows.values
     energies = kinetic_energy(system, rows.u), potential_energy(system, values)
     balance = energy_balance(system, rows.t, *energies, values, trajectory.step_times)
     left = allowed - (time.perf_counter() - begun)
@@ -159,7 +159,7 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
     start, end = float(reported_at[0]), float(reported_at[-1])
     begun = time.perf_counter()
     q, u = np.tile(job.start.q, (TIMED, 1)), np.tile(job.start.u, (TIMED, 1))
-    job.mechanics.report(np.full(TIMED, start), q, u, True)
+    job.dynamics.report(np.full(TIMED, start), q, u, True)
     each = (time.perf_counter() - begun) / TIMED
     room = int(np.clip(allowed / each, 2, SAMPLES))
     found = np.union1d(reported_at, apart(steps[(steps > start) & (steps < end)], reported_at))
@@ -169,7 +169,7 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
 
 def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[SteppedOver]:
     """The stretches that end elsewhere when they are solved again, the worst first."""
-    system = job.mechanics.system
+    system = job.dynamics.system
     poses = PosesOnTheWay(system, rows.t, rows.q)
     missing, speed = _momentum(system, rows)
     end, looked = time.perf_counter() + allowed, np.zeros(len(missing), dtype=bool)
@@ -220,7 +220,7 @@ def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, all
 
     0 where it does not end, or ends a little elsewhere with a tighter tolerance alone: then that is what it lacks.
     """
-    roots = np.sqrt(job.mechanics.system.mass)
+    roots = np.sqrt(job.dynamics.system.mass)
     short = _solved_again(job, rows, first, last, {"max_step": width / SHORTER}, allowed)
     if short is None:
         return 0.0
@@ -238,9 +238,9 @@ def _solved_again(
     begin, end = float(rows.t[first]), float(rows.t[last])
     how |= EXPLICIT if traits_of(job.settings).switches else {}
     try:
-        start = restarted(job.mechanics, begin, rows.q[first], rows.u[first])
+        start = restarted(job.dynamics, begin, rows.q[first], rows.u[first])
         grid = Grid(begin, end, np.array([begin, end]))
-        stretch = replace(job, settings=changed(job.settings, how), grid=grid, start=start, pieces=())
+        stretch = replace(job, settings=changed(job.settings, how), grid=grid, start=start, subsystems=())
         found = stretch.integrate(Deadline(begin, end, allowed))
     except StiffmbsError:
         return None

@@ -33,10 +33,10 @@ from ..results.scales import scales
 from ..results.solution import Solution
 from ..solve import traits_of
 from ..solve.settings import changed
-from ..solve.trajectory import Outcome, Watch
+from ..solve.trajectory import Outcome, ProgressCallback
 from .dense_sampling import Between, looked_between, more_instants
 from .diagnostics import Comparison, doubts
-from .parting import distance, parting
+from .divergence import distance, divergence
 from .settings_again import levels_of, other_integrator, shorter_step, tolerances
 from .solve_again import Again, solve_again
 from .step_diagnostics import by_luck, doubts_of_steps
@@ -52,7 +52,10 @@ ROUNDING = 1e-13
 
 @takes_settings
 def verify(
-    model: Runnable, settings: RunSettings | None = None, watch: Watch | None = None, **changes: Unpack[Settings]
+    model: Runnable,
+    settings: RunSettings | None = None,
+    watch: ProgressCallback | None = None,
+    **changes: Unpack[Settings],
 ) -> Solution:
     """Solve a model, and solve it again to see what its results are worth; parameters and errors as for `run`.
 
@@ -96,7 +99,7 @@ class _Verification:
     def __init__(self, job: Job, first: Solution, allowed: float) -> None:
         self._job, self._first = job, first
         self._begun, self._allowed = time.perf_counter(), allowed
-        self._sizes = scales(first.channels, job.mechanics.system.size, first.requested)
+        self._sizes = scales(first.channels, job.dynamics.system.size, first.requested)
         self._traits = traits_of(job.settings)
         self._exact = self._traits.exact
         self._between: Between | None = None
@@ -142,7 +145,7 @@ class _Verification:
             self._skipped.append(self._along.obstacle)
         elif not self._along.stretches:
             self._look_along_others(spare)
-        if self._along.stretches or has_laws(self._job.mechanics.system):
+        if self._along.stretches or has_laws(self._job.dynamics.system):
             longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
             name, changes = self._tighter_settings(self._levels()[0])
             reported = self._first.time
@@ -166,7 +169,7 @@ class _Verification:
             return run
         reported = {name: run.reported(name) for name in self._first}
         away = distance(self._first.channels, reported, len(self._first.time), self._sizes)
-        if parting(self._first.time, away) is None:
+        if divergence(self._first.time, away) is None:
             return run
         job = replace(self._job, settings=changed(self._job.settings, changes))
         found = looked_along(job, run.solution, allowed)
@@ -181,7 +184,7 @@ class _Verification:
     def _look_between(self) -> None:
         """The first tighter run, also at instants between those of the output; the next one where it does not end."""
         start, end = float(self._first.time[0]), float(self._first.time[-1])
-        times = more_instants(self._first, self._job.mechanics.input_features(start, end))
+        times = more_instants(self._first, self._job.dynamics.input_features(start, end))
         at = np.searchsorted(times, self._first.time)
         for level in self._levels():
             run = self._run(level, times, at)

@@ -16,17 +16,17 @@ from stiffmbs.bench.figure import draw
 from stiffmbs.bench.own_solvers import OwnSolvers, exact_of
 from stiffmbs.bench.peers import missing, peers
 from stiffmbs.bench.peers.absolute import Maths, constraints, forces
-from stiffmbs.bench.peers.legs import legs_of
 from stiffmbs.bench.peers.mechanism import mechanism_of
 from stiffmbs.bench.peers.scipy import explicit, states
+from stiffmbs.bench.peers.segments import segments_of
 from stiffmbs.bench.problems.stiffness import OverStiffness
 from stiffmbs.bench.sweep import at_target_rows
 from stiffmbs.commands.main import main
 from stiffmbs.compile.compile_model import compile_model
+from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.explicit.projected import TRAITS
 from stiffmbs.solve.formulations import FORMULATIONS
 from stiffmbs.solve.initial import initial_values
-from stiffmbs.solve.mechanics import Mechanics
 
 PROBLEMS = {name: families()[name][0] for name in ("andrews", "cart_pendulum", "chain", "half_car")}
 LOOSE = {"lambdify and NumPy": 1.0, "Exudyn generalised-alpha": 5e-3}
@@ -70,8 +70,8 @@ def test_every_tool_has_a_contestant():
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_equations_for_other_tools_are_those_of_this_package(name):
     scene = PROBLEMS[name].task().scene
-    m, mechanics = mechanism_of(scene), Mechanics(compile_model(scene))
-    start = initial_values(mechanics, 0.0)
+    m, dynamics = mechanism_of(scene), Dynamics(compile_model(scene))
+    start = initial_values(dynamics, 0.0)
     np.testing.assert_allclose(start.q, m.start, atol=1e-12)
     assert np.max(np.abs(constraints(m, m.start, NUMPY)), initial=0.0) < 1e-12
     rest = np.zeros(m.n)
@@ -79,7 +79,7 @@ def test_equations_for_other_tools_are_those_of_this_package(name):
     J = np.array([_slope(m, k) for k in range(m.n)]).T
     block = np.block([[np.diag(m.mass), J.T], [J, np.zeros((len(J), len(J)))]])
     found = np.linalg.lstsq(block, np.concatenate([f, np.zeros(len(J))]))[0][: m.n]
-    report = mechanics.report(np.zeros(1), start.q[None], start.u[None], project=False)
+    report = dynamics.report(np.zeros(1), start.q[None], start.u[None], project=False)
     np.testing.assert_allclose(found, report.acceleration[0], rtol=1e-6, atol=1e-6 * np.abs(found).max() + 1e-9)
 
 
@@ -101,9 +101,9 @@ def test_the_jacobian_of_the_half_car_is_the_derivative_of_its_rates():
 
 def test_legs_meet_all_output_times_once():
     times = np.linspace(0.0, 1.0, 11)
-    legs = list(legs_of(times, (0.25, 0.5)))
-    assert [leg[[0, -1]].tolist() for leg, _ in legs] == [[0.0, 0.25], [0.25, 0.5], [0.5, 1.0]]
-    inside = np.concatenate([leg[1 : count + 1] for leg, count in legs])
+    segments = list(segments_of(times, (0.25, 0.5)))
+    assert [segment[[0, -1]].tolist() for segment, _ in segments] == [[0.0, 0.25], [0.25, 0.5], [0.5, 1.0]]
+    inside = np.concatenate([segment[1 : count + 1] for segment, count in segments])
     np.testing.assert_array_equal(inside, times[1:])
 
 

@@ -72,7 +72,7 @@ def test_json_of_a_run_with_corners_and_events(in_folder, solver):
     result = stiffmbs("run", "scene.yaml", "--json", "--solver", solver, "--set", "run.scheme=dop853")
     assert result.exit_code == 0, result.output
     counted = json.loads(result.output)["solver"]
-    assert counted["corners"] == 2
+    assert counted["breakpoints"] == 2
     assert counted["events"] > 0
 
 

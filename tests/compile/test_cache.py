@@ -145,7 +145,7 @@ def test_routines_of_all_solvers_are_found():
     assert {
         ("ida_loop", "advance"),
         ("runge_kutta", "advance"),
-        ("mechanics", "assemble"),
+        ("dynamics", "assemble"),
         ("evaluate", "terms"),
     } <= found
 

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 import stiffmbs
-from stiffmbs.compile.inputs.breakpoints import corner_times
+from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.features import InputFeatures, input_features
@@ -104,7 +104,7 @@ def test_inputs_without_narrow_features_bound_no_step(force):
 @pytest.mark.parametrize("frequency", [1.0, 1000.0, 1e6])
 def test_a_sine_is_bounded_alike_at_each_frequency_and_by_half_a_turn_at_the_least(frequency):
     found = features(f"sin(2*pi*{frequency}*t)")
-    assert len(found.corners) == 0 and len(found.starts) < 20
+    assert len(found.breakpoints) == 0 and len(found.starts) < 20
     assert 0.5 < np.min(found.longest) * frequency < 1.0
 
 
@@ -121,17 +121,17 @@ def test_a_pulse_of_a_microsecond_in_1000_s_is_found_wherever_it_is():
 
 
 def test_a_flat_zero_is_one_feature():
-    assert len(features("1000*max(0, step(abs(t - 8.0005), 0, 1, 0.0005, 0))").corners) == 3
+    assert len(features("1000*max(0, step(abs(t - 8.0005), 0, 1, 0.0005, 0))").breakpoints) == 3
     assert len(features("abs(sin(t)^2 + cos(t)^2 - 1)").starts) == 0
 
 
 def test_corners_of_tables_of_tables_and_of_all_of_several():
     table = {"table": [[0, 0], [1, 0], [2, 3], [5, 3]], "lines": True}
     other = {"table": [[0, 0], [4, 2]], "lines": True}
-    np.testing.assert_allclose(features("p(q(t))", p=table, q=other).corners, [2, 4], atol=1e-9)
-    np.testing.assert_allclose(features("max(0, t - 2, 3*t - 8)").corners, [2, 3], atol=1e-9)
-    np.testing.assert_allclose(features("p(t^2)", p=table).corners, np.sqrt([1, 2, 5]), atol=1e-9)
-    np.testing.assert_allclose(features("b.x*p(3 - t)", p=table).corners, [1, 2, 3], atol=1e-9)
+    np.testing.assert_allclose(features("p(q(t))", p=table, q=other).breakpoints, [2, 4], atol=1e-9)
+    np.testing.assert_allclose(features("max(0, t - 2, 3*t - 8)").breakpoints, [2, 3], atol=1e-9)
+    np.testing.assert_allclose(features("p(t^2)", p=table).breakpoints, np.sqrt([1, 2, 5]), atol=1e-9)
+    np.testing.assert_allclose(features("b.x*p(3 - t)", p=table).breakpoints, [1, 2, 3], atol=1e-9)
 
 
 def test_nested_steps_take_no_longer_than_their_number():
@@ -146,7 +146,7 @@ def test_nested_steps_take_no_longer_than_their_number():
         given = Input(parse(text), text, {}, {})
         found = given.within(np.array([0.0]), np.array([1.0]), order=3)
         assert np.isfinite(found.value).all()
-    assert len(corner_times([Input(parse(nested), nested, {}, {})], 0.0, 10.0)) >= 2
+    assert len(breakpoint_times([Input(parse(nested), nested, {}, {})], 0.0, 10.0)) >= 2
 
 
 def test_a_step_is_no_longer_than_what_it_touches_allows():
@@ -273,6 +273,6 @@ def test_behind_a_corner_a_drive_leads_with_its_new_velocity(position, how):
         "forces": {"f": {"type": "force", "i": "g", "force": ["b.x", 0]}},
     }
     solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(given)), duration=10.0, points=11, rtol=1e-8, **how)
-    values, corners = DRIVES[position]
-    assert solution["g.vx"][-1] == pytest.approx(quad(values, 0, 10, points=corners)[0], abs=1e-5)
+    values, breakpoints = DRIVES[position]
+    assert solution["g.vx"][-1] == pytest.approx(quad(values, 0, 10, points=breakpoints)[0], abs=1e-5)
     assert any("a drive makes velocities jump" in note for note in solution.notes)

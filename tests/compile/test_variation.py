@@ -22,9 +22,9 @@ run: {duration: 1 s, points: 11}
 def left_out(text):
     """The equations that are left out of the solution."""
     job = prepare(read_scene(text))
-    parts = [piece.mechanics for piece in job.pieces] or [job.mechanics]
+    parts = [subsystem.dynamics for subsystem in job.subsystems] or [job.dynamics]
     return {
-        ".".join(part.system.equations[row]) for part in parts for row in np.flatnonzero(part.coordinates.fulfilled)
+        ".".join(part.system.equations[row]) for part in parts for row in np.flatnonzero(part.coordinates.satisfied)
     }
 
 

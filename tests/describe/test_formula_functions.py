@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stiffmbs
-from stiffmbs.compile.inputs.breakpoints import corner_times
+from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS as ENCLOSED
 from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.of_time import inputs_of
@@ -75,7 +75,7 @@ def test_a_derivative_is_that_of_the_function(name):
     assert sp.simplify(sp.diff(SMOOTH[name](x), x) - given_one) == 0
 
 
-@pytest.mark.parametrize("name", [name for name, function in IN_FORMULAS.items() if function.corners])
+@pytest.mark.parametrize("name", [name for name, function in IN_FORMULAS.items() if function.breakpoints])
 def test_corners_in_time_are_found(name):
     """Where the function of t - 1/2 bends."""
     bends = {"step": (0.6, 1.3), "step5": (0.6, 1.3), "min": (0.7,), "max": (0.7,)}.get(name, (0.5,))
@@ -84,7 +84,7 @@ def test_corners_in_time_are_found(name):
         "bodies": {"a": {"mass": 1, "inertia": 1}},
         "forces": {"f": {"type": "force", "i": "a", "force": [f"{name}(t - 0.5{more})", 0]}},
     }
-    found = corner_times(inputs_of(stiffmbs.compile_model(stiffmbs.read_scene(json.dumps(scene)))), 0.0, 2.0)
+    found = breakpoint_times(inputs_of(stiffmbs.compile_model(stiffmbs.read_scene(json.dumps(scene)))), 0.0, 2.0)
     np.testing.assert_allclose(found, bends, atol=1e-9)
 
 

@@ -6,7 +6,7 @@ from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 import stiffmbs
 from stiffmbs import InputError
-from stiffmbs.compile.inputs.breakpoints import corner_times
+from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.of_time import inputs_of
 from stiffmbs.compile.table_values import curve
 from stiffmbs.describe.table import Table
@@ -85,14 +85,14 @@ run: {{duration: 2, points: 41}}
 
 
 def test_corners_of_named_tables_of_time():
-    def corners(force, how=", lines: true"):
-        return corner_times(inputs_of(stiffmbs.compile_model(scene(force, how))), 0.0, 2.5)
+    def breakpoints(force, how=", lines: true"):
+        return breakpoint_times(inputs_of(stiffmbs.compile_model(scene(force, how))), 0.0, 2.5)
 
-    np.testing.assert_allclose(corners("push(t)"), [0.5, 1, 2])
-    np.testing.assert_allclose(corners("push(2*t - 1)"), [0.5, 0.75, 1, 1.5, 2])
-    np.testing.assert_allclose(corners("push(2 - t)"), [0, 1, 1.5, 2][1:])
-    np.testing.assert_allclose(corners("push(t - 1)", ""), [1])
-    assert len(corners("push(sled.x)")) == 0
+    np.testing.assert_allclose(breakpoints("push(t)"), [0.5, 1, 2])
+    np.testing.assert_allclose(breakpoints("push(2*t - 1)"), [0.5, 0.75, 1, 1.5, 2])
+    np.testing.assert_allclose(breakpoints("push(2 - t)"), [0, 1, 1.5, 2][1:])
+    np.testing.assert_allclose(breakpoints("push(t - 1)", ""), [1])
+    assert len(breakpoints("push(sled.x)")) == 0
 
 
 @pytest.mark.parametrize(

@@ -173,13 +173,13 @@ def test_a_marker_is_at_one_place_seen_from_the_origin_or_from_the_centre_of_mas
     ):
         name, placed = data.carried(marker)
         numbers = np.array(placed.numbers())
-        found = data.drawn_marker(marker)
+        found = data.initial_marker(marker)
         assert name == "body"
         np.testing.assert_allclose(q[:3] + matrix(q[3:]) @ numbers[:3], found.point, atol=1e-14)
         np.testing.assert_allclose(matrix(q[3:]) @ numbers[3:12].reshape(3, 3), found.axes, atol=1e-14)
         np.testing.assert_allclose(data.point(marker), found.point)
     own, A = data.place(MarkerReference(body="body", marker="end")), matrix(body.orientation)
-    found = data.drawn_marker(spatial.Marker(body="body", marker="end"))
+    found = data.initial_marker(spatial.Marker(body="body", marker="end"))
     np.testing.assert_allclose(found.point, np.array(body.position) + A @ own.point, atol=1e-14)
     np.testing.assert_allclose([found.x, found.y, found.z], (A @ matrix(own.orientation)).T, atol=1e-14)
 
@@ -303,7 +303,7 @@ def test_a_gear_in_space_starts_as_drawn():
     with pytest.raises(InputError, match=r"rack: found 'pin1' of the type revolute, expected a prismatic joint"):
         model.add("mesh", spatial.RackAndPinion(rack="pin1", pinion="pin2", pitch_radius=1))
     model.add("mesh", spatial.Gear(joint_1="pin1", joint_2="pin2", ratio=0.7))
-    assert dict(model.data().drawn_elements())["mesh"].offset == pytest.approx(0.1 + 0.7 * 0.2)
+    assert dict(model.data().elements_at_initial_pose())["mesh"].offset == pytest.approx(0.1 + 0.7 * 0.2)
 
 
 @pytest.mark.parametrize("driven", [{"joint": "pin1"}, {"coordinate": "az(wheel1, ground)"}], ids=["joint", "formula"])

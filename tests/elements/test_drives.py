@@ -59,9 +59,13 @@ LAWS = {
 def test_rotor_follows_its_drive_and_the_motor_turns_its_inertia(drive, motion, accuracy):
     solution = rotor(**drive)
     angle, acceleration = motion(solution.time)
-    corner = np.isin(np.round(solution.time, 9), (0.5, 1.5)) & (drive.get("position") == LAWS["step"][0]["position"])
+    breakpoint = np.isin(np.round(solution.time, 9), (0.5, 1.5)) & (
+        drive.get("position") == LAWS["step"][0]["position"]
+    )
     np.testing.assert_allclose(solution["wheel.angle"], angle, atol=accuracy)
-    np.testing.assert_allclose(solution["motor.torque"][~corner], INERTIA * acceleration[~corner], atol=10 * accuracy)
+    np.testing.assert_allclose(
+        solution["motor.torque"][~breakpoint], INERTIA * acceleration[~breakpoint], atol=10 * accuracy
+    )
 
 
 def test_drive_of_a_slide_pushes_along_its_axis():
@@ -214,7 +218,7 @@ def test_a_drive_that_jumps_in_velocity_is_told():
 )
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_a_drive_goes_on_behind_its_corner_as_its_formula_does_there(law, wanted, solver):
-    """At the corner itself min(2*t, 1) still rises; what it does next is told by the instant behind."""
+    """At the breakpoint itself min(2*t, 1) still rises; what it does next is told by the instant behind."""
     model = Model()
     model.add("wheel", Body(mass=1, inertia=INERTIA, angle=wanted(0.0)))
     model.add("pin", Revolute(i="wheel", j="ground"))

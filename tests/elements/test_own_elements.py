@@ -72,7 +72,7 @@ def test_a_model_takes_them_as_they_are_and_keeps_energy():
     model.add("ring", plane.Ring(i="a", j="ground", radius="500 mm"))
     model.add("stop", plane.Bumper(i="a", j=Marker(body="ground", point=(0, -0.5)), stiffness=5e3, gap=0.3))
     solution = stiffmbs.run(model, duration=2.0, rtol=1e-9)
-    assert solution.solver["events"] > 1  # the corner of Max is located
+    assert solution.solver["events"] > 1  # the breakpoint of Max is located
     np.testing.assert_allclose(np.hypot(solution["a.x"], solution["a.y"]), 0.5, rtol=1e-9)
     np.testing.assert_allclose(solution["energy.total"], solution["energy.total"][0], atol=1e-6)
     assert np.ptp(solution["stop.fx"]) > 100

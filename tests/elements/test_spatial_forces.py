@@ -291,7 +291,7 @@ def _elastic_moments(seed, stiffness):
     turn = np.random.default_rng(seed).normal(size=3)
     model = two_bodies(spatial.Bushing, seed, turn=(turn, np.linalg.norm(turn)), stiffness=stiffness)
     data = model.data()
-    i, j = (data.drawn_marker(element) for element in (data.forces["element"].i, data.forces["element"].j))
+    i, j = (data.initial_marker(element) for element in (data.forces["element"].i, data.forces["element"].j))
 
     def potential(move):
         axes = Rotation.from_rotvec(move[3:]).as_matrix() @ i.axes

@@ -184,6 +184,6 @@ def test_what_a_joint_does_to_one_body_it_undoes_on_the_other(name):
     np.testing.assert_allclose(torques[0], -torques[1], atol=1e-14)
     found = reactions(system, state.values["output"][None])
     force, torque = (np.array([found[f"element.{part}{axis}"][0] for axis in "xyz"]) for part in "ft")
-    point = model.data().drawn_marker(model.joints["element"].i).point
+    point = model.data().initial_marker(model.joints["element"].i).point
     np.testing.assert_allclose(force, effort[0, :3], atol=1e-14)
     np.testing.assert_allclose(torque + np.cross(point, force), torques[0], atol=1e-14)

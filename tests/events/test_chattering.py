@@ -7,8 +7,8 @@ import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic, Revolute
 from stiffmbs.describe.model import FORCES
 from stiffmbs.solve import bdf
+from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.events.chattering import MANY, WINDOW, Chattering
-from stiffmbs.solve.mechanics import Mechanics
 from stiffmbs.solve.trajectory import Outcome
 
 SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
@@ -138,12 +138,12 @@ def test_a_relay_that_swings_on_and_on_is_followed(solver, monkeypatch):
 
 def test_the_number_of_events_to_come_follows_the_law_of_their_growth():
     """Events of a motion that is driven evenly faster are many, but not beyond all bounds; exponential growth is."""
-    mechanics = Mechanics(stiffmbs.compile.compile_model.compile_model(block("-5*sign(block.x)").data()))
+    dynamics = Dynamics(stiffmbs.compile.compile_model.compile_model(block("-5*sign(block.x)").data()))
     q, u = np.ones(3), np.ones(3)  # far from the jump
-    evenly = Chattering(mechanics, 10.0, 1e-6)
+    evenly = Chattering(dynamics, 10.0, 1e-6)
     for k in range(1, 30_000):
         evenly.note_event(10.0 * np.sqrt(k / 60_000), q, u, 0)
-    exponentially = Chattering(mechanics, 2.0, 1e-6)
+    exponentially = Chattering(dynamics, 2.0, 1e-6)
     with pytest.raises(stiffmbs.errors.SolverError, match="'push' changes its law back and forth ever faster"):
         for k in range(1, 10_000):
             exponentially.note_event(np.log(k) / 10.0, q, u, 0)

@@ -8,7 +8,7 @@ import pytest
 import stiffmbs
 from stiffmbs import Body, Model, Revolute
 from stiffmbs.results.solution import channel_ranges
-from stiffmbs.solve.mechanics import Mechanics
+from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.native.statuses import NO_BALANCE
 from stiffmbs.solve.trajectory import Outcome
 
@@ -16,7 +16,7 @@ from stiffmbs.solve.trajectory import Outcome
 @pytest.fixture
 def without_reactions(monkeypatch):
     """Lets accelerations and reactions be missing at the instants that a condition picks."""
-    report = Mechanics.report
+    report = Dynamics.report
 
     def choose(missing):
         def up_to_the_first(self, t, q, u, project):
@@ -24,7 +24,7 @@ def without_reactions(monkeypatch):
             found = report(self, t[:count], q[:count], u[:count], project)
             return found if count == len(t) else replace(found, status=NO_BALANCE)
 
-        monkeypatch.setattr(Mechanics, "report", up_to_the_first)
+        monkeypatch.setattr(Dynamics, "report", up_to_the_first)
 
     return choose
 

@@ -50,7 +50,7 @@ def two_springs(k):
 
 @pytest.mark.parametrize("scheme", ADAPTIVE)
 def test_a_spring_with_a_corner_follows_its_closed_form(scheme):
-    """Half periods of pi/w and pi/2w: the corners come at pi/2w, pi/w, then each 3 pi/2w on; the motion is exact."""
+    """Half periods of pi/w and pi/2w: the breakpoints come at pi/2w, pi/w, then each 3 pi/2w on; the motion is exact."""
     w = 3.0
     solution = explicit(two_springs(w**2), scheme, duration=6.0, points=601, rtol=1e-10)
     phase = np.mod(w * solution.time + np.pi / 2, 1.5 * np.pi)  # from a passage to the right on

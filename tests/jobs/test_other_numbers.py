@@ -73,7 +73,7 @@ def test_one_spring_of_two_is_changed_and_presolved_models_too():
         """
     )
     job = with_numbers(prepare(scene), "spring_b", stiffness=40.0)
-    assert job.pieces
+    assert job.subsystems
     plain = with_numbers(prepare(scene, presolve=False), "spring_b", stiffness=40.0)
     t = plain.grid.times
     for found in (job.integrate().q, plain.integrate().q):

@@ -42,9 +42,9 @@ def frequencies(found):
 def test_accelerations_vary_as_the_state_matrix_says(name, at):
     """u' at states a small step apart on the constraints, against v' = A z; in motion, with every term of it."""
     found = at_state(example(name), at=at)
-    system, state = found.mechanics.system, found.mechanics.state
+    system, state = found.dynamics.system, found.dynamics.state
     scale = system.per_velocity(system.size, 1.0)
-    linear = linearised(found.mechanics, found.t, found.acceleration)
+    linear = linearised(found.dynamics, found.t, found.acceleration)
     chosen = state_matrix(linear, scale)
     q, u = state.q.copy(), state.u.copy()
     random = np.random.default_rng(3)
@@ -54,9 +54,9 @@ def test_accelerations_vary_as_the_state_matrix_says(name, at):
         for step in (-STEP, STEP):
             state.q[:] = system.of_body.moved(q, linear.own_axes @ chosen.poses @ z * step)
             state.u[:] = u + linear.own_axes @ chosen.velocities @ z * step
-            found.mechanics.assemble(found.t)
-            found.mechanics.correct_velocities(found.t)
-            status, acceleration = found.mechanics.accelerate(found.t)
+            found.dynamics.assemble(found.t)
+            found.dynamics.correct_velocities(found.t)
+            status, acceleration = found.dynamics.accelerate(found.t)
             assert status == 0
             rates.append(acceleration)
         differences = (rates[1] - rates[0]) / (2 * STEP)

@@ -18,10 +18,10 @@ from ..conftest import EXAMPLES
 RTOL, STIFF_RTOL = 1e-10, 1e-11
 """Of stiff scenes a tighter one: accelerations beside 1e9 N/m take 1e-10 m for 0.2 m/s^2."""
 AGREES = 1e-7
-"""Largest difference, in parts of the largest value of its sort in the model, of state, accelerations, reactions and
+"""Largest difference, relative to the largest value of its sort in the model, of state, accelerations, reactions and
 energies alike.  Most runs by bdf agree to 1e-8, most by dop853 to 1e-10."""
 AFTER_CORNERS = 1e-6
-"""The same where forces have corners, as in contacts and friction, or are stiff."""
+"""The same where forces have breakpoints, as in contacts and friction, or are stiff."""
 BDF, DOP853 = {"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}
 SORTS = {
     "x": "place", "y": "place", "vx": "speed", "vy": "speed", "ax": "acceleration", "ay": "acceleration",

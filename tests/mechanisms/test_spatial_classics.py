@@ -62,7 +62,7 @@ def test_a_stewart_platform_heaves_and_twists_as_its_legs_say(solver):
     feet = [turned((0, 0, 1), math.radians(a)) @ [1.0, 0, 0] for a in feet]
     heads = [turned((0, 0, 1), math.radians(a)) @ [0.6, 0, 0] for a in heads]
 
-    def leg(k):
+    def segment(k):
         """Length by the law of cosines for a lift of 0.1 sin 3t and a twist of 0.3 sin 2t."""
         along, across = heads[k] @ feet[k], heads[k][0] * feet[k][1] - heads[k][1] * feet[k][0]
         twist = "0.3*sin(2*t)"
@@ -86,7 +86,7 @@ def test_a_stewart_platform_heaves_and_twists_as_its_legs_say(solver):
                 "i": f"top.p{k}",
                 "j": f"ground.b{k}",
                 "coordinate": f"dm(top.p{k}, ground.b{k})",
-                "position": leg(k),
+                "position": segment(k),
             }
             for k in range(6)
         },

@@ -56,7 +56,7 @@ def both(model, **changes):
 def test_what_a_run_has_set_up_is_made_anew_for_other_coordinates(examples):
     job = prepare(stiffmbs.load_scene(examples / "cart_pendulum.yaml"), duration=1.0)
     with_fewer = job.integrate()
-    job.mechanics.coordinates = all_independent(job.mechanics.system)
+    job.dynamics.coordinates = all_independent(job.dynamics.system)
     with_all = job.integrate()
     assert with_all.statistics["linear_solver"] != with_fewer.statistics["linear_solver"]
     np.testing.assert_allclose(with_all.q, with_fewer.q, atol=1e-4)
@@ -90,7 +90,7 @@ def test_check_reports_what_a_run_with_its_settings_leaves_out(examples):
 
 
 def assert_same(with_it, without, tolerance):
-    """Every channel, in parts of the largest of its family (forces, torques, coordinates, ...)."""
+    """Every channel, relative to the largest of its family (forces, torques, coordinates, ...)."""
     assert list(with_it) == list(without)
     np.testing.assert_array_equal(with_it.time, without.time)
     for name in without:
@@ -102,7 +102,7 @@ def assert_same(with_it, without, tolerance):
 def solved_unknowns(job):
     from stiffmbs.jobs.presolve_report import unknowns
 
-    return unknowns(job.mechanics.system, job.pieces, job.mechanics)
+    return unknowns(job.dynamics.system, job.subsystems, job.dynamics)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -191,7 +191,7 @@ def test_multipliers_that_friction_hangs_on_stay(examples):
     job = prepare(stiffmbs.load_scene(examples / "stick_slip.yaml"))
     kept = {
         name
-        for name, gone in zip(job.mechanics.system.equations, job.mechanics.coordinates.fulfilled, strict=True)
+        for name, gone in zip(job.dynamics.system.equations, job.dynamics.coordinates.satisfied, strict=True)
         if not gone
     }
     assert ("slide", "normal") in kept
@@ -205,11 +205,11 @@ def test_equations_of_time_or_with_corners_stay():
     model.add("cornered", JOINTS["equation"](zero="a.y + max(b.y, -100)"))
     model.add("straight", JOINTS["equation"](zero="a.angle - 2*b.angle"))
     coordinates = (
-        prepare(model, duration=0.1).pieces[0].mechanics.coordinates
-        if prepare(model).pieces
-        else prepare(model).mechanics.coordinates
+        prepare(model, duration=0.1).subsystems[0].dynamics.coordinates
+        if prepare(model).subsystems
+        else prepare(model).dynamics.coordinates
     )
-    assert coordinates.fulfilled.tolist() == [False, False, True]
+    assert coordinates.satisfied.tolist() == [False, False, True]
 
 
 def test_drifts_and_fixed_steps_are_shown_as_they_are():
@@ -217,7 +217,7 @@ def test_drifts_and_fixed_steps_are_shown_as_they_are():
     for changes in (
         {"solver": "projected", "scheme": "euler_cromer"}, {"solver": "projected", "scheme": "rk4"}, {"solver": "projected", "scheme": "dop853", "projection": False},
     ):  # fmt: skip
-        assert not prepare(scene, **changes).pieces
+        assert not prepare(scene, **changes).subsystems
 
 
 def test_a_redundant_weld_is_not_made_stronger():
@@ -227,8 +227,8 @@ def test_a_redundant_weld_is_not_made_stronger():
         model.add(name, Body(mass=1 + k, inertia=0.1, position=(0.5 * k, 0)))
         model.add(f"rail{k}", JOINTS["prismatic"](i=name, j=Marker(body="ground", point=(0.5 * k, 0))))
     model.add("weld", JOINTS["fixed"](i=Marker(body="two", point=(-0.5, 0)), j="one"))
-    for give_way in ((), ("weld",), ("rail0",)):
-        with_it, without = both(model, duration=1.0, points=11, rtol=1e-9, give_way=give_way)
+    for drop_first in ((), ("weld",), ("rail0",)):
+        with_it, without = both(model, duration=1.0, points=11, rtol=1e-9, drop_first=drop_first)
         np.testing.assert_allclose(with_it["one.x"], 0.5 * with_it.time**2, atol=1e-8)
         np.testing.assert_allclose(with_it["one.x"], without["one.x"], atol=1e-8)
         np.testing.assert_allclose(with_it["weld.fy"], without["weld.fy"], atol=1e-8)
@@ -248,16 +248,16 @@ def test_random_trees_with_welds(seed, count, welds):
     rng = np.random.default_rng(seed)
     model = random_tree(rng, count, gravity=True, grounded=True, springs=2)
     for k in range(welds):
-        carrier = f"{list(model.bodies)[int(rng.integers(count))]}"
+        parent = f"{list(model.bodies)[int(rng.integers(count))]}"
         place, angle = tuple(rng.uniform(-0.5, 0.5, 2)), rng.uniform(-3, 3)
-        body = model.bodies[carrier]
+        body = model.bodies[parent]
         c, s = np.cos(body.angle), np.sin(body.angle)
         at = (body.position[0] + c * place[0] - s * place[1], body.position[1] + s * place[0] + c * place[1])
         name = f"welded{k}"
         model.add(
             name, Body(mass=rng.uniform(0.1, 2), inertia=rng.uniform(0.01, 0.1), position=at, angle=body.angle + angle)
         )
-        model.add(f"weld{k}", JOINTS["fixed"](i=name, j=Marker(body=carrier, point=place, angle=angle)))
+        model.add(f"weld{k}", JOINTS["fixed"](i=name, j=Marker(body=parent, point=place, angle=angle)))
     with_it, without = both(model, duration=0.3, points=11, rtol=1e-10)
     before, after = solved_unknowns(prepare(model))
     assert after <= before - 12 * welds

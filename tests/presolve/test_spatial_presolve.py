@@ -94,16 +94,16 @@ def random_body(rng, **place):
     return Body(mass=rng.uniform(0.3, 3), inertia=tensor.tolist(), center_of_mass=centre, **place)
 
 
-def welded_at(model, name, carrier, rng):
+def welded_at(model, name, parent, rng):
     """A body fixed to another at random places and axes of both."""
     here, there, at = random_turn(rng), random_turn(rng), tuple(rng.uniform(-0.5, 0.5, 3))
-    holder = model.bodies[carrier]
+    holder = model.bodies[parent]
     A = matrix(holder.orientation) @ matrix(there) @ matrix(here).T
     point = rng.uniform(-0.3, 0.3, 3)
     place = np.array(holder.position) + matrix(holder.orientation) @ at - A @ point
     model.add(name, random_body(rng, position=tuple(place), orientation=A.tolist()))
     i = Marker(body=name, point=tuple(point), orientation=here)
-    model.add(f"weld_{name}", Fixed(i=i, j=Marker(body=carrier, point=at, orientation=there)))
+    model.add(f"weld_{name}", Fixed(i=i, j=Marker(body=parent, point=at, orientation=there)))
 
 
 @settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
@@ -130,7 +130,7 @@ def test_random_welds_on_a_double_pendulum(seed, welds):
     with_it, without = both(model, duration=0.3, points=11, rtol=1e-9)
     assert_same(with_it, without, 1e-4)
     job = prepare(model)
-    assert len(job.pieces[0].mechanics.system.bodies) == 2
+    assert len(job.subsystems[0].dynamics.system.bodies) == 2
 
 
 def test_two_welded_halves_are_a_whole():
@@ -211,15 +211,15 @@ def test_a_plate_on_planes(normals, kept):
         )
     with_it, without = both(model, duration=1.0, points=11, rtol=1e-9)
     assert_same(with_it, without, 1e-6)
-    (piece,) = prepare(model).pieces or [prepare(model)]
-    assert piece.mechanics.coordinates.independent.sum() == kept
-    assert piece.mechanics.coordinates.independent_u.sum() == kept
+    (subsystem,) = prepare(model).subsystems or [prepare(model)]
+    assert subsystem.dynamics.coordinates.independent.sum() == kept
+    assert subsystem.dynamics.coordinates.independent_u.sum() == kept
 
 
 def test_a_plane_with_three_slopes_stays():
     """One equation in three coordinates saves none."""
     model = table([(1, 2, 3)])
-    assert prepare(model).mechanics.coordinates.independent.sum() == 3
+    assert prepare(model).dynamics.coordinates.independent.sum() == 3
 
 
 def test_sliders_on_sliders_stand_upright():

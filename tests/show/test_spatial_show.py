@@ -17,7 +17,7 @@ from stiffmbs.describe.spatial.orientation import conjugate, matrix, product, ro
 from stiffmbs.results.scales import scales
 from stiffmbs.show.figure import drawn
 from stiffmbs.show.force_table import force_table
-from stiffmbs.verification.parting import distance, parting
+from stiffmbs.verification.divergence import distance, divergence
 
 from ..conftest import EXAMPLES
 from ..spatial_closed_forms import matrices
@@ -116,7 +116,7 @@ def test_bodies_that_turn_apart_are_seen_whatever_the_sign_of_their_quaternions(
         (turning(2 * t + t**2), 0.45),
         (tilted, 0.02),
     ):
-        met = parting(t, distance(first, other, 201, sizes))
+        met = divergence(t, distance(first, other, 201, sizes))
         assert met is None if expected is None else met.t == pytest.approx(expected, abs=0.05)
 
 

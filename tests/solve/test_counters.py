@@ -8,7 +8,7 @@ from ..conftest import EXAMPLES
 IDA = {
     "name": "bdf", "linear_solver": "dense, 19 unknowns", "steps": 1000, "residuals": 2000, "jacobians": 310,
     "factorizations": 310, "error_test_failures": 4, "convergence_failures": 2, "newton_iterations": 2000,
-    "newton_failures": 302, "rejected": 6, "order": 5, "corners": 0, "events": 3, "seconds": 0.0725,
+    "newton_failures": 302, "rejected": 6, "order": 5, "breakpoints": 0, "events": 3, "seconds": 0.0725,
 }  # fmt: skip
 
 
@@ -41,19 +41,19 @@ def test_explicit_steps_count_accelerations():
         "steps": 56,
         "rejected": 1,
         "accelerations": 851,
-        "corners": 2,
+        "breakpoints": 2,
         "events": 0,
         "seconds": 0.001,
     }
     assert solver_words(found) == (
-        "projected; 56 steps (1 more refused); 851 accelerations; started anew at 2 corners of inputs; 1.0 ms"
+        "projected; 56 steps (1 more refused); 851 accelerations; started anew at 2 breakpoints of inputs; 1.0 ms"
     )
 
 
 def test_every_counter_of_a_run_is_told_or_known_to_be_part_of_another():
     solution = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"), duration=0.5)
     words = solver_words(solution.solver)
-    known = {"newton_failures", "rejected", "corners", "events", "convergence_failures"}
+    known = {"newton_failures", "rejected", "breakpoints", "events", "convergence_failures"}
     told = [
         k for k, v in solution.solver.items() if isinstance(v, int) and k not in known and v and str(v) not in words
     ]

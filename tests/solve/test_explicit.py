@@ -136,19 +136,19 @@ def chain(examples):
 def integrated(scene, frozen, **changes):
     """A run of dop853 whose steps return to the constraints by frozen factors, or by Newton's moves with new ones."""
     job = prepare(scene, solver="projected", scheme="dop853", duration=1.0, **changes)
-    job.mechanics.eliminated.serves = frozen
-    return job.mechanics, job.integrate()
+    job.dynamics.eliminated.serves = frozen
+    return job.dynamics, job.integrate()
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
 def test_steps_end_on_the_constraints(chain, rtol):
     """One move by frozen factors leaves positions at the projection's tolerance and velocities far below the run's."""
-    mechanics, trajectory = integrated(chain, True, rtol=rtol, points="steps")
+    dynamics, trajectory = integrated(chain, True, rtol=rtol, points="steps")
     for t, q, u in zip(trajectory.t, trajectory.q, trajectory.u, strict=True):
-        mechanics.state.q[:], mechanics.state.u[:] = q, u
-        mechanics.state.evaluate("motion", t)
-        assert np.max(np.abs(mechanics.state.vector("motion", "C"))) < 2e-12
-        assert np.max(np.abs(mechanics.state.vector("motion", "V"))) < 1e-3 * rtol + 1e-14
+        dynamics.state.q[:], dynamics.state.u[:] = q, u
+        dynamics.state.evaluate("motion", t)
+        assert np.max(np.abs(dynamics.state.vector("motion", "C"))) < 2e-12
+        assert np.max(np.abs(dynamics.state.vector("motion", "V"))) < 1e-3 * rtol + 1e-14
 
 
 def test_frozen_factors_cost_no_accuracy(examples):
@@ -217,15 +217,15 @@ def test_motion_that_ends_in_a_singularity_stops_there():
 @given(st.integers(0, 2**32 - 1), st.integers(1, 8))
 def test_eliminated_accelerations_are_those_of_the_whole_block_system(seed, count):
     rng = np.random.default_rng(seed)
-    mechanics = prepare(random_tree(rng, count, gravity=True, grounded=True, springs=1)).mechanics
-    mechanics.state.u[:] = rng.uniform(-1, 1, mechanics.system.n_u)
-    _, whole = mechanics.accelerate(0.0)
-    lam = mechanics.state.lam.copy()
+    dynamics = prepare(random_tree(rng, count, gravity=True, grounded=True, springs=1)).dynamics
+    dynamics.state.u[:] = rng.uniform(-1, 1, dynamics.system.n_u)
+    _, whole = dynamics.accelerate(0.0)
+    lam = dynamics.state.lam.copy()
     found = np.empty_like(whole)
-    assert mechanics.eliminated.serves
-    assert ELIMINATED.load()(0.0, found.ctypes.data, mechanics.eliminated.table.ctypes.data)
+    assert dynamics.eliminated.serves
+    assert ELIMINATED.load()(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
     np.testing.assert_allclose(found, whole, atol=1e-9 * (1 + np.abs(whole).max()))
-    np.testing.assert_allclose(mechanics.state.lam, lam, atol=1e-9 * (1 + np.abs(lam).max()))
+    np.testing.assert_allclose(dynamics.state.lam, lam, atol=1e-9 * (1 + np.abs(lam).max()))
 
 
 def test_one_plate_with_many_pendulums_is_left_to_the_whole_system():
@@ -236,7 +236,7 @@ def test_one_plate_with_many_pendulums_is_left_to_the_whole_system():
         bob = model.add(f"bob{k}", Body(mass=1, inertia=0.1, position=(k, -1)))
         model.add(f"pin{k}", stiffmbs.Revolute(i=bob.at(0, 1), j=plate.at(k, 0)))
     job = prepare(model, duration=0.1, points=3, solver="projected", scheme="dop853")
-    assert not job.mechanics.eliminated.serves
+    assert not job.dynamics.eliminated.serves
     assert job.integrate().outcome is Outcome.DONE
 
 

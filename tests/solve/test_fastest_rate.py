@@ -11,7 +11,7 @@ from stiffmbs.solve.fastest_rate import fastest_rate
 
 def rate_of(model, **settings):
     job = prepare(model, presolve=False, **settings)
-    return fastest_rate(job.mechanics, 0.0, job.start.q, job.start.u)
+    return fastest_rate(job.dynamics, 0.0, job.start.q, job.start.u)
 
 
 def on_bushing(stiffness, damping):
@@ -44,6 +44,6 @@ def test_a_joint_takes_the_stiffness_along_it_out_of_the_motion():
 @pytest.mark.parametrize("scene", ["stick_slip", "cam_follower"])
 def test_the_state_is_left_as_it_was(examples, scene):
     job = prepare(stiffmbs.load_scene(examples / f"{scene}.yaml"), presolve=False)
-    fastest_rate(job.mechanics, 0.0, job.start.q, job.start.u)
-    np.testing.assert_array_equal(job.mechanics.state.q, job.start.q)
-    np.testing.assert_array_equal(job.mechanics.state.u, job.start.u)
+    fastest_rate(job.dynamics, 0.0, job.start.q, job.start.u)
+    np.testing.assert_array_equal(job.dynamics.state.q, job.start.q)
+    np.testing.assert_array_equal(job.dynamics.state.u, job.start.u)

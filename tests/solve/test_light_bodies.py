@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs import Body, Model, Prismatic, Revolute, TorsionSpring, spatial
-from stiffmbs.solve.mechanics import Mechanics
+from stiffmbs.solve.dynamics import Dynamics
 
 G = 9.81
 
@@ -103,12 +103,12 @@ def test_the_sprung_mass_moves_as_its_equation_says(inertia):
 
 
 def test_accelerations_keep_their_digits():
-    mechanics = Mechanics(stiffmbs.compile.compile_model.compile_model(sprung(1e-12).data()))
-    state = mechanics.state
+    dynamics = Dynamics(stiffmbs.compile.compile_model.compile_model(sprung(1e-12).data()))
+    state = dynamics.state
     found = []
     for angle in 1 + 1e-13 * np.arange(10):
         state.q[:] = 0.5 * np.sin(angle), -0.5 * np.cos(angle), angle
-        found.append(mechanics.accelerate(0.0)[1][2])
+        found.append(dynamics.accelerate(0.0)[1][2])
     np.testing.assert_allclose(found, -(100 + G * np.sin(1)) / 0.5, rtol=1e-11)
 
 

@@ -34,7 +34,7 @@ class Problem:
 
     def __init__(self, model, rtol=1e-6, order=lambda equations: equations):
         job = prepare(model)
-        self.system, start = job.mechanics.system, job.start
+        self.system, start = job.dynamics.system, job.start
         self.equations = order(Equations(SI2_EXACT, self.system))
         n, at = self.equations.n, self.equations.at
         self.rtol, self.atol = rtol, np.full(n, 1e15)

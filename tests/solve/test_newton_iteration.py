@@ -8,13 +8,13 @@ from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.error_control.error_test import ErrorControl
 
-IDAS_OWN, DOUBTFUL = ErrorControl(doubtful=False), ErrorControl(doubtful=True)
+IDAS_OWN, DOUBTFUL = ErrorControl(predicted_residual=False), ErrorControl(predicted_residual=True)
 
 
 def ends(scene, rtol, *controls, duration):
     """Coordinates at the end, and counters, under each control."""
     job = prepare(scene, solver="bdf", presolve=False, duration=duration, points=3, rtol=rtol)
-    runs = [solve(job.mechanics, job.start, job.grid, job.settings, lambda t: None, control) for control in controls]
+    runs = [solve(job.dynamics, job.start, job.grid, job.settings, lambda t: None, control) for control in controls]
     return [(run.q[-1], run.statistics) for run in runs]
 
 

@@ -100,7 +100,7 @@ def test_assembly_finds_the_branch_that_is_drawn(seed):
         }  # fmt: skip
         assembled = model.data().model_copy(update={"bodies": bodies})
         for joint in model.joints.values():
-            i, j = assembled.drawn_marker(joint.i), assembled.drawn_marker(joint.j)
+            i, j = assembled.initial_marker(joint.i), assembled.initial_marker(joint.j)
             if joint.kind != "spherical":
                 np.testing.assert_allclose(i.z @ j.z, 1.0, atol=1e-9)
             if joint.kind == "prismatic":

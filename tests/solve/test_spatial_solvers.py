@@ -195,7 +195,7 @@ def test_corners_in_time_and_state_are_met_in_space(engine, monkeypatch):
         monkeypatch.setattr(bdf, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
     found = stiffmbs.run(bouncing_top())
     assert found.solver["events"] == exact.solver["events"] >= 4
-    assert found.solver["corners"] == exact.solver["corners"] == 4
+    assert found.solver["breakpoints"] == exact.solver["breakpoints"] == 4
     motion, forces = off(found, exact)
     assert motion < 1e-6
     assert forces < 1e-5

@@ -87,9 +87,9 @@ def test_a_solver_is_known_by_its_traits_alone(cart, monkeypatch):
     """Nothing but its entry says that this one takes fixed steps: reruns halve them, presolve leaves its problem alone."""
     mine = Traits("mine", ("step",), fixed_steps=True)
 
-    def solve_mine(mechanics, start, grid, settings, watch):
+    def solve_mine(dynamics, start, grid, settings, watch):
         chosen = settings.model_copy(update={"scheme": "rk4"})
-        return solve(mechanics, start, grid, chosen, watch)
+        return solve(dynamics, start, grid, chosen, watch)
 
     monkeypatch.setitem(SOLVERS, "auto", Registered(solve_mine, lambda settings: mine))
     found = stiffmbs.verify(cart, duration=0.5, points=11, solver="auto", step=2e-3)

@@ -162,7 +162,7 @@ def decided_by_stiffness(cases, rows, rng):
     N, one = shares(J, chosen, known, rng.uniform(0.2, 5, chosen.sum()))
     _, other = shares(J, chosen, known, rng.uniform(0.2, 5, chosen.sum()))
     assert N.shape[1] == sum(len(case.redundant) for case in cases)
-    for element in {part.element for case in cases for part in case.undetermined}:
+    for element in {part.element for case in cases for part in case.indeterminate}:
         own = [k for k, name in enumerate(names) if name == element]
         assert np.abs(one[own] - other[own]).max() > 1e-9, f"{element} does not depend on stiffness"
     for name in together:

@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs import Body, Marker, Model, Revolute
 from stiffmbs.structure import small_singular
 from stiffmbs.structure import sparse_matrix as entries_module
-from stiffmbs.structure.sparse_matrix import Entries
+from stiffmbs.structure.sparse_matrix import SparseMatrix
 
 
 @pytest.fixture(params=["dense", "sparse"])
@@ -23,7 +23,7 @@ def matrix(n, m, seed, least=None):
         left, values, right = np.linalg.svd(A, full_matrices=False)
         A = left @ np.diag([*values[:-1], least]) @ right
     row, column = np.nonzero(A)
-    return A, Entries(row, column, A[row, column], A.shape)
+    return A, SparseMatrix(row, column, A[row, column], A.shape)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -50,7 +50,7 @@ def test_singular_values_below_a_bound_are_seen(way, least, seed):
 def test_more_rows_than_columns_depend_on_each_other(way):
     A, _ = matrix(10, 14, 0)
     row, column = np.nonzero(A.T)
-    assert not Entries(row, column, A.T[row, column], A.T.shape).singular_values_above(1e-5)
+    assert not SparseMatrix(row, column, A.T[row, column], A.T.shape).singular_values_above(1e-5)
 
 
 def ladder(cells):
@@ -89,7 +89,7 @@ def test_small_singular_values_alone_are_those_of_the_whole(monkeypatch, redunda
         A[80 + k] = A[2 * k] - A[2 * k + 1]
     A[79] = A[78] + 1e-6 * A[79]
     row, column = np.nonzero(A)
-    entries = Entries(row, column, A[row, column], A.shape)
+    entries = SparseMatrix(row, column, A[row, column], A.shape)
     whole, whole_vectors = small_singular.small_singular(entries)
     monkeypatch.setattr(small_singular, "WHOLE_UP_TO", 0)
     values, vectors = small_singular.small_singular(entries)

@@ -128,7 +128,7 @@ def test_a_parallelogram_with_a_third_crank(angle, size):
     assert (report.equations, report.rank, report.degrees_of_freedom) == (12, 11, 1)
     assert len(report.redundant) == 1
     assert set(report.not_unique) == {f"{pin}.{c}" for pin in PINS for c in ("fx", "fy")}
-    for part in report.overconstraints[0].undetermined:
+    for part in report.overconstraints[0].indeterminate:
         (direction,) = part.directions
         assert direction.axes == f"crank{part.element[-1]}"
         np.testing.assert_allclose(direction.vector, (1, 0), atol=1e-6)
@@ -146,7 +146,7 @@ def with_a_crank_longer_by(much):
 def test_equal_lengths_are_equal_to_some_digits(much):
     """What is left out stays open by the difference, and that is told."""
     report = stiffmbs.check(with_a_crank_longer_by(much))
-    assert (report.rank, report.degrees_of_freedom, report.contradictions) == (11, 1, ())
+    assert (report.rank, report.degrees_of_freedom, report.inconsistencies) == (11, 1, ())
     solution = stiffmbs.run(with_a_crank_longer_by(much), duration=1.0, points=11)
     assert 0.1 * much < solution["constraint.position"].max() < 2 * much
     assert any("of their size only" in note for note in solution.notes) == (much > 1e-11)
@@ -154,7 +154,7 @@ def test_equal_lengths_are_equal_to_some_digits(much):
 
 @pytest.mark.parametrize("much", [1e-5, 1e-3])
 def test_lengths_that_differ_contradict_each_other(much):
-    (sentence,) = stiffmbs.check(with_a_crank_longer_by(much)).contradictions
+    (sentence,) = stiffmbs.check(with_a_crank_longer_by(much)).inconsistencies
     assert "joint 'head2'" in sentence
     assert 0.1 * much < float(sentence.rpartition("(by ")[2].rstrip(")")) < much
     with pytest.raises(AssemblyError, match=r"head2.*contradicts"):
@@ -192,7 +192,7 @@ def test_the_third_crank_does_not_change_the_motion(start):
 
 def test_what_is_unique_does_not_depend_on_which_joint_gives_way():
     runs = [
-        stiffmbs.run(parallelogram(-1.0), duration=0.5, points=11, rtol=1e-9, give_way=(joint,))
+        stiffmbs.run(parallelogram(-1.0), duration=0.5, points=11, rtol=1e-9, drop_first=(joint,))
         for joint in ("head2", "foot0", "head1")
     ]
     for name in runs[0]:
@@ -209,10 +209,10 @@ def test_what_is_unique_does_not_depend_on_which_joint_gives_way():
 
 def test_the_user_chooses_which_joint_gives_way():
     model = guided_twice()
-    assert {joint for joint, _ in stiffmbs.check(model, give_way=("rail",)).redundant} == {"rail"}
+    assert {joint for joint, _ in stiffmbs.check(model, drop_first=("rail",)).redundant} == {"rail"}
     assert {joint for joint, _ in model.check().redundant} == {"guide"}
-    with pytest.raises(InputError, match=r"give_way.*'rial'.*rail, guide"):
-        stiffmbs.run(model, give_way=("rial",))
+    with pytest.raises(InputError, match=r"drop_first.*'rial'.*rail, guide"):
+        stiffmbs.run(model, drop_first=("rial",))
 
 
 @pytest.mark.parametrize("second", ["crank.angle - 2*t", "3*crank.angle - 6*t"])
@@ -222,7 +222,7 @@ def test_two_drives_that_agree(second):
     assert (report.equations, report.rank, report.degrees_of_freedom) == (4, 3, 0)
     assert report.redundant == (("motor1", "zero[0]"),)
     assert report.not_unique == ("motor0.torque", "motor1.torque")
-    assert report.contradictions == ()
+    assert report.inconsistencies == ()
     assert any("0 degrees of freedom" in message for message in report.messages)
     solution = stiffmbs.run(model, duration=1.0, points=11)
     np.testing.assert_allclose(solution["crank.angle"], 2 * solution.time, atol=1e-6)
@@ -237,7 +237,7 @@ def test_two_drives_that_agree(second):
 def test_two_drives_that_disagree_are_an_error_that_names_both(second):
     model = driven_crank("crank.angle - 2*t", second)
     report = stiffmbs.check(model, duration=1.0)
-    (sentence,) = report.contradictions
+    (sentence,) = report.inconsistencies
     assert "motor0" in sentence and "motor1" in sentence
     assert not report.sound
     with pytest.raises(AssemblyError, match=r"motor1.*motor0"):
@@ -249,10 +249,10 @@ def test_a_drive_and_a_redundant_loop_do_not_disagree():
     model = parallelogram(1.0)
     model.add("motor", Drive(joint="foot0", position="1 + 6*t"))
     report = stiffmbs.check(model, duration=2.0)
-    assert report.contradictions == ()
+    assert report.inconsistencies == ()
     assert report.degrees_of_freedom == 0
     model.add("second", Drive(joint="foot1", position="1 + 6*t"))
-    assert stiffmbs.check(model, duration=2.0).contradictions == ()
+    assert stiffmbs.check(model, duration=2.0).inconsistencies == ()
     solution = stiffmbs.run(model, duration=2.0, points=11, solver="kinematic")
     np.testing.assert_allclose(solution["crank2.angle"], 1 + 6 * solution.time, atol=1e-9)
 
@@ -369,7 +369,7 @@ def test_remedies_make_reactions_unique(seed, bodies, joints):
             kept.bodies = model.bodies
             kept.joints = {name: joint for name, joint in model.joints.items() if name not in remedy}
             left = stiffmbs.check(kept)
-            assert not {part.element for part in case.undetermined} & {name.split(".")[0] for name in left.not_unique}
+            assert not {part.element for part in case.indeterminate} & {name.split(".")[0] for name in left.not_unique}
 
 
 def test_a_long_closed_chain_and_a_doubled_pin_in_a_shorter_one():
@@ -441,7 +441,7 @@ def test_exit_status_of_check(rails, examples):
     assert command("check", "rails.yaml").exit_code == 1
     assert command("check", "nowhere.yaml").exit_code == 2
     assert command("check", "rails.yaml", "--set", "bodies.block.mass=0").exit_code == 2
-    chosen = command("check", "rails.yaml", "--json", "--set", "run.give_way=[rail]")
+    chosen = command("check", "rails.yaml", "--json", "--set", "run.drop_first=[rail]")
     assert {entry["joint"] for entry in json.loads(chosen.output)["redundant"]} == {"rail"}
 
 

@@ -10,7 +10,7 @@ import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.jobs.other_numbers import with_numbers
 from stiffmbs.jobs.run import prepare
-from stiffmbs.solve.mechanics import Mechanics
+from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.native.statuses import NO_BALANCE
 
 from ..conftest import EXAMPLES
@@ -120,14 +120,14 @@ def driven():
 
 
 def test_an_instant_without_reactions_keeps_its_pose(monkeypatch):
-    report = Mechanics.report
+    report = Dynamics.report
 
     def up_to_half_a_second(self, t, q, u, project):
         count = int(np.argmax([*(abs(instant - 0.5) < 1e-9 for instant in t), True]))
         found = report(self, t[:count], q[:count], u[:count], project)
         return found if count == len(t) else replace(found, status=NO_BALANCE)
 
-    monkeypatch.setattr(Mechanics, "report", up_to_half_a_second)
+    monkeypatch.setattr(Dynamics, "report", up_to_half_a_second)
     for scene, body, force in (
         (stiffmbs.load_scene(EXAMPLES / "heavy_top.yaml"), "top", "tip.fz"),
         (driven(), "arm", "pin.fx"),

@@ -90,9 +90,9 @@ def test_nothing_is_found_along_runs_with_impacts_and_stiff_bushings(name):
 
 
 def test_a_run_with_another_longest_step_where_the_scene_has_laws():
-    assert has_laws(prepare(body_at_a_bump()).mechanics.system)
+    assert has_laws(prepare(body_at_a_bump()).dynamics.system)
     pendulum = prepare(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"))
-    assert not has_laws(pendulum.mechanics.system)
+    assert not has_laws(pendulum.dynamics.system)
     found = module.verify(stiffmbs.load_scene(EXAMPLES / "bouncing_ball.yaml"))
     assert any("with steps of at most" in sentence for sentence in found.verification)
 

@@ -82,7 +82,7 @@ def _log10(x: ast.expr) -> ast.expr:
     return quotient(call("log", x), number(math.log(10)))
 
 
-SPECIAL: dict[str, Callable[..., ast.expr]] = {
+ADAMS_FUNCTIONS: dict[str, Callable[..., ast.expr]] = {
     "SHF": _shf,
     "POLY": _poly,
     "CHEBY": _cheby,

@@ -15,7 +15,7 @@ from ...describe.files.quoted import quoted
 from ...describe.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
 from ..scene.number_format import plain
-from .adams_functions import SPECIAL
+from .adams_functions import ADAMS_FUNCTIONS
 from .expression import IF, OMITTED
 from .function import Function
 from .trees import measured, over, power, product, times, total
@@ -120,9 +120,9 @@ class Translation:
             return self.measure(name, arguments, function)
         if name in PLAIN:
             return ast.Call(ast.Name(PLAIN[name]), [translate(argument) for argument in arguments], [])
-        if name in SPECIAL:
+        if name in ADAMS_FUNCTIONS:
             try:
-                return SPECIAL[name](*map(translate, arguments))
+                return ADAMS_FUNCTIONS[name](*map(translate, arguments))
             except TypeError:
                 raise function.fault(
                     f"found {len(arguments)} arguments of {name} in '{quoted(function.text)}', expected another number"

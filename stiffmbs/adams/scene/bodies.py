@@ -11,7 +11,7 @@ from ..statements.bodies import Marker, Part
 from ..statements.fault import DatasetFault
 from ..statements.geometry import IDENTITY, Frame
 from .initial_conditions import in_ground
-from .massless import SLIGHT, filled, lacks_inertia, slight_moment
+from .massless import MASSLESS, filled, lacks_inertia, massless_moment
 from .mechanism import Mechanism
 from .number_format import plain, quaternion, vector
 
@@ -75,7 +75,7 @@ def _inertia(mechanism: Mechanism, part: Part) -> list[Any]:
     tensor = _tensor(mechanism, part)
     if lacks_inertia(tensor):
         places = (mechanism.placed(marker).drawn.point for marker in mechanism.dataset.markers.values())
-        tensor = filled(tensor, slight_moment(mechanism.least, places))
+        tensor = filled(tensor, massless_moment(mechanism.least, places))
     _check(part, tensor)
     if np.array_equal(tensor, np.diag(np.diag(tensor))):
         return vector(np.diag(tensor))
@@ -88,7 +88,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
     if lacking:
         yield (
             f"{', '.join(lacking)} {'have' if len(lacking) > 1 else 'has'} no moment of inertia about some axis, taken as "
-            f"{SLIGHT:g} of that of the lightest part's mass at the mechanism's reach"
+            f"{MASSLESS:g} of that of the lightest part's mass at the mechanism's reach"
         )
 
 

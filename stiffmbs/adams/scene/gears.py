@@ -15,7 +15,7 @@ import numpy as np
 
 from ..functions.trees import difference, measured, number, product, times, total
 from ..statements.constraints import ROTATIONAL, Joint, Numbered
-from .initial_conditions import drawn_displacement
+from .initial_conditions import initial_displacement
 from .mechanism import Mechanism, Place
 from .relations import SORTS, coupled_joint
 
@@ -73,14 +73,14 @@ class _Wheel:
         self._contact, self._mechanism = contact, mechanism
         self._along = self.seat.drawn.axes.T @ contact.drawn.axes[:, 2]
         self._arm = self.seat.drawn.axes.T @ (contact.drawn.point - self.own.drawn.point)
-        self._slight = HELD * float(np.linalg.norm(self._arm))
+        self._massless = HELD * float(np.linalg.norm(self._arm))
         self._slides = SORTS.get(joint.kind) != ROTATIONAL
         self._check(user, joint)
 
     def _check(self, user: Numbered, joint: Joint) -> None:
         turning = float(np.cross(self._arm, self._along)[2]) if joint.kind != "TRANSLATIONAL" else 0.0
         sliding = float(self._along[2]) if self._slides else 0.0
-        if abs(turning) <= self._slight and abs(sliding) <= HELD:
+        if abs(turning) <= self._massless and abs(sliding) <= HELD:
             raise user.fault(
                 f"found the z axis of the marker CV across the motion that {joint.label} allows there, expected it along the "
                 "motion of the teeth"
@@ -101,19 +101,19 @@ class _Wheel:
         """Components of r x z, None for those that are zero; sliding changes r along the z axis of the joint."""
         lever, (a, b, _) = np.cross(self._arm, self._along), self._along
         if not self._slides:
-            return tuple(number(part) if abs(part) > self._slight else None for part in lever)
+            return tuple(number(part) if abs(part) > self._massless else None for part in lever)
         slid = difference(
             measured("dz", self._contact.reference, self.own.reference, self.seat.reference), number(self._arm[2])
         )
         changed = [
-            times(slid, change) if abs(part) <= self._slight else total([number(part), times(slid, change)])
+            times(slid, change) if abs(part) <= self._massless else total([number(part), times(slid, change)])
             for part, change in ((lever[0], -b), (lever[1], a))
         ]
-        return (*changed, number(lever[2]) if abs(lever[2]) > self._slight else None)
+        return (*changed, number(lever[2]) if abs(lever[2]) > self._massless else None)
 
     def drawn(self) -> float:
         """The displacement as the parts are drawn."""
         slid = self.own.drawn.point - self.seat.drawn.point
         levers = np.cross(self._arm, self._along)
-        angle = drawn_displacement(ROTATIONAL, self.own, self.seat)
+        angle = initial_displacement(ROTATIONAL, self.own, self.seat)
         return float(slid @ self._contact.drawn.axes[:, 2] + levers[2] * angle)

@@ -137,7 +137,7 @@ def _moving(mechanism: Mechanism, part: Part, twist: Twist) -> Part:
 def _check_displacements(mechanism: Mechanism, joint: Joint) -> None:
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     for sort, displacement, _ in joint.start:
-        _compare(joint, sort, "displacement", displacement, drawn_displacement(sort, i, j))
+        _compare(joint, sort, "displacement", displacement, initial_displacement(sort, i, j))
 
 
 def _check_velocities(mechanism: Mechanism, joint: Joint, i: Place, j: Place, known: dict[Key, Twist]) -> None:
@@ -162,7 +162,7 @@ def _compare(joint: Joint, sort: str, name: str, stated: float, found: float) ->
         )
 
 
-def drawn_displacement(sort: str, i: Place, j: Place) -> float:
+def initial_displacement(sort: str, i: Place, j: Place) -> float:
     """The displacement of a joint as the parts are drawn, m or rad."""
     a, b = i.drawn, j.drawn
     if sort != ROTATIONAL:

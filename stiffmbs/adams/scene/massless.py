@@ -13,7 +13,7 @@ import numpy as np
 
 from ..statements.bodies import Part
 
-SLIGHT = 1e-8
+MASSLESS = 1e-8
 """Of the lightest mass, and of that at the mechanism's reach; with a tenth of it reactions feel rounding."""
 NOTHING = 1e-12
 """Of the largest principal moment: what rounding leaves of none."""
@@ -26,14 +26,14 @@ def lightest(parts: Iterable[Part]) -> float:
 
 def weighed(part: Part, least: float) -> Part:
     """The part as it is, or with a slight mass if it has none."""
-    return part if part.ground or part.mass != 0 else replace(part, mass=SLIGHT * least)
+    return part if part.ground or part.mass != 0 else replace(part, mass=MASSLESS * least)
 
 
-def slight_moment(least: float, places: Iterable[np.ndarray]) -> float:
+def massless_moment(least: float, places: Iterable[np.ndarray]) -> float:
     """A moment of inertia that is none beside that of the lightest mass at the far end of all places, kg m^2."""
     points = np.array([np.zeros(3), *places])
     reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
-    return SLIGHT * least * reach**2
+    return MASSLESS * least * reach**2
 
 
 def lacks_inertia(tensor: np.ndarray) -> bool:

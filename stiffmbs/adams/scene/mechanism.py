@@ -19,7 +19,7 @@ from ..statements.constraints import Numbered
 from ..statements.dataset import Dataset
 from ..statements.fault import DatasetFault
 from ..statements.geometry import IDENTITY, Frame
-from .massless import SLIGHT, lightest, weighed
+from .massless import MASSLESS, lightest, weighed
 from .number_format import plain
 
 ORIGIN = Frame(np.zeros(3), IDENTITY)
@@ -151,7 +151,7 @@ class Mechanism:
         weightless = [part.label for part in self.moving if part.mass < self.least]
         if weightless:
             yield (
-                f"{', '.join(weightless)} {'have' if len(weightless) > 1 else 'has'} no MASS, taken as {SLIGHT:g} of the "
+                f"{', '.join(weightless)} {'have' if len(weightless) > 1 else 'has'} no MASS, taken as {MASSLESS:g} of the "
                 "lightest part's"
             )
         exact = [part.label for part in self.moving if part.exact]

@@ -9,7 +9,7 @@ import numpy as np
 from ..functions.motion_law import Law
 from ..functions.translate import Translation
 from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Joint, Motion
-from .initial_conditions import drawn_displacement
+from .initial_conditions import initial_displacement
 from .mechanism import Mechanism
 from .relations import SORTS, coordinate
 
@@ -33,7 +33,7 @@ def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) ->
     sort = _sort(motion, joint)
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     law = Law(motion, translation, sort)
-    drawn = drawn_displacement(sort, i, j)
+    drawn = initial_displacement(sort, i, j)
     return {"type": "drive", "joint": coordinate(joint, sort), **law.over_time(drawn)}
 
 

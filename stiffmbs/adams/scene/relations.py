@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Coupler, Joint, Numbered
-from .initial_conditions import drawn_displacement
+from .initial_conditions import initial_displacement
 from .mechanism import Mechanism
 from .number_format import plain
 
@@ -38,7 +38,7 @@ def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: M
         I, J = i.reference, j.reference
         measure = f"az({I}, {J})" if sort == ROTATIONAL else f"dz({I}, {J}, {J})"
         terms.append(f"{plain(scale)!r} * {measure}")
-        at_start += scale * drawn_displacement(sort, i, j)
+        at_start += scale * initial_displacement(sort, i, j)
     ends = {
         "i": mechanism.place(tied[0].i, tied[0], "I").reference,
         "j": mechanism.place(tied[0].j, tied[0], "J").reference,

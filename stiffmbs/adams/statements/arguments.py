@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from ...describe.files.quoted import quoted
 from .fault import DatasetFault
-from .text import Piece, Statement
+from .text import Statement, Subsystem
 
 _ASSIGNED = re.compile(r"([A-Za-z_]\w*)\s*=\s*(.*)", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -59,7 +59,7 @@ class Arguments:
             name, texts, line = *self._opened(piece), piece.line
         self._keep(name, texts, line)
 
-    def _continues(self, name: str, texts: list[str], piece: Piece) -> bool:
+    def _continues(self, name: str, texts: list[str], piece: Subsystem) -> bool:
         """Whether a piece goes on with the argument before it."""
         if _ASSIGNED.fullmatch(piece.text) or not texts:
             return False
@@ -67,7 +67,7 @@ class Arguments:
             return piece.on_new_line and not (_WORD.fullmatch(piece.text) and self._full(piece.text))
         return not (_WORD.fullmatch(piece.text) and self._full(piece.text))
 
-    def _opened(self, piece: Piece) -> tuple[str, list[str]]:
+    def _opened(self, piece: Subsystem) -> tuple[str, list[str]]:
         """The full name that a piece starts with, and its first value."""
         assigned = _ASSIGNED.fullmatch(piece.text)
         word = assigned[1] if assigned else piece.text

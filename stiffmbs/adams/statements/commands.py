@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .arguments import Arguments
-from .text import Piece, Statement, commands
+from .text import Statement, Subsystem, commands
 from .units import Units
 
 KINDS = ("DYNAMICS", "KINEMATICS", "TRANSIENT", "STATICS", "INITIAL_CONDITIONS")
@@ -54,7 +54,7 @@ def read_commands(text: str, units: Units) -> Commands:
 
 def _simulation(command: Statement, units: Units) -> dict[str, Any] | None:
     """The settings of a simulation over time; nothing for others."""
-    kind = (Piece(command.ident, command.line),) if command.ident else ()
+    kind = (Subsystem(command.ident, command.line),) if command.ident else ()
     command = replace(command, ident="", pieces=(*kind, *command.pieces))
     found = Arguments(command, "SIMULATE", (*KINDS, "END", "DURATION", "STEPS", "DTOUT"))
     analysis = found.one_of(*KINDS) or "TRANSIENT"

@@ -77,9 +77,9 @@ def read_spring_damper(statement: Statement, units: Units) -> SpringDamper:
     if sort is None:
         raise found.fault("found no kind of spring, expected TRANSLATIONAL or ROTATIONAL")
     names, others = (linear, turning) if sort == TRANSLATIONAL else (turning, linear)
-    misplaced = [name for name in others if name in found]
-    if misplaced:
-        raise found.fault(f"found {misplaced[0]} with {sort}, expected only {', '.join(names)}")
+    invalid_placement = [name for name in others if name in found]
+    if invalid_placement:
+        raise found.fault(f"found {invalid_placement[0]} with {sort}, expected only {', '.join(names)}")
     arm = 0 if sort == TRANSLATIONAL else 1
     dimensions = (
         units.of(force=1, length=2 * arm - 1), units.of(force=1, length=2 * arm - 1, time=1),

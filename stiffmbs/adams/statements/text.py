@@ -22,7 +22,7 @@ _LINE_COMMA = "\x00"
 
 
 @dataclass(frozen=True)
-class Piece:
+class Subsystem:
     """A part of a statement between two of its outermost commas.
 
     Attributes
@@ -52,7 +52,7 @@ class Statement:
         What stands before the slash, in capitals.
     ident : str
         What stands after it.
-    pieces : tuple of Piece
+    pieces : tuple of Subsystem
     line : int
     alias : str
         The name in Adams/View, where a comment before the statement tells it.
@@ -60,7 +60,7 @@ class Statement:
 
     word: str
     ident: str
-    pieces: tuple[Piece, ...]
+    pieces: tuple[Subsystem, ...]
     line: int
     alias: str = ""
 
@@ -135,7 +135,7 @@ def _made(parts: list[tuple[int, str]], alias: str) -> Iterator[Statement]:
     )
 
 
-def _pieces(text: str, numbers: list[int]) -> Iterator[Piece]:
+def _pieces(text: str, numbers: list[int]) -> Iterator[Subsystem]:
     """The parts of a statement between the commas of its outermost level."""
     depth, start, on_new_line, quoted = 0, 0, False, False
     for k, sign in enumerate(text + ","):
@@ -150,12 +150,12 @@ def _pieces(text: str, numbers: list[int]) -> Iterator[Piece]:
             start, on_new_line = k + 1, sign == _LINE_COMMA
 
 
-def _piece(text: str, numbers: list[int], on_new_line: bool, ended: bool) -> Iterator[Piece]:
+def _piece(text: str, numbers: list[int], on_new_line: bool, ended: bool) -> Iterator[Subsystem]:
     """One part, unless it is empty: its line, and its text with continuation lines joined."""
     before = len(text) - len(text.lstrip())
     joined = re.sub(r"\s+", " ", _without_line_commas(text)).strip()
     if joined or ended:
-        yield Piece(joined, numbers[min(before, len(numbers) - 1)], on_new_line, ended)
+        yield Subsystem(joined, numbers[min(before, len(numbers) - 1)], on_new_line, ended)
 
 
 def _without_line_commas(text: str) -> str:

@@ -176,7 +176,7 @@ def si2(k_b: float, zeta: float) -> Equations:
     """The equations and their start: at rest in equilibrium."""
     start, k = minimal_start(), numbers_of(k_b, zeta)
     return Equations(
-        residual, jacobian, start, minimal(0.0, start, *k), np.arange(V), np.arange(V, N), numbers=k, corners=CORNERS,
+        residual, jacobian, start, minimal(0.0, start, *k), np.arange(V), np.arange(V, N), numbers=k, breakpoints=CORNERS,
         settings=Settings(renewal=0.05),
     )  # fmt: skip
 

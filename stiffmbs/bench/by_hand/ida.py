@@ -53,7 +53,7 @@ class Equations:
         Diagonals on either side of the main one; 0 for a dense matrix.
     numbers : ndarray
         Parameters of the equations.
-    corners : tuple of float
+    breakpoints : tuple of float
         Times at which the integrator starts anew, s.
     settings : Settings
     """
@@ -66,7 +66,7 @@ class Equations:
     velocities: np.ndarray
     band: int = 0
     numbers: np.ndarray = field(default_factory=lambda: np.zeros(1))
-    corners: tuple[float, ...] = ()
+    breakpoints: tuple[float, ...] = ()
     settings: Settings = field(default_factory=Settings)
 
     @property
@@ -173,17 +173,17 @@ class Run:
         rows = np.empty((len(times), len(reported)))
         rows[0] = equations.y[reported]
         address = self._session.libraries.address
-        corners = np.array([*equations.corners, times[-1]])
+        breakpoints = np.array([*equations.breakpoints, times[-1]])
         flag = _loop()(
             np.array([address("IDASolve"), address("IDASetStopTime"), address("IDAReInit"), self._memory]),
-            *self._vectors, self._y, reported, times, corners, rows,
+            *self._vectors, self._y, reported, times, breakpoints, rows,
         )  # fmt: skip
         if flag < 0:
             raise RuntimeError(f"IDA stopped with flag {flag}")
         return rows
 
     def steps(self) -> int:
-        """Steps since the last corner."""
+        """Steps since the last breakpoint."""
         count = ctypes.c_long()
         self._ask("IDAGetNumSteps", ctypes.byref(count))
         return count.value

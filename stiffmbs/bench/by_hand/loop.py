@@ -42,24 +42,24 @@ def size(user):
 
 
 @njit(error_model="numpy", cache=True, nogil=True)
-def loop(functions, y_vector, yp_vector, y, reported, times, corners, rows):
-    """Integrate past every output time, from corner to corner; IDA's last flag."""
+def loop(functions, y_vector, yp_vector, y, reported, times, breakpoints, rows):
+    """Integrate past every output time, from breakpoint to breakpoint; IDA's last flag."""
     solve, stop_at, begin, memory = functions
     reached = times[:1].copy()
     flag, k = int32(0), 1
-    for corner in corners:
-        call_int(stop_at, (memory, corner))
-        while k < len(times) and times[k] <= corner:
+    for breakpoint in breakpoints:
+        call_int(stop_at, (memory, breakpoint))
+        while k < len(times) and times[k] <= breakpoint:
             flag = call_int(solve, (memory, times[k], reached.ctypes.data, y_vector, yp_vector, int32(NORMAL)))
             if flag < 0:
                 return flag
             for column in range(len(reported)):
                 rows[k, column] = y[reported[column]]
             k += 1
-        if corner < times[-1]:
-            if reached[0] < corner:
-                flag = call_int(solve, (memory, corner, reached.ctypes.data, y_vector, yp_vector, int32(NORMAL)))
+        if breakpoint < times[-1]:
+            if reached[0] < breakpoint:
+                flag = call_int(solve, (memory, breakpoint, reached.ctypes.data, y_vector, yp_vector, int32(NORMAL)))
                 if flag < 0:
                     return flag
-            call_int(begin, (memory, corner, y_vector, yp_vector))
+            call_int(begin, (memory, breakpoint, y_vector, yp_vector))
     return flag

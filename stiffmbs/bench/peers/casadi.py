@@ -10,8 +10,8 @@ import numpy as np
 from ..contestant import Contestant, Failed, Solve
 from ..task import Task
 from .absolute import Maths, constraints, forces
-from .legs import legs_of
 from .mechanism import Mechanism, mechanism_of
+from .segments import segments_of
 
 MOST_STEPS = 10**7
 OUT_OF_THE_TEST = 1e8
@@ -92,7 +92,7 @@ def consistent(equations: dict[str, Any], m: Mechanism) -> tuple[np.ndarray, np.
 
 
 def integration(equations: dict[str, Any], m: Mechanism, task: Task, rtol: float) -> Solve:
-    """Integrate from corner to corner."""
+    """Integrate from breakpoint to breakpoint."""
     import casadi as ca
 
     joined, z_start = "z" in equations, np.zeros(0)
@@ -102,16 +102,16 @@ def integration(equations: dict[str, Any], m: Mechanism, task: Task, rtol: float
         tolerances = np.r_[np.full(2 * m.n, rtol), np.full(len(z_start), OUT_OF_THE_TEST)]
         options |= {"abstolv": tolerances.tolist(), "calc_ic": False, "init_xdot": rates.tolist()}
     plugin = "idas" if joined else "cvodes"
-    legs = [
+    segments = [
         (ca.integrator("leg", plugin, equations, times[0], times[1:].tolist(), options), count)
-        for times, count in legs_of(task.times, task.corners)
+        for times, count in segments_of(task.times, task.breakpoints)
     ]
 
     def solve() -> np.ndarray:
         x, z, rows = np.concatenate([m.start, np.zeros(m.n)]), z_start, [m.start[None]]
-        for leg, count in legs:
+        for segment, count in segments:
             try:
-                found = leg(x0=x, z0=z)
+                found = segment(x0=x, z0=z)
             except RuntimeError as error:
                 raise Failed(str(error).splitlines()[-1]) from None
             states = np.asarray(found["xf"]).T

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..contestant import Contestant, Failed, Solve
 from ..task import Task
-from .legs import legs_of
+from .segments import segments_of
 
 MOST_UNKNOWNS = 60
 """Of Radau, which takes full matrices, and differences for them: on the chain of 100 rods it needs seconds."""
@@ -30,9 +30,9 @@ def marching(task: Task, method: Callable[..., np.ndarray], rtol: float) -> Solv
 
 
 def states(task: Task, method: Callable[..., np.ndarray], rtol: float) -> np.ndarray:
-    """Rows of minimal coordinates at the output times, by a method from corner to corner."""
+    """Rows of minimal coordinates at the output times, by a method from breakpoint to breakpoint."""
     y, rows = task.minimal.start, [task.minimal.start[None]]
-    for times, count in legs_of(task.times, task.corners):
+    for times, count in segments_of(task.times, task.breakpoints):
         found = method(task, y, times, rtol)
         rows.append(found[1 : count + 1])
         y = found[-1]

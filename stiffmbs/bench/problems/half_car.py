@@ -101,7 +101,7 @@ run: {duration: 5 s, output: 5 ms}
 """
 ZETA = 0.02
 PARTS = 600
-"""Steps of the reference between two output times; corners of the road are met by multiples of 3."""
+"""Steps of the reference between two output times; breakpoints of the road are met by multiples of 3."""
 TIMES = np.arange(1001) * 5e-3
 CONVERGED = {1e5: (0.630036205, 0.6000148835), 1e7: (0.630518269, 0.6000148713), 1e9: (0.630521686, 0.6000148639)}
 """The chassis' largest height at output points, and that at the end, from other programs at rtol 1e-12; SciPy's DOP853

@@ -62,7 +62,7 @@ class Presolved:
 
     def _unknowns(self, presolve: bool) -> str:
         job = prepare(load_scene(str(self.path)), presolve=presolve)
-        before, after = unknowns(job.mechanics.system, job.pieces, job.mechanics)
+        before, after = unknowns(job.dynamics.system, job.subsystems, job.dynamics)
         return f"{after} of {before} unknowns"
 
 

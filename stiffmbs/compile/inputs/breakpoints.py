@@ -1,6 +1,6 @@
 """Instants at which an input begins, ends or bends: integrators stop there and start anew.
 
-At rest a BDF code takes ever longer steps and would jump over a short pulse without seeing it; a step across a corner
+At rest a BDF code takes ever longer steps and would jump over a short pulse without seeing it; a step across a breakpoint
 loses its order.
 """
 
@@ -13,17 +13,17 @@ from functools import partial
 import numpy as np
 
 from ...describe.formula.field import TIME, reading_order
-from ...describe.formula.functions import EACH, IN_FORMULAS, Corners
+from ...describe.formula.functions import EACH, IN_FORMULAS, Breakpoints
 from ...errors import InputError
 from .of_time import Input
 from .zeros import AT_ONCE, ZERO, TooMany, zeros
 
 APART = 1e-12
-"""Part of the times themselves by which two corners differ at the least."""
+"""Part of the times themselves by which two breakpoints differ at the least."""
 
 
-def corner_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
-    """The corners in time of some inputs, strictly between start and end, in order.
+def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
+    """The breakpoints in time of some inputs, strictly between start and end, in order.
 
     Parameters
     ----------
@@ -61,23 +61,23 @@ def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
 
 
 def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Iterator[tuple[ast.expr, np.ndarray]]:
-    """What passes a level at the corners of a function or table."""
+    """What passes a level at the breakpoints of a function or table."""
     match node:
         case ast.Call(ast.Name(name), [argument]) if name in given.tables:
-            yield argument, given.tables[name].corners_between(*_range(given, argument, start, end))
+            yield argument, given.tables[name].breakpoints_between(*_range(given, argument, start, end))
         case ast.Call(ast.Name(name)):
-            yield from ((condition, ZERO) for condition in _corners(node, IN_FORMULAS[name].corners))
+            yield from ((condition, ZERO) for condition in _breakpoints(node, IN_FORMULAS[name].breakpoints))
 
 
-def _corners(call: ast.Call, corners: Corners) -> Iterator[ast.expr]:
-    """What is zero at the corners of a function."""
+def _breakpoints(call: ast.Call, breakpoints: Breakpoints) -> Iterator[ast.expr]:
+    """What is zero at the breakpoints of a function."""
     first, *others = call.args
-    if corners == EACH:
+    if breakpoints == EACH:
         for k, other in enumerate(others):
             before = ast.Call(call.func, [first, *others[:k]], []) if k else first
             yield ast.BinOp(before, ast.Sub(), other)
         return
-    for i, j in corners:
+    for i, j in breakpoints:
         yield call.args[i] if j is None else ast.BinOp(call.args[i], ast.Sub(), call.args[j])
 
 

@@ -250,8 +250,8 @@ def atan2(y: Any, x: Any) -> Enclosure:
     known = y if isinstance(y, Enclosure) else x
     y, x = known.constant(y), known.constant(x)
     jumps = (x.value[0] <= 0) & (y.value[0] <= 0) & (y.value[1] >= 0)
-    corners = np.array([np.arctan2(y.value[i], x.value[j]) for i in (0, 1) for j in (0, 1)])
-    value = np.array([corners.min(axis=0), corners.max(axis=0)])
+    breakpoints = np.array([np.arctan2(y.value[i], x.value[j]) for i in (0, 1) for j in (0, 1)])
+    value = np.array([breakpoints.min(axis=0), breakpoints.max(axis=0)])
     turning = (y.derivative() * x - x.derivative() * y) / (x**2.0 + y**2.0)
     rates = (turning[k] / (k + 1) for k in range(known.order))
     jumping = unbounded(np.broadcast_to([[-np.pi], [np.pi]], value.shape), known.order)

@@ -25,13 +25,13 @@ from .of_time import Input
 AT_ONCE, MOST_DIVISIONS = 32, 500
 """Parts into which a stretch is divided at once, and divisions after which the search is given up: solvers then find the end."""
 SHORTEST = 1e-13
-"""Length of a stretch, in parts of the times themselves, that is not divided any further."""
+"""Length of a stretch, relative to the times themselves, that is not divided any further."""
 NEAR, NEARER = 1e-6, 1e-10
-"""Distances, in parts of the times themselves, at which values on both sides are compared."""
+"""Distances, relative to the times themselves, at which values on both sides are compared."""
 GROWS = 3.0
 """Factor by which values must grow from the one distance to the other: that of a pole of order 1/8."""
 LARGEST, DISTANCES = 1e8, np.geomspace(0.1, NEAR, 16)
-"""Growth towards a pole that solvers can follow, and distances at which it is looked for, in parts of the times themselves."""
+"""Growth towards a pole that solvers can follow, and distances at which it is looked for, relative to the times themselves."""
 DOMAINS = {name: function.domain for name, function in IN_FORMULAS.items() if function.domain != EVERYWHERE}
 """Arguments for which a function has a value."""
 RISKY = (*DOMAINS, *(name for name, function in IN_FORMULAS.items() if function.poles))

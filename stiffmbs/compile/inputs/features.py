@@ -1,4 +1,4 @@
-"""Where in time the inputs of a scene have features: corners to stop at, and the longest step that still sees the rest.
+"""Where in time the inputs of a scene have features: breakpoints to stop at, and the longest step that still sees the rest.
 
 Step control trusts what it has seen: after a rest its steps jump over a pulse.  Before a run, each input is cut into
 pieces until a cubic represents it, by ranges of its Taylor coefficients (Moore, Kearfott, Cloud, 2009, chapter 9), so
@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ..system import System
-from .breakpoints import corner_times
+from .breakpoints import breakpoint_times
 from .of_time import inputs_of
 from .pieces import Bounds, InputPieces
 
@@ -30,7 +30,7 @@ class InputFeatures:
 
     Attributes
     ----------
-    corners : ndarray
+    breakpoints : ndarray
         Instants to stop and start anew at, s.
     starts, longest : ndarrays
         From each of these times on, up to the next: the longest step that may touch it, s; empty where nothing bounds
@@ -39,7 +39,7 @@ class InputFeatures:
         What the user should know of them; empty for nothing.
     """
 
-    corners: np.ndarray = field(default_factory=lambda: np.empty(0))
+    breakpoints: np.ndarray = field(default_factory=lambda: np.empty(0))
     starts: np.ndarray = field(default_factory=lambda: np.empty(0))
     longest: np.ndarray = field(default_factory=lambda: np.empty(0))
     note: str = ""
@@ -63,15 +63,15 @@ class InputFeatures:
     def within(self, start: float, end: float) -> InputFeatures:
         """Those between two times."""
         inside = (self.starts < end) & (self.ends > start)
-        corners = self.corners[(self.corners > start) & (self.corners < end)]
-        return InputFeatures(corners, self.starts[inside], self.longest[inside], self.note)
+        breakpoints = self.breakpoints[(self.breakpoints > start) & (self.breakpoints < end)]
+        return InputFeatures(breakpoints, self.starts[inside], self.longest[inside], self.note)
 
     def narrowest(self) -> tuple[float, float]:
         """The length of the narrowest feature, s, and when it begins; infinite where there is none."""
         found = [(np.inf, 0.0)]
-        if len(self.corners) > 1:
-            gaps = np.diff(self.corners)
-            found.append((float(np.min(gaps)), float(self.corners[np.argmin(gaps)])))
+        if len(self.breakpoints) > 1:
+            gaps = np.diff(self.breakpoints)
+            found.append((float(np.min(gaps)), float(self.breakpoints[np.argmin(gaps)])))
         if len(self.longest):
             k = int(np.argmin(self.longest))
             found.append((float(self.longest[k]), float(self.starts[k])))
@@ -85,7 +85,7 @@ class InputFeatures:
         if np.sum(count) > most:
             count = np.maximum(count * most // np.sum(count), 1)
         parts = [np.linspace(a, b, n + 1) for a, b, n in zip(begin, until, count, strict=True) if b > a]
-        gaps = np.concatenate([[start], self.corners, [end]])
+        gaps = np.concatenate([[start], self.breakpoints, [end]])
         close = np.flatnonzero(np.diff(gaps) < spacing)[: most // INSTANTS]
         between = gaps[close, None] + np.diff(gaps)[close, None] * np.linspace(0, 1, INSTANTS + 1)
         return np.unique(np.concatenate([*parts, between.ravel()]))
@@ -101,29 +101,31 @@ def input_features(system: System, start: float, end: float) -> InputFeatures:
     Raises
     ------
     InputError
-        When an input has too many corners.
+        When an input has too many breakpoints.
     """
     inputs = inputs_of(system)
-    corners = corner_times(inputs, start, end)
-    pieces = [InputPieces(each, np.concatenate([[start], corners, [end]])) for each in inputs]
+    breakpoints = breakpoint_times(inputs, start, end)
+    pieces = [InputPieces(each, np.concatenate([[start], breakpoints, [end]])) for each in inputs]
     bounds = [each.bounds() for each in pieces]
     estimated = [given.text for given, each in zip(inputs, pieces, strict=True) if each.estimated]
     note = (
         f"'{estimated[0]}' has too many features to be listed: steps follow from a sample of them" if estimated else ""
     )
-    return InputFeatures(corners, *_together(bounds, corners, start, end), note)
+    return InputFeatures(breakpoints, *_together(bounds, breakpoints, start, end), note)
 
 
-def _together(bounds: Sequence[Bounds], corners: np.ndarray, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
-    """The least of all bounds on steps; nothing where none is shorter than the time between corners."""
-    starts = np.unique(np.concatenate([[start], corners, *(each.starts for each in bounds)]))
+def _together(
+    bounds: Sequence[Bounds], breakpoints: np.ndarray, start: float, end: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The least of all bounds on steps; nothing where none is shorter than the time between breakpoints."""
+    starts = np.unique(np.concatenate([[start], breakpoints, *(each.starts for each in bounds)]))
     longest = np.full(len(starts), np.inf)
     for each in bounds:
         k = np.searchsorted(each.starts, starts, side="right") - 1
         longest = np.fmin(longest, np.where(k >= 0, PIECES_OF_A_STEP * each.lengths[k], np.inf))
-    ends_of_legs = np.concatenate([[start], corners, [end]])
-    leg = np.clip(np.searchsorted(ends_of_legs, starts, side="right") - 1, 0, len(ends_of_legs) - 2)
-    longest = np.where(longest < np.diff(ends_of_legs)[leg], longest, np.inf)
+    ends_of_segments = np.concatenate([[start], breakpoints, [end]])
+    segment = np.clip(np.searchsorted(ends_of_segments, starts, side="right") - 1, 0, len(ends_of_segments) - 2)
+    longest = np.where(longest < np.diff(ends_of_segments)[segment], longest, np.inf)
     if not np.isfinite(longest).any():
         return np.empty(0), np.empty(0)
     return _merged(starts, longest)

@@ -146,7 +146,7 @@ def inputs_of(system: System) -> list[Input]:
 
 
 class _WithoutRoots(ast.NodeTransformer):
-    """Writes sqrt(x^2), sqrt(x*x) and (x^2)^0.5 as abs(x): they have its corner, which no range of a root shows."""
+    """Writes sqrt(x^2), sqrt(x*x) and (x^2)^0.5 as abs(x): they have its breakpoint, which no range of a root shows."""
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         self.generic_visit(node)

@@ -9,18 +9,18 @@ import numpy as np
 from .of_time import Input
 
 PART = 3e-3
-"""Error of the cubic, in parts of the input's change around the piece."""
+"""Error of the cubic, relative to the input's change around the piece."""
 LEAST_PART = 1e-4
 """That change counts at least as so much of the input's change in the whole run."""
 ROUNDING = 1e-10
-"""Error of the cubic, in parts of the input's values, that is always allowed."""
+"""Error of the cubic, relative to the input's values, that is always allowed."""
 SHORTEST = 1e-11
-"""Length of a piece, in parts of the times themselves, that is cut no further."""
+"""Length of a piece, relative to the times themselves, that is cut no further."""
 MOST_PIECES, MANY_PIECES = 2**13, 512
 """Pieces of one input that are cut further: from there on only those that need it most are; and so many that it is
 worth to see whether they need be so many."""
 ROUNDING_OF_PARTS, ROUNDING_OF_SAMPLES = 1e-15, 100.0
-"""Rounding of what the first ranges of an input hold, in parts of it; by so many times more samples may differ."""
+"""Rounding of what the first ranges of an input hold, relative to it; by so many times more samples may differ."""
 SAMPLE, QUANTILE = 64, 0.1
 """Pieces whose bounds stand for those of all others where they are too many, and which of theirs does."""
 URGENT = 64
@@ -111,8 +111,8 @@ class InputPieces:
 
     def _looked_at(self, pieces: _Pieces) -> _Pieces:
         """The pieces with the change that samples in and around them show."""
-        leg = np.searchsorted(self._edges, (pieces.low + pieces.high) / 2) - 1
-        t = np.clip(pieces.low + WINDOW[:, None] * pieces.length, self._edges[leg], self._edges[leg + 1])
+        segment = np.searchsorted(self._edges, (pieces.low + pieces.high) / 2) - 1
+        t = np.clip(pieces.low + WINDOW[:, None] * pieces.length, self._edges[segment], self._edges[segment + 1])
         seen = self._given.at(t.ravel()).reshape(t.shape)
         seen = np.where(np.isfinite(seen), seen, np.nan)
         least, greatest = np.fmin.reduce(seen), np.fmax.reduce(seen)
@@ -126,7 +126,7 @@ class InputPieces:
         """The longest part of each piece that a polynomial up to the third degree represents.
 
         About the middle of a part of length h its error is at most (h/2)^k / 2 times the width of the range of the k-th
-        Taylor coefficient.  Ends are left out by a rounding, so that a corner there does not count.
+        Taylor coefficient.  Ends are left out by a rounding, so that a breakpoint there does not count.
         """
         inner = np.minimum(self._shortest / 4, pieces.length / 4)
         found = self._given.within(pieces.low + inner, pieces.high - inner, order=3)

@@ -22,8 +22,8 @@ class TableRanges:
 
     Attributes
     ----------
-    corners : ndarray
-        Arguments at which it has corners, those of one period if it is periodic.
+    breakpoints : ndarray
+        Arguments at which it has breakpoints, those of one period if it is periodic.
     period : float
         Zero where it is not periodic.
     """
@@ -33,7 +33,7 @@ class TableRanges:
         _, self._x, self._pieces = parts_of(table)
         self._smooth = 1 if table.lines else 2 if table.akima else 3
         self.period = self._x[-1] - self._x[0] if table.ends == "periodic" else 0.0
-        self.corners = _corners(table, self._x)
+        self.breakpoints = _breakpoints(table, self._x)
         h = np.diff(self._x)
         whole = np.array([np.zeros_like(h), h])
         with np.errstate(all="ignore"):
@@ -43,17 +43,17 @@ class TableRanges:
         """Values, as kernels compute them."""
         return self._values(arguments)
 
-    def corners_between(self, low: float, high: float) -> np.ndarray:
-        """Arguments within a range at which it has corners."""
+    def breakpoints_between(self, low: float, high: float) -> np.ndarray:
+        """Arguments within a range at which it has breakpoints."""
         if not self.period:
-            return self.corners[(self.corners >= low) & (self.corners <= high)]
+            return self.breakpoints[(self.breakpoints >= low) & (self.breakpoints <= high)]
         first, last = np.floor((low - self._x[0]) / self.period), np.ceil((high - self._x[0]) / self.period)
-        if not (last - first) * len(self.corners) <= MOST:
+        if not (last - first) * len(self.breakpoints) <= MOST:
             raise TooMany(
-                f"a periodic table has more than {MOST:.0e} corners between {low:g} and {high:g}, expected fewer"
+                f"a periodic table has more than {MOST:.0e} breakpoints between {low:g} and {high:g}, expected fewer"
             )
         turns = np.arange(first, last + 1)
-        found = np.unique((self.corners + turns[:, None] * self.period).ravel())
+        found = np.unique((self.breakpoints + turns[:, None] * self.period).ravel())
         return found[(found >= low) & (found <= high)]
 
     def enclosed(self, argument: Enclosure) -> Enclosure:
@@ -121,7 +121,7 @@ class TableRanges:
         return between_turns(lambda y: ((a * y + b) * y + c) * y + d, z, (far / (3 * a), c / far))
 
 
-def _corners(table: Table, x: np.ndarray) -> np.ndarray:
+def _breakpoints(table: Table, x: np.ndarray) -> np.ndarray:
     """Ends of a table; all its points if it is of straight lines, else those where it leaves or reaches a flat part."""
     y = np.array([value for _, value in table.table])
     if table.lines:
@@ -136,7 +136,7 @@ def _corners(table: Table, x: np.ndarray) -> np.ndarray:
 
 
 FLAT = 1e-12
-"""Change between two points of a table, in parts of its largest value, up to which it is flat there."""
+"""Change between two points of a table, relative to its largest value, up to which it is flat there."""
 
 
 class _Most:

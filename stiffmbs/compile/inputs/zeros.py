@@ -11,13 +11,13 @@ from .enclosure import Enclosure
 AT_ONCE = 64
 """Stretches that the search begins with."""
 SHORTEST = 1e-12
-"""Length of a stretch, in parts of the times themselves, in which no more than one passage is looked for."""
+"""Length of a stretch, relative to the times themselves, in which no more than one passage is looked for."""
 MOST = 1_000_000
 """Stretches at which the search is given up."""
 MANY = 256
 """Stretches from which on those are dropped in which the formula stands at a level but for rounding."""
 ROUNDING, LAST_DIGIT = 1e-14, 3e-16
-"""Of a formula where samples tell it, and where its ranges do, in parts of its values."""
+"""Of a formula where samples tell it, and where its ranges do, relative to its values."""
 
 Values = Callable[[np.ndarray], np.ndarray]
 Ranges = Callable[[np.ndarray, np.ndarray], Enclosure]
@@ -79,7 +79,7 @@ def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels:
             open_ones[open_ones] = ~_stands(values, low[open_ones], high[open_ones], levels, size)
         low, middle, high = low[open_ones], middle[open_ones], high[open_ones]
         if len(low) > MOST:
-            raise TooMany(f"found more than {MOST:.0e} corners between {start:g} and {end:g} s, expected fewer")
+            raise TooMany(f"found more than {MOST:.0e} breakpoints between {start:g} and {end:g} s, expected fewer")
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
 
 

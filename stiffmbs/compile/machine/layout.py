@@ -67,7 +67,7 @@ PAIRED_COLUMNS: Layout = {
 }  # fmt: skip
 """The same with its columns in pairs (`stiffmbs.solve.native.paired_columns`)."""
 
-MECHANICS: Layout = {
+DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INTS,
     "n_counting": INT, "counting_source": INTS, "counting_row": INTS,
@@ -78,7 +78,7 @@ MECHANICS: Layout = {
 
 IDA: Layout = {
     "state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT,
-    "n_switches": INT, "sides": FLOATS, "waits": INTS,
+    "n_event_functions": INT, "sides": FLOATS, "waits": INTS,
 }  # fmt: skip
 """What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array."""
 
@@ -106,22 +106,22 @@ STEP_BOUND: Layout = {"n": INT, "place": INTS, "starts": FLOATS, "longest": FLOA
 """The longest steps that see what the inputs do (`stiffmbs.solve.events.step_bound`); n is 0 where nothing bounds a step."""
 
 EXPLICIT: Layout = {
-    "mechanics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
+    "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
     "tolerance": FLOATS, "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS, "step_bound": INTS,
     "t": FLOATS, "t_before": FLOATS, "span": FLOATS, "h": FLOATS, "last_error": FLOATS,
-    "n_switches": INT, "n_events": INT, "sides": FLOATS, "at_event": INTS, "uncertain": INTS, "watch": INTS,
+    "n_event_functions": INT, "n_events": INT, "sides": FLOATS, "at_event": INTS, "uncertain": INTS, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INTS,
     "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 }  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
-switches' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends
+event functions' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends
 of steps that one call stores."""
 
 NATIVE_IDA: Layout = {
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
-    "n_switches": INT, "sides": FLOATS, "waits": INTS,
+    "n_event_functions": INT, "sides": FLOATS, "waits": INTS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
@@ -151,8 +151,8 @@ ERROR_NORM: Layout = {
 """What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`)."""
 
 
-WATCH: Layout = {
-    "n": INT, "n_switches": INT, "waits": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
+EVENT_SEARCH: Layout = {
+    "n": INT, "n_event_functions": INT, "waits": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "mark": FLOATS,

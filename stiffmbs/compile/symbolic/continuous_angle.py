@@ -16,7 +16,7 @@ POLE = sp.Float(1e-4)
 it turns about): no step is to be spent on the half turn that the angle makes there at any speed."""
 
 
-class CountedAngle(sp.Function):  # type: ignore[misc]
+class ContinuousAngle(sp.Function):  # type: ignore[misc]
     """The angle with a sine and a cosine (or multiples of both) that is nearest to a counter."""
 
     nargs = 3
@@ -33,7 +33,7 @@ def counter(k: int) -> sp.Symbol:
     return sp.Symbol(f"counted{k}", real=True)
 
 
-def counting_rate(angle: CountedAngle, e: Any) -> sp.Expr:
+def counting_rate(angle: ContinuousAngle, e: Any) -> sp.Expr:
     """The rate of a counter: that of its angle, (c s' - s c')/(s^2 + c^2), bounded where s and c both vanish.
 
     The eighth power leaves the rate as it is outside of the pole: half a turn too much or too little, gathered over any number
@@ -41,7 +41,7 @@ def counting_rate(angle: CountedAngle, e: Any) -> sp.Expr:
 
     Parameters
     ----------
-    angle : CountedAngle
+    angle : ContinuousAngle
     e : SymbolicElement
     """
     sine, cosine, _ = angle.args

@@ -133,7 +133,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(stated, e, -force),
-        "switch": sp.Matrix(stated.switches), "power": sp.Matrix([power]),
+        "event_function": sp.Matrix(stated.event_functions), "power": sp.Matrix([power]),
         "argument": _arguments(symbols),
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
@@ -162,7 +162,7 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
         "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),
         "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
         "reaction": _reaction(stated, e, f), "potential": sp.Matrix([stated.potential]),
-        "switch": sp.Matrix(stated.switches), "limit": sp.Matrix(stated.limits),
+        "event_function": sp.Matrix(stated.event_functions), "limit": sp.Matrix(stated.limits),
         "argument": _arguments(symbols), "power": sp.Matrix([power]),
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 
 import sympy as sp
 
-from .nonsmooth import CorneredBase
+from .nonsmooth import NonsmoothBase
 
 Way = tuple[sp.Symbol, sp.Expr]
 """A symbol that changes with a coordinate or velocity, and its derivative by that."""
@@ -115,7 +115,7 @@ class Derivatives:
                 return x * changed
             case sp.Piecewise():
                 return sp.Piecewise(*((self.partial(part, v), condition) for part, condition in x.args))
-            case CorneredBase():
+            case NonsmoothBase():
                 return x.by_parts(lambda part: self.partial(part, v))
             case sp.Function():
                 return sp.Add(*(self._through_argument(x, k, v) for k in range(len(x.args))))

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from .continuous_angle import CountedAngle, counter
+from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
 from .read import read
 from .relative_rotation import Tilt, Turn, product
@@ -18,7 +18,18 @@ COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
 
 
-OF_ELEMENTS = ("type", "frames", "angles", "corners", "derivatives", "_turns", "kind", "_joint", "_coordinate", "lam")
+OF_ELEMENTS = (
+    "type",
+    "frames",
+    "angles",
+    "breakpoints",
+    "derivatives",
+    "_turns",
+    "kind",
+    "_joint",
+    "_coordinate",
+    "lam",
+)
 """Attributes that are no fields."""
 
 Work = tuple[sp.Expr, sp.Expr]
@@ -36,8 +47,8 @@ class SymbolicElement:
         The bodies, in the order of `Element.bodies`.
     angles : list of expressions
         Those that count whole turns, in the order of their counters.
-    corners : list of expressions
-        What changes its sign at corners of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
+    breakpoints : list of expressions
+        What changes its sign at breakpoints of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
     derivatives : Derivatives
         Of expressions in its symbols.
     """
@@ -47,7 +58,7 @@ class SymbolicElement:
     def __init__(self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives) -> None:
         self.frames = frames
         self.angles: list[sp.Expr] = []
-        self.corners: list[sp.Expr] = []
+        self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
         self._turns: dict[tuple[Any, Any], Turn] = {}
         self.__dict__.update(fields)
@@ -74,12 +85,12 @@ class SymbolicElement:
         return [symbol for frame in self.frames for symbol in frame.velocities]
 
     def read(self, x: Any) -> sp.Expr:
-        """An expression of an element's equations as kernels can have it; its corners are noted."""
+        """An expression of an element's equations as kernels can have it; its breakpoints are noted."""
         return read(x, self._note)
 
-    def _note(self, corner: sp.Expr) -> None:
-        if corner not in self.corners:
-            self.corners.append(corner)
+    def _note(self, breakpoint: sp.Expr) -> None:
+        if breakpoint not in self.breakpoints:
+            self.breakpoints.append(breakpoint)
 
     def rate(self, x: Any) -> Any:
         """Total time derivative of an expression, or of each in a matrix, at constant velocities."""
@@ -188,7 +199,7 @@ class SymbolicElement:
         for angle in self.angles:
             if angle.args[:2] == (sine, cosine):
                 return angle
-        self.angles.append(CountedAngle(sine, cosine, counter(len(self.angles))))
+        self.angles.append(ContinuousAngle(sine, cosine, counter(len(self.angles))))
         return self.angles[-1]
 
     def in_state(self, expression: sp.Expr) -> bool:
@@ -227,7 +238,7 @@ class ReferredJoint(SymbolicElement):
         self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
         count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
-        self.angles, self.corners = of.angles, of.corners
+        self.angles, self.breakpoints = of.angles, of.breakpoints
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -10,16 +10,16 @@ from sympy.printing.pycode import PythonCodePrinter
 
 from ...describe.formula.functions import FUNCTIONS
 from ..terms import KERNEL_ARGUMENTS, TERM_SETS
-from .continuous_angle import CountedAngle, counter
+from .continuous_angle import ContinuousAngle, counter
 from .derive import Derived
-from .nonsmooth import CorneredBase, Step
+from .nonsmooth import NonsmoothBase, Step
 from .python_call import PythonCall
-from .relative_rotation import Unwound
+from .relative_rotation import RotationVector
 from .spline import Spline
 
 
-def _natives(base: type[CorneredBase]) -> set[str]:
-    """The native functions of the functions with corners."""
+def _natives(base: type[NonsmoothBase]) -> set[str]:
+    """The native functions of the nonsmooth functions."""
     return {each.native for each in base.__subclasses__() if each.native}.union(*map(_natives, base.__subclasses__()))
 
 
@@ -29,10 +29,10 @@ def _imported(module: str, names: Iterable[str]) -> str:
 
 NATIVE = "stiffmbs.compile.machine.native"
 HEADER = (
-    _imported(f"{NATIVE}.nonsmooth", _natives(CorneredBase))
-    + _imported(f"{NATIVE}.continuous_angle", ["counted_angle"])
+    _imported(f"{NATIVE}.nonsmooth", _natives(NonsmoothBase))
+    + _imported(f"{NATIVE}.continuous_angle", ["continuous_angle"])
     + _imported(f"{NATIVE}.spline", ["spline"])
-    + _imported(f"{NATIVE}.rotation_vector", ["unwound"])
+    + _imported(f"{NATIVE}.rotation_vector", ["rotation_vector"])
     + _imported("math", ["copysign", *(name for name, function in FUNCTIONS.items() if function.in_c)])
     + "\n\n"
 )
@@ -54,14 +54,14 @@ class _Printer(PythonCodePrinter):
         product = "*".join([factor] * whole + [f"sqrt({self._print(base)})"] * half)
         return f"({product})" if power > 0 else f"(1.0/({product}))"
 
-    def _print_CorneredBase(self, expr: CorneredBase) -> str:
+    def _print_NonsmoothBase(self, expr: NonsmoothBase) -> str:
         arguments = [f"{argument}.0" if argument.is_Integer else self._print(argument) for argument in expr.args]
         if isinstance(expr, Step):
             arguments[-1] = str(expr.args[-1])
         return f"{expr.native}({', '.join(arguments)})"
 
-    def _print_CountedAngle(self, expr: CountedAngle) -> str:
-        return f"counted_angle({', '.join(self._print(argument) for argument in expr.args)})"
+    def _print_ContinuousAngle(self, expr: ContinuousAngle) -> str:
+        return f"continuous_angle({', '.join(self._print(argument) for argument in expr.args)})"
 
     def _print_Spline(self, expr: Spline) -> str:
         x, table, order = expr.args
@@ -72,9 +72,9 @@ class _Printer(PythonCodePrinter):
         given = [f"{x}.0" if x.is_Integer else self._print(x) for x in arguments]
         return f"python_call({address}, {int(count)}, {int(output)}, {int(by)}, {', '.join(given)})"
 
-    def _print_Unwound(self, expr: Unwound) -> str:
+    def _print_RotationVector(self, expr: RotationVector) -> str:
         h, order = expr.args
-        return f"unwound({self._print(h)}, {int(order)})"
+        return f"rotation_vector({self._print(h)}, {int(order)})"
 
 
 def _shared(

@@ -1,4 +1,4 @@
-"""Functions with corners in equations: their derivatives, and which native function each of them is in kernels.
+"""Nonsmooth functions in equations: their derivatives, and which native function each of them is in kernels.
 
 Each argument stands once in each of them.  As SymPy's Piecewise, which writes an argument once for each of its conditions
 and values, fourteen steps within each other were 5^14 expressions.
@@ -15,7 +15,7 @@ Partial = Callable[[sp.Expr], sp.Expr]
 """The derivative of an expression by some symbol."""
 
 
-class CorneredBase(sp.Function):  # type: ignore[misc]
+class NonsmoothBase(sp.Function):  # type: ignore[misc]
     """Base of these functions; SymPy's printers look for a method of a base whose name ends so.
 
     Attributes
@@ -35,7 +35,7 @@ class CorneredBase(sp.Function):  # type: ignore[misc]
         return self.by_parts(lambda part: sp.diff(part, symbol))
 
 
-class Chosen(CorneredBase):
+class Chosen(NonsmoothBase):
     """One of three expressions by the sign of the first: Chosen(x, below, at, above)."""
 
     native = "chosen"
@@ -52,7 +52,7 @@ class Chosen(CorneredBase):
         return Chosen(x, *map(partial, values))
 
 
-class Sign(CorneredBase):
+class Sign(NonsmoothBase):
     """-1 or 1, with derivative zero."""
 
     native = "sign"
@@ -66,7 +66,7 @@ class Sign(CorneredBase):
         return sp.Integer(0)
 
 
-class Magnitude(CorneredBase):
+class Magnitude(NonsmoothBase):
     """The absolute value."""
 
     native = "magnitude"
@@ -81,7 +81,7 @@ class Magnitude(CorneredBase):
         return Sign(x) * partial(x)
 
 
-class Extreme(CorneredBase):
+class Extreme(NonsmoothBase):
     """One of two, the first where they are equal, with the derivative of that one.
 
     Attributes
@@ -121,7 +121,7 @@ class Less(Extreme):
     direction = -1
 
 
-class Inside(CorneredBase):
+class Inside(NonsmoothBase):
     """A value between two bounds of x, zero at them and beyond: Inside(x, x0, x1, value)."""
 
     native = "inside"
@@ -136,7 +136,7 @@ class Inside(CorneredBase):
         return Inside(*bounds, partial(value))
 
 
-class Step(CorneredBase):
+class Step(NonsmoothBase):
     """Adams' STEP, or a derivative of it by x: Step(x, x0, h0, x1, h1, order), a cubic with flat ends."""
 
     native = "step"

@@ -15,7 +15,7 @@ from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
 from ...errors import InputError
-from .nonsmooth import Chosen, CorneredBase, Magnitude, Sign, greater, less
+from .nonsmooth import Chosen, Magnitude, NonsmoothBase, Sign, greater, less
 
 KNOWN: tuple[type[sp.Basic], ...] = (
     sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.atan2, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log, sp.Piecewise,
@@ -29,14 +29,14 @@ def _differences(x: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
     return tuple(a - b for a, b in itertools.combinations(x, 2))
 
 
-CORNERED: dict[type[sp.Basic], Callable[..., tuple[sp.Expr, tuple[sp.Expr, ...]]]] = {
+NONSMOOTH: dict[type[sp.Basic], Callable[..., tuple[sp.Expr, tuple[sp.Expr, ...]]]] = {
     sp.Abs: lambda x: (Magnitude(x), (x,)),
     sp.sign: lambda x: (Sign(x), (x,)),
     sp.Max: lambda *x: (greater(*x), _differences(x)),
     sp.Min: lambda *x: (less(*x), _differences(x)),
     sp.Heaviside: lambda x, at: (Chosen(x, sp.Integer(0), at, sp.Integer(1)), (x,)),
 }
-"""Functions with corners: what each becomes, and what is zero at its corners."""
+"""nonsmooth functions: what each becomes, and what is zero at its breakpoints."""
 NO_NUMBER = frozenset((sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I))
 UNDONE = (sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
 
@@ -48,7 +48,7 @@ def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
     ----------
     x : Expr or number
     note : callable
-        Called with what is zero at each corner.
+        Called with what is zero at each breakpoint.
 
     Raises
     ------
@@ -84,17 +84,17 @@ def _functions(x: sp.Basic) -> Iterator[sp.Basic]:
 
 def _is_own(part: sp.Basic) -> bool:
     """Whether a function is one of this package."""
-    return isinstance(part, CorneredBase) or type(part).__module__.startswith("stiffmbs.")
+    return isinstance(part, NonsmoothBase) or type(part).__module__.startswith("stiffmbs.")
 
 
 def _read(x: sp.Basic, note: Callable[[sp.Expr], None]) -> Any:
     if not x.args:
         return x
     arguments = [_read(part, note) for part in x.args]
-    if type(x) in CORNERED:
-        value, corners = CORNERED[type(x)](*arguments)
-        for corner in corners:
-            note(corner)
+    if type(x) in NONSMOOTH:
+        value, breakpoints = NONSMOOTH[type(x)](*arguments)
+        for breakpoint in breakpoints:
+            note(breakpoint)
         return value
     if isinstance(x, sp.Piecewise):
         if x.args[-1].cond != True:  # noqa: E712 SymPy's own
@@ -111,7 +111,7 @@ def _by_others(x: sp.Function, note: Callable[[sp.Expr], None]) -> sp.Expr:
     """A function written by others that kernels have."""
     for way in () if isinstance(x, AppliedUndef) else BY_OTHERS:
         written = x.rewrite(way)
-        if not written.has(sp.I) and all(isinstance(part, (*KNOWN, *CORNERED)) for part in _functions(written)):
+        if not written.has(sp.I) and all(isinstance(part, (*KNOWN, *NONSMOOTH)) for part in _functions(written)):
             return _read(written, note)
-    names = ", ".join(sorted({part.__name__ for part in (*KNOWN, *CORNERED)}))
+    names = ", ".join(sorted({part.__name__ for part in (*KNOWN, *NONSMOOTH)}))
     raise InputError(f"found the function {x.func}, expected one of {names}")

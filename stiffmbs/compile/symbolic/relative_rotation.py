@@ -9,7 +9,7 @@ from functools import cached_property
 import sympy as sp
 
 
-class Unwound(sp.Function):  # type: ignore[misc]
+class RotationVector(sp.Function):  # type: ignore[misc]
     """A derivative of the function that makes a rotation vector of a quaternion's vector part: Unwound(h, order)."""
 
     nargs = 2
@@ -17,7 +17,7 @@ class Unwound(sp.Function):  # type: ignore[misc]
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         h, order = self.args
-        return Unwound(h, order + 1)
+        return RotationVector(h, order + 1)
 
 
 COSINE = sp.Float(math.sqrt(0.5))
@@ -50,7 +50,7 @@ class Turn:
     @cached_property
     def rotation(self) -> sp.Matrix:
         """The rotation vector: the angle, rad, along the axis of rotation."""
-        return Unwound(self.scalar, sp.Integer(0)) * self.vector
+        return RotationVector(self.scalar, sp.Integer(0)) * self.vector
 
     def rates(self, half: sp.Matrix) -> list[sp.Expr]:
         """h' and v' for half the angular velocity w of the second marker against the first, in the first one's axes.
@@ -66,7 +66,7 @@ class Turn:
         It follows from `rates`; Shuster, A survey of attitude representations, J. Astronautical Sciences 41 (1993) 439-517.
         """
         h, v, m = self.scalar, self.vector, sp.Matrix(moments)
-        c, slope = (Unwound(h, sp.Integer(order)) for order in (0, 1))
+        c, slope = (RotationVector(h, sp.Integer(order)) for order in (0, 1))
         return (c * (h * m + v.cross(m)) - slope * m.dot(v) * v) / 2
 
 
@@ -93,7 +93,7 @@ class Tilt:
     @cached_property
     def rotation(self) -> sp.Matrix:
         """The rotation vector, rad, without a part along the axis."""
-        return Unwound(self.direction[self.axis], sp.Integer(0)) / 2 * self._across
+        return RotationVector(self.direction[self.axis], sp.Integer(0)) / 2 * self._across
 
     @property
     def _across(self) -> sp.Matrix:
@@ -106,7 +106,7 @@ class Tilt:
         The direction n changes by w x n, so that the torque is n x dP/dn' for the power P of the moments.
         """
         n, axis, m = self.direction, sp.eye(3)[:, self.axis], sp.Matrix(moments)
-        c, slope = (Unwound(n[self.axis], sp.Integer(order)) / 2 for order in (0, 1))
+        c, slope = (RotationVector(n[self.axis], sp.Integer(order)) / 2 for order in (0, 1))
         return n.cross(c * m.cross(axis) + slope * m.dot(self._across) * axis)
 
 

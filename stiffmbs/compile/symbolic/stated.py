@@ -22,8 +22,8 @@ class Stated:
     ----------
     point : tuple of Expr
         About which the reaction's torque is reported.
-    switches : tuple of Expr
-        What changes its sign at corners in the state.
+    event_functions : tuple of Expr
+        What changes its sign at breakpoints in the state.
     position, velocity : tuples of Expr
         Of a joint.
     powers : tuple of (Expr, Expr)
@@ -33,7 +33,7 @@ class Stated:
     """
 
     point: tuple[sp.Expr, ...]
-    switches: tuple[sp.Expr, ...]
+    event_functions: tuple[sp.Expr, ...]
     position: tuple[sp.Expr, ...] = ()
     velocity: tuple[sp.Expr, ...] = ()
     powers: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
@@ -57,7 +57,7 @@ def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
             f"{kind.element.__name__}: found {len(position) + len(velocity)} expressions from position and velocity, "
             f"expected {len(names)}, one for each of its equations ({', '.join(names)})"
         )
-    return asked.known(Stated(asked.column("point"), asked.switches(), position, velocity))
+    return asked.known(Stated(asked.column("point"), asked.event_functions(), position, velocity))
 
 
 def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
@@ -72,7 +72,7 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
     powers = asked.pairs()
     (potential,) = asked.column("potential")
     limits = asked.column("limits")
-    found = Stated(asked.column("point"), asked.switches(), powers=powers, potential=potential, limits=limits)
+    found = Stated(asked.column("point"), asked.event_functions(), powers=powers, potential=potential, limits=limits)
     return asked.known(found)
 
 
@@ -86,7 +86,14 @@ def text_of(kind: Kind) -> str:
     angles = [sp.srepr(angle) for angle in symbols.element.angles]
     equations = [
         sp.srepr(sp.Tuple(*part) if isinstance(part, tuple) else part)
-        for part in (stated.point, stated.switches, stated.position, stated.velocity, stated.potential, stated.limits)
+        for part in (
+            stated.point,
+            stated.event_functions,
+            stated.position,
+            stated.velocity,
+            stated.potential,
+            stated.limits,
+        )
     ]
     powers = [(sp.srepr(effort), sp.srepr(rate)) for effort, rate in stated.powers]
     turns = getattr(kind.element, "turns", False)
@@ -118,15 +125,22 @@ class _Asked:
         found = [(self._read(name, effort), self._read(name, works_on)) for effort, works_on in pairs]
         return tuple((effort, x if name == "powers" else self.e.rate(x)) for effort, x in found)
 
-    def switches(self) -> tuple[sp.Expr, ...]:
-        """The corners of formulas, and those that the class names, or else those of its equations."""
-        named = issubclass(self.element, Force) and self.element.switches is not Force.switches
-        own = self.column("switches") if named else [x for x in self.e.corners if self.e.in_state(x)]
-        return (*self.symbols.switches, *(x for x in own if named or x not in self.symbols.switches))
+    def event_functions(self) -> tuple[sp.Expr, ...]:
+        """The breakpoints of formulas, and those that the class names, or else those of its equations."""
+        named = issubclass(self.element, Force) and self.element.event_functions is not Force.event_functions
+        own = self.column("event_functions") if named else [x for x in self.e.breakpoints if self.e.in_state(x)]
+        return (*self.symbols.event_functions, *(x for x in own if named or x not in self.symbols.event_functions))
 
     def known(self, stated: Stated) -> Stated:
         """The equations, if all symbols in them mean something."""
-        columns = (stated.point, stated.switches, stated.position, stated.velocity, (stated.potential,), stated.limits)
+        columns = (
+            stated.point,
+            stated.event_functions,
+            stated.position,
+            stated.velocity,
+            (stated.potential,),
+            stated.limits,
+        )
         parts = [x for column in (*columns, *stated.powers) for x in column]
         meant = self.symbols.known()
         for symbol in sorted({symbol for x in parts for symbol in self.e.derivatives.variables(x)} - meant, key=str):

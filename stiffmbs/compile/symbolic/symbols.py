@@ -11,7 +11,7 @@ from typing import Any
 import sympy as sp
 
 from ...describe.formula.field import TIME
-from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Corners, FormulaFunction
+from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.text import evaluate
 from ..kind import OWN, Kind, Shape
 from . import nonsmooth, planar_frames, spatial_frames
@@ -60,15 +60,15 @@ class Symbols:
         In the order of `ElementData.numbers`; integer ones are offsets of tables.
     joint_lam : list of list of Symbol
         Multipliers of each joint that is referred to.
-    switches : list of expressions
-        What changes its sign at the corners in the state of the formulas (``abs``, ``step``, ...).
+    event_functions : list of expressions
+        What changes its sign at the breakpoints in the state of the formulas (``abs``, ``step``, ...).
     laws : list of Law
     """
 
     element: SymbolicElement
     numbers: list[sp.Symbol] = field(default_factory=list)
     joint_lam: list[list[sp.Symbol]] = field(default_factory=list)
-    switches: list[sp.Expr] = field(default_factory=list)
+    event_functions: list[sp.Expr] = field(default_factory=list)
     laws: list[Law] = field(default_factory=list)
 
     def known(self) -> frozenset[sp.Symbol]:
@@ -79,10 +79,10 @@ class Symbols:
         counters = map(counter, range(len(e.angles)))
         return frozenset((e.t, *self.numbers, *of_bodies, *of_joints, *counters)) | e.derivatives.defined()
 
-    def note_switch(self, corner: sp.Expr) -> None:
-        """Note what changes its sign at a corner, if that is in the state."""
-        if self.element.in_state(corner) and corner not in self.switches:
-            self.switches.append(corner)
+    def note_event_function(self, breakpoint: sp.Expr) -> None:
+        """Note what changes its sign at a breakpoint, if that is in the state."""
+        if self.element.in_state(breakpoint) and breakpoint not in self.event_functions:
+            self.event_functions.append(breakpoint)
 
     def note_law(self, argument: sp.Expr, name: str, table: sp.Symbol | None = None) -> None:
         """Note the argument of a table or function with narrow features, if that is in the state."""
@@ -203,12 +203,12 @@ class _Builder:
         return function if n_variables else function()
 
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
-        """The functions of formulas; those with corners note where they are, if it is in the state."""
+        """The functions of formulas; those with breakpoints note where they are, if it is in the state."""
 
         def noting(name: str, function: FormulaFunction) -> Any:
             def called(*arguments: sp.Expr) -> sp.Expr:
-                for corner in _corners(function, arguments):
-                    self.symbols.note_switch(corner)
+                for breakpoint in _breakpoints(function, arguments):
+                    self.symbols.note_event_function(breakpoint)
                 return getattr(nonsmooth, function.symbolic)(*arguments)
 
             return SMOOTH.get(name, called)
@@ -227,10 +227,10 @@ class _Builder:
         return Spline(x, table, sp.Integer(0))
 
 
-def _corners(function: FormulaFunction, arguments: tuple[sp.Expr, ...]) -> Iterator[sp.Expr]:
-    """What is zero at a function's corners."""
-    each: Corners = tuple((0, k) for k in range(1, len(arguments)))
-    for i, k in each if function.corners == EACH else function.corners:
+def _breakpoints(function: FormulaFunction, arguments: tuple[sp.Expr, ...]) -> Iterator[sp.Expr]:
+    """What is zero at a function's breakpoints."""
+    each: Breakpoints = tuple((0, k) for k in range(1, len(arguments)))
+    for i, k in each if function.breakpoints == EACH else function.breakpoints:
         yield arguments[i] if k is None else arguments[i] - arguments[k]
 
 

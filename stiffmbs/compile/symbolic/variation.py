@@ -59,7 +59,7 @@ class Variation:
         self._number: dict[sp.Basic, int] = {symbol: k for k, symbol in enumerate(symbols.numbers)}
         self._vector = {part: own for frame in self._e.frames for part, own in frame.vectors.items()}
         self._bounded = {symbol for frame in self._e.frames for symbol in frame.bounded}
-        self._cornered = bool(symbols.switches)
+        self._nonsmooth = bool(symbols.event_functions)
         self._known: dict[sp.Expr, _Sum] = {}
 
     def summands(self, x: sp.Expr) -> list[Summand]:
@@ -69,12 +69,12 @@ class Variation:
         ]
 
     def removable(self, C: sp.Expr, differentiated: Iterable[int]) -> bool:
-        """Whether an equation follows from its derivatives at every pose: it has no time in it, and no corners or jumps.
+        """Whether an equation follows from its derivatives at every pose: it has no time in it, and no breakpoints or jumps.
 
         It then depends on no coordinates but those that it has derivatives by.
         """
         timeless = not self._e.depends(C, [self._e.t])
-        return timeless and not self._cornered and set(self._e.columns_of(C)) <= set(differentiated)
+        return timeless and not self._nonsmooth and set(self._e.columns_of(C)) <= set(differentiated)
 
     def _sum(self, x: sp.Expr) -> _Sum:
         if x not in self._known:

@@ -15,7 +15,7 @@ PIN, GUIDE, SLEEVE, BALL = ("angle",), ("displacement",), ("displacement", "angl
 """Sorts of joints, by their coordinates."""
 
 
-class RubbingJoint(Friction):
+class AnyJointFriction(Friction):
     """Base of the frictions in joints of the plane and of space (it has no kind: scenes name its subclasses).
 
     The multipliers that the pressure is made of are those of the same instant, friction included.

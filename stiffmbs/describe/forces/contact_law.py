@@ -55,7 +55,7 @@ class ContactLaw(Friction):
         return Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
 
     @classmethod
-    def switches(cls, e: Symbolic) -> Any:
+    def event_functions(cls, e: Symbolic) -> Any:
         """Above zero where the surfaces push: dissipation may end the push while they still overlap."""
         from sympy import Min
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from ..element import Symbolic
-from .any_joint_friction import PIN, RubbingJoint
+from .any_joint_friction import PIN, AnyJointFriction
 from .friction import Friction
 
 
-class JointFriction(RubbingJoint):
+class JointFriction(AnyJointFriction):
     """Dry friction in a revolute or prismatic joint, pressed by the joint's own reaction.
 
     A pin of radius R is pressed by N = sqrt(lam_x^2 + lam_y^2), its surface slides at v = R angle', and the torque

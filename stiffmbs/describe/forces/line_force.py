@@ -26,7 +26,7 @@ class ForceAlongLine(Force, Generic[M]):
         description="N, pushing the points apart where it is above zero: a number or a formula"
     )
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
         """Points at one place give the force no direction."""
         if model.at_one_place(self.i, self.j):
             yield "found both of its points at one place, where its force has no direction, expected them apart"

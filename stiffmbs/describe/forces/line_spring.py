@@ -36,7 +36,7 @@ class LineSpring(Spring, Generic[M]):
     spring_law: ForceOfDeflection | None = Field(None, description="tension added over s = L - L0 (m), N")
     damper_law: ForceOfRate | None = Field(None, description="tension added over v = L' (m/s), N")
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
         """Points at one place give the spring's force no direction."""
         if (self.free_length or self.preload) and model.at_one_place(self.i, self.j):
             yield (

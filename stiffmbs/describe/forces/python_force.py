@@ -26,7 +26,7 @@ class PythonForce(ForceOfFunction[Marker]):
 
     Only a model built in Python can have it.  Each call takes some microseconds, and the derivatives for the Jacobian are
     by central differences, or by a complex step (`stiffmbs.PythonFunction`).  It must give the same for the same numbers.
-    Its corners are not located, and it has no potential.  An exception ends the run, which keeps what was computed.
+    Its breakpoints are not located, and it has no potential.  An exception ends the run, which keeps what was computed.
 
     Examples
     --------

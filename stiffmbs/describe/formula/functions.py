@@ -35,9 +35,9 @@ class Takes:
 
 ONE = Takes(1)
 OF_TABLE = ONE
-Corners = tuple[tuple[int, int | None], ...]
-"""The arguments whose difference passes zero at a function's corners; None for zero itself."""
-EACH: Corners = ((0, -1),)
+Breakpoints = tuple[tuple[int, int | None], ...]
+"""The arguments whose difference passes zero at a function's breakpoints; None for zero itself."""
+EACH: Breakpoints = ((0, -1),)
 """Where the first argument, or the one chosen before, passes each of the others."""
 EVERYWHERE = (-math.inf, math.inf)
 Rule = Callable[[Sequence[Part], ast.expr], Known]
@@ -64,7 +64,7 @@ class FormulaFunction:
         Its interval form, of `stiffmbs.compile.inputs.enclosed_functions`; empty where that follows from the derivative.
     derivative : str
         By x, of a function of x, as a formula.
-    corners : Corners
+    breakpoints : Breakpoints
     domain : (float, float)
         Arguments for which it has a value.
     poles : bool
@@ -82,7 +82,7 @@ class FormulaFunction:
     symbolic: str = ""
     enclosure: str = ""
     derivative: str = ""
-    corners: Corners = ()
+    breakpoints: Breakpoints = ()
     domain: tuple[float, float] = EVERYWHERE
     poles: bool = False
     zones: str = ""
@@ -158,27 +158,27 @@ FUNCTIONS: dict[str, FormulaFunction] = {
         Takes(2), of_angle, math.atan2, np.arctan2, symbolic="sympy.atan2", enclosure="atan2", in_numbers=True
     ),
     "abs": FormulaFunction(
-        ONE, of_first, abs, np.abs, symbolic="Magnitude", enclosure="absolute", corners=((0, None),), in_numbers=True
+        ONE, of_first, abs, np.abs, symbolic="Magnitude", enclosure="absolute", breakpoints=((0, None),), in_numbers=True
     ),
     "min": FormulaFunction(
-        Takes(1, True), alike, lambda *values: min(values), _least, symbolic="less", enclosure="minimum", corners=EACH,
+        Takes(1, True), alike, lambda *values: min(values), _least, symbolic="less", enclosure="minimum", breakpoints=EACH,
         in_numbers=True,
     ),
     "max": FormulaFunction(
-        Takes(1, True), alike, lambda *values: max(values), _greatest, symbolic="greater", enclosure="maximum", corners=EACH,
+        Takes(1, True), alike, lambda *values: max(values), _greatest, symbolic="greater", enclosure="maximum", breakpoints=EACH,
         in_numbers=True,
     ),
     "sign": FormulaFunction(
-        ONE, plain_always, partial(math.copysign, 1.0), _sign, symbolic="Sign", enclosure="sign", corners=((0, None),)
+        ONE, plain_always, partial(math.copysign, 1.0), _sign, symbolic="Sign", enclosure="sign", breakpoints=((0, None),)
     ),
     "step": FormulaFunction(
-        Takes(5), of_step, step_value, step_value, symbolic="step", enclosure="step", corners=((0, 1), (0, 3))
+        Takes(5), of_step, step_value, step_value, symbolic="step", enclosure="step", breakpoints=((0, 1), (0, 3))
     ),
     "step5": FormulaFunction(
-        Takes(5), of_step, step5_value, step5_value, symbolic="step5", enclosure="step5", corners=((0, 1), (0, 3))
+        Takes(5), of_step, step5_value, step5_value, symbolic="step5", enclosure="step5", breakpoints=((0, 1), (0, 3))
     ),
     "branch": FormulaFunction(
-        Takes(4), of_branch, branch_value, branch_value, symbolic="Chosen", enclosure="branch", corners=((0, None),)
+        Takes(4), of_branch, branch_value, branch_value, symbolic="Chosen", enclosure="branch", breakpoints=((0, None),)
     ),
     "mod": FormulaFunction(Takes(2), alike, math.fmod, np.fmod),
     "trunc": FormulaFunction(ONE, of_numbers, math.trunc, np.trunc),

@@ -9,10 +9,10 @@ from pydantic import Field
 
 from ..element import Symbolic
 from ..formula.field import OfPosition
-from .user_constraint import ONE_OR_MORE, KeptAtZero
+from .user_constraint import ONE_OR_MORE, UserConstraint
 
 
-class ConstraintEquation(KeptAtZero):
+class ConstraintEquation(UserConstraint):
     """Formulas of body coordinates and time that stay zero: ``cart.y - 0.1*sin(cart.x)``.
 
     The equations are named ``zero[0] zero[1] ...`` in reports.  The reaction is reported on the body of marker `i`, about

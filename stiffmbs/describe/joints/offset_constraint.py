@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ..model_data import ModelData
 
 
-class KeptAsDrawn(Joint):
+class OffsetConstraint(Joint):
     """Base of the joints with an `offset` in their one equation (it has no kind: scenes name its subclasses).
 
     Without an `offset` the bodies are taken as they are drawn: the offset is then the number with which the equation
@@ -30,7 +30,7 @@ class KeptAsDrawn(Joint):
     def position(cls, e: Symbolic) -> Any:
         return [cls.relation(e)]
 
-    def as_drawn(self, model: ModelData) -> Self:
+    def at_initial_pose(self, model: ModelData) -> Self:
         if self.offset is not None:
             return self
         at_start = self.relation(drawn(self.model_copy(update={"offset": 0.0}), model))

@@ -17,7 +17,7 @@ class PointOnCurve(Curve[Marker]):
     every turn, so that it does not matter where the arctangent jumps, nor how often the cam has turned.
     Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
-    The curve should have no corners.  The reaction is across the curve, without friction, and may pull: the point
+    The curve should have no breakpoints.  The reaction is across the curve, without friction, and may pull: the point
     cannot lift off.
     """
 

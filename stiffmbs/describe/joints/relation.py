@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 from ..element import Joint, JointName
 from ..joint_reference import unfit_joints
-from .offset_constraint import KeptAsDrawn
+from .offset_constraint import OffsetConstraint
 
 
-class Relation(KeptAsDrawn):
+class Relation(OffsetConstraint):
     """Base of the joints that tie two joint coordinates together (it has no kind: scenes name its subclasses).
 
     Attributes

@@ -14,7 +14,7 @@ _FORMULA = {"type": "string", "description": "a formula of coordinates and t"}
 ONE_OR_MORE = WithJsonSchema({"anyOf": [_FORMULA, {"type": "array", "items": _FORMULA, "minItems": 1}]})
 
 
-class KeptAtZero(Joint):
+class UserConstraint(Joint):
     """Base of the constraints whose field `zero` holds formulas (it has no kind: scenes name its subclasses).
 
     The equations are named ``zero[0] zero[1] ...`` in reports.  The reaction is reported on the body of marker `i`, about

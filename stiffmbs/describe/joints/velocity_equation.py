@@ -10,10 +10,10 @@ from pydantic import Field, field_validator
 from ..element import Symbolic
 from ..formula.field import Formula, OfMotion
 from ..formula.names import VELOCITIES
-from .user_constraint import ONE_OR_MORE, KeptAtZero
+from .user_constraint import ONE_OR_MORE, UserConstraint
 
 
-class VelocityEquation(KeptAtZero):
+class VelocityEquation(UserConstraint):
     """Formulas linear in velocities that stay zero, J(q) u - b(q, t) = 0, and need not be the rate of anything.
 
     A knife edge, ``sled.vy*cos(sled.angle) - sled.vx*sin(sled.angle)``, or a disc that rolls: constraints that are not

@@ -22,7 +22,7 @@ HALF_TURNS = tuple(np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, 
 """None, and those about x, y and z."""
 
 
-def drawn_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
+def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps the axes z of two markers parallel or opposite cannot be assembled from the drawn poses."""
     angle = _between_axes(model, i, j)
     if min(angle, 180 - angle) >= FARTHEST - ROUNDING:
@@ -32,7 +32,7 @@ def drawn_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
         )
 
 
-def drawn_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
+def initially_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a force about the axis z that two markers have in common has none where these are drawn."""
     angle = _between_axes(model, i, j)
     if min(angle, 180 - angle) >= FARTHEST - ROUNDING:
@@ -42,7 +42,7 @@ def drawn_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
         )
 
 
-def drawn_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
+def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps the axes z of two markers at right angles cannot be assembled from the drawn poses."""
     angle = _between_axes(model, i, j)
     if abs(angle - 90) >= FARTHEST - ROUNDING:
@@ -52,7 +52,7 @@ def drawn_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
         )
 
 
-def drawn_turned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
+def initially_rotated(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps all axes of two markers parallel cannot be assembled from the drawn poses."""
     angle = _angle(_between_frames(model, i, j))
     if angle >= FARTHEST - ROUNDING:
@@ -62,7 +62,7 @@ def drawn_turned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
         )
 
 
-def drawn_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) -> Iterator[str]:
+def initially_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) -> Iterator[str]:
     """Why a joint that lets two shafts bend but not twist, or twist by half a turn, cannot be assembled.
 
     The twist is that about the axes z, which are one where the shafts are in line, in one sense or the other.
@@ -81,7 +81,7 @@ def drawn_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) -> Ite
         )
 
 
-def drawn_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
+def initially_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps each axis of a marker parallel or opposite to its namesake cannot be assembled."""
     turned = _between_frames(model, i, j)
     if min(_angle(turned @ half) for half in HALF_TURNS) >= FARTHEST - ROUNDING:
@@ -93,13 +93,13 @@ def drawn_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 
 def _between_axes(model: ModelData, i: Marker, j: Marker) -> float:
     """The angle between the axes z as drawn, deg."""
-    a, b = model.drawn_marker(i), model.drawn_marker(j)
+    a, b = model.initial_marker(i), model.initial_marker(j)
     return math.degrees(math.acos(np.clip(a.z @ b.z, -1, 1)))
 
 
 def _between_frames(model: ModelData, i: Marker, j: Marker) -> np.ndarray:
     """The rotation matrix from marker j to marker i as drawn."""
-    a, b = model.drawn_marker(i), model.drawn_marker(j)
+    a, b = model.initial_marker(i), model.initial_marker(j)
     return b.axes.T @ a.axes
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class DrawnMarker:
+class InitialMarker:
     """A marker with numbers, in ground axes.
 
     Attributes

@@ -24,7 +24,7 @@ from ..units import si
 from . import forces, joints
 from .body import Body, BodyHandle
 from .forces.gyroscopic_torque import turnings
-from .initial_pose import DrawnMarker
+from .initial_pose import InitialMarker
 from .marker import Placement
 from .orientation import matrix, product, rotated
 
@@ -68,14 +68,14 @@ class SpatialData(ModelData):
         yield from weights(bodies, self.gravity)
         yield from turnings(bodies)
 
-    def drawn_marker(self, marker: MarkerReference) -> DrawnMarker:
+    def initial_marker(self, marker: MarkerReference) -> InitialMarker:
         """A marker with numbers, in ground axes, as the bodies are drawn."""
         placed = self.place(marker)
         if marker.body == GROUND:
-            return DrawnMarker(np.array(placed.point), matrix(placed.orientation))
+            return InitialMarker(np.array(placed.point), matrix(placed.orientation))
         body = self.bodies[marker.body]
         point = np.array(body.position) + rotated(body.orientation, placed.point)
-        return DrawnMarker(point, matrix(product(body.orientation, placed.orientation)))
+        return InitialMarker(point, matrix(product(body.orientation, placed.orientation)))
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
         """The body that carries a marker, and where it sits on it, from the centre of mass in the principal axes."""

@@ -32,7 +32,7 @@ class ErrorControl:
     growth : float
         Factor by which the error test must let a step grow before it is changed (IDASetEtaFixedStepBounds).  IDA's own, 2, leaves
         steps of even motions where the start has put them, anywhere between half of what the tolerance allows and all of it.
-    doubtful : bool
+    predicted_residual : bool
         Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix, and short steps
         bear more (`stiffmbs.solve.native.iteration`); IDA's own test takes a rate that was measured where the matrix was new.
     """
@@ -43,7 +43,7 @@ class ErrorControl:
     newton: float | None = None
     renewal: float = 0.05
     growth: float = 2.0
-    doubtful: bool = True
+    predicted_residual: bool = True
 
     def tolerances(self, equations: Equations, settings: RunSettings) -> tuple[float, np.ndarray]:
         """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts those in the error test."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...describe.settings import RunSettings
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 
 LOOSEST, TIGHTEST = 0.03, 1e-6
 """Part of the error tolerance that the iteration may leave.  0.03 in place of IDA's own 0.33 saves a quarter of the
@@ -22,7 +22,7 @@ NUMBERS_END = 1e-13
 
 
 AMPLIFIED = 2500.0
-"""Force that an error between steps makes, in parts of the force that the same error makes by its rates in a step, beyond which
+"""Force that an error between steps makes, relative to the force that the same error makes by its rates in a step, beyond which
 it shows.  Measured on a bar on a bushing and on the half car: with 50 accelerations between steps are no better than forces, with
 1e5 forces are off by a tenth of their size."""
 
@@ -48,7 +48,7 @@ class Stiffness:
         return max(self.of_positions, self.of_velocities * self.of_velocities)  # infinite where a power would raise
 
     @property
-    def bearable(self) -> float:
+    def allowed_residual(self) -> float:
         """The part of the error tolerance that makes no force which counts."""
         return SOFT / self.fastest if self.fastest > 0 else np.inf
 
@@ -60,21 +60,21 @@ class Stiffness:
         return min(by_position, by_velocity)
 
 
-def stiffness_at(mechanics: Mechanics, t: float) -> Stiffness:
+def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:
     """That of the state at hand."""
-    state, mass = mechanics.state, mechanics.system.mass
+    state, mass = dynamics.state, dynamics.system.mass
     state.evaluate("tangent", t)
-    return Stiffness(*(_largest_row_sum(mechanics, term, mass) for term in ("f_q", "f_u")))
+    return Stiffness(*(_largest_row_sum(dynamics, term, mass) for term in ("f_q", "f_u")))
 
 
 def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
     """The part of the error tolerance that Newton's iteration may leave."""
-    return max(min(LOOSEST, stiffness.bearable), TIGHTEST, NUMBERS_END / settings.rtol)
+    return max(min(LOOSEST, stiffness.allowed_residual), TIGHTEST, NUMBERS_END / settings.rtol)
 
 
-def _largest_row_sum(mechanics: Mechanics, name: str, mass: np.ndarray) -> float:
+def _largest_row_sum(dynamics: Dynamics, name: str, mass: np.ndarray) -> float:
     """The largest sum of magnitudes in a row of M^-1 times a term of the tangent set."""
-    term = mechanics.system.term("tangent", name)
-    sums = np.bincount(term.row, np.abs(mechanics.state.values["tangent"][term.source]), minlength=len(mass))
+    term = dynamics.system.term("tangent", name)
+    sums = np.bincount(term.row, np.abs(dynamics.state.values["tangent"][term.source]), minlength=len(mass))
     with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
         return float((sums / mass).max()) if len(mass) else 0.0

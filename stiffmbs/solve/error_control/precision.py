@@ -11,7 +11,7 @@ from ...compile.system import System
 from ...describe.settings import RunSettings
 
 NOISE = 1e-3, 0.05
-"""Rounding of a coordinate, in parts of the absolute tolerance, from which on differences of the order 5 hold nothing but
+"""Rounding of a coordinate, relative to the absolute tolerance, from which on differences of the order 5 hold nothing but
 rounding: of an angle, and of a position, whose own tolerance grows with it."""
 SLOW, FAILED = 20_000, 0.2
 """Steps after which a run is looked at, and the part of them that fails the error test where rounding governs it."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...compile.system import System
 from ...describe.settings import RunSettings
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 
 POSITION_CREEP, VELOCITY_CREEP = 1e-9, 1e-12
 """Seconds; measured on mechanisms of 1 kg and 1 m, where lam is 10 to 100 N: no effect on steps and errors."""
@@ -17,7 +17,7 @@ TIGHTEST, LOOSEST = 1e-3, 1e3
 """Bounds of the factor by which a tolerance other than 1e-8 changes the creep."""
 
 
-def relax(mechanics: Mechanics, settings: RunSettings, t: float) -> None:
+def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
     """Set the relaxations of all rows for the state at hand.
 
     E_mu = eps C_q C_q^T and E_lam = eps J M^-1 J^T, by their diagonals, so that lengths, angles, masses and forces of
@@ -25,7 +25,7 @@ def relax(mechanics: Mechanics, settings: RunSettings, t: float) -> None:
     the mechanism: what it weighs may hang on light bodies and small moments of inertia, which by their own measure
     would let their joints creep far beyond the tolerance.
     """
-    state, system = mechanics.state, mechanics.system
+    state, system = dynamics.state, dynamics.system
     if not system.n_c:
         return
     state.evaluate("motion", t)

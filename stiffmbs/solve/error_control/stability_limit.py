@@ -39,7 +39,7 @@ GAIN = 3.0
 are larger at the same tolerance.  On a car on bushings of 1e7 N/m 1.4 to 1.9 is foreseen; steps were then as long as before, and errors ten
 times as large.  On a bar on one bushing, where the order is held, steps become 3 to 40 times as long."""
 MARGIN, ERROR_CONSTANT = 0.1, 2 / 9
-"""Error of a step that an integrator aims at, in parts of the tolerance; that of order 2, over the third derivative times the cube of the step."""
+"""Error of a step that an integrator aims at, relative to the tolerance; that of order 2, over the third derivative times the cube of the step."""
 TIGHTEST = 1e-7
 """Relative tolerance below which the order is left alone: who asks for less wants to see the vibration, and order 2 would
 cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
@@ -47,7 +47,7 @@ HELD, HIGHEST = 2, 5
 """Orders: the highest that is stable for every vibration, and the highest of all."""
 
 
-class OrderWatch:
+class StabilityLimitDetection:
     """When to hold the order down, and when to leave it free again.
 
     Parameters

@@ -9,7 +9,7 @@ from collections import deque
 import numpy as np
 
 from ...errors import SolverError
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 from .discontinuity import FAR, jumping, sliding
 
 WINDOW, MANY = 250, 1000
@@ -22,7 +22,7 @@ comes to rest have larger ones, and end by themselves."""
 STEPS_SEEN, STEPS_AHEAD = 500_000, 2e8
 """Steps over which a run's pace is measured, and steps still to come at which it is given up."""
 TOLERANCES, FARTHEST = 1e3, 1e-2
-"""Distance from a jump, in parts of the relative tolerance and at the most, at which a state is taken to stay there: steps that
+"""Distance from a jump, relative to the relative tolerance and at the most, at which a state is taken to stay there: steps that
 have seen both of its sides hover about it."""
 
 
@@ -31,17 +31,17 @@ class Chattering:
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
     end : float
         Of the run, s.
     rtol : float
         Relative tolerance of the integrator.
     """
 
-    def __init__(self, mechanics: Mechanics, end: float, rtol: float) -> None:
-        self._mechanics, self._end = mechanics, end
+    def __init__(self, dynamics: Dynamics, end: float, rtol: float) -> None:
+        self._dynamics, self._end = dynamics, end
         self._reach = min(max(FAR, TOLERANCES * rtol), FARTHEST)
-        self._any = mechanics.system.n_switches > 0
+        self._any = dynamics.system.n_event_functions > 0
         self._events: deque[float] = deque(maxlen=2 * WINDOW + 1)
         self._count = 0
         self._mark: tuple[float, int] | None = None
@@ -55,7 +55,7 @@ class Chattering:
             Where a force drives the motion back from both sides of its jump; names the element.
         """
         if self._any:
-            self.refuse(t, sliding(self._mechanics, t, q, u))
+            self.refuse(t, sliding(self._dynamics, t, q, u))
 
     def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
         """Look at a state on the way, after so many steps of the run.
@@ -66,7 +66,7 @@ class Chattering:
             Where a force drives the motion back from both sides of its jump, or the steps are too short to arrive.
         """
         if self._any:
-            self.refuse(t, sliding(self._mechanics, t, q, u, self._reach))
+            self.refuse(t, sliding(self._dynamics, t, q, u, self._reach))
         since, before = self._mark or (t, steps)
         if steps - before < STEPS_SEEN:
             self._mark = since, before
@@ -77,11 +77,11 @@ class Chattering:
             raise SolverError(
                 f"stopped at t = {t:.9g} s: the last {steps - before} steps have covered {t - since:.3g} s, and at least "
                 f"{STEPS_AHEAD:.0e} more would follow to the end: expected a motion without singularities (a force that divides by "
-                "a velocity at rest, a jump without a corner, a mechanism that jams)"
+                "a velocity at rest, a jump without a breakpoint, a mechanism that jams)"
             )
 
-    def note_event(self, t: float, q: np.ndarray, u: np.ndarray, switch: int) -> None:
-        """Take note of an event at a state: a switch, below zero where it is not known, has changed its sign.
+    def note_event(self, t: float, q: np.ndarray, u: np.ndarray, event_function: int) -> None:
+        """Take note of an event at a state: an event function, below zero where it is not known, has changed its sign.
 
         Raises
         ------
@@ -94,8 +94,12 @@ class Chattering:
             return
         first, middle, last = (self._events[k] for k in (0, WINDOW, 2 * WINDOW))
         if self._to_come(middle - first, last - middle) > TOO_MANY:
-            self.refuse(t, jumping(self._mechanics, t, q, u))
-            name = f"'{self._mechanics.system.writer('switch', switch)}'" if switch >= 0 else "a force"
+            self.refuse(t, jumping(self._dynamics, t, q, u))
+            name = (
+                f"'{self._dynamics.system.writer('event_function', event_function)}'"
+                if event_function >= 0
+                else "a force"
+            )
             raise SolverError(
                 f"stopped at t = {t:.9g} s: {name} changes its law back and forth ever faster, {self._count} times so far and once in "
                 f"{(last - middle) / WINDOW:.3g} s: the run would come to no end; expected a force without a jump where the motion comes "
@@ -114,16 +118,16 @@ class Chattering:
         growing = LEAST_POWER < power < LARGEST_POWER
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
-    def refuse(self, t: float, switches: np.ndarray) -> None:
-        """Stop the run at the first of some switches."""
-        if len(switches):
-            raise SolverError(f"stopped at t = {t:.9g} s: {jump_sentence(self._mechanics, int(switches[0]))}")
+    def refuse(self, t: float, event_functions: np.ndarray) -> None:
+        """Stop the run at the first of some event functions."""
+        if len(event_functions):
+            raise SolverError(f"stopped at t = {t:.9g} s: {jump_sentence(self._dynamics, int(event_functions[0]))}")
 
 
-def jump_sentence(mechanics: Mechanics, switch: int) -> str:
+def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     """That a force jumps back and forth."""
     return (
-        f"'{mechanics.system.writer('switch', switch)}' jumps back and forth, as a force does that changes its "
+        f"'{dynamics.system.writer('event_function', event_function)}' jumps back and forth, as a force does that changes its "
         "sign where the motion comes to rest: no motion follows it from there on; expected a force that is steep "
         "there, without a jump: joint_friction with its smooth_velocity, or tanh(v/0.001) in place of sign(v)"
     )

@@ -1,4 +1,4 @@
-"""Forces on both sides of a switch that is about zero: whether they jump, and whether they drive the motion back to it."""
+"""Forces on both sides of an event function that is about zero: whether they jump, and whether they drive the motion back to it."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from functools import cache
 
 import numpy as np
 
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 
 FAR, NEAR = 1e-6, 1e-9
-"""Sizes of moves, in parts of the state and at least of 1 m, rad, m/s, rad/s, that take the state to both sides."""
+"""Sizes of moves, relative to the state and at least of 1 m, rad, m/s, rad/s, that take the state to both sides."""
 JUMPS, LEAST = 0.1, 1e-9
 """A force jumps where the smaller move leaves that part of the larger one's change of accelerations, and that many
 m/s^2 or rad/s^2."""
 BISECTIONS = 30
-"""Halvings of a move in search of the zero of a switch: from 0.1 to the rounding of the smaller move."""
+"""Halvings of a move in search of the zero of an event function: from 0.1 to the rounding of the smaller move."""
 AHEAD = 1e-4
-"""Time, s, over which the rate of a switch is taken."""
+"""Time, s, over which the rate of an event function is taken."""
 
 
 @dataclass(frozen=True)
 class _Side:
-    """A state near the one looked at: values of the switches, accelerations, and rates that these give the switches."""
+    """A state near the one looked at: values of the event functions, accelerations, and rates that these give the event functions."""
 
     values: np.ndarray
     acceleration: np.ndarray
     rates: np.ndarray
 
 
-def jumping(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """The switches about zero across which accelerations jump.
+def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """The event functions about zero across which accelerations jump.
 
     Parameters
     ----------
@@ -42,19 +42,19 @@ def jumping(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.
     -------
     ndarray of int
     """
-    with mechanics.state.unchanged():
-        crossed = _crossed(mechanics, t, q, u)
+    with dynamics.state.unchanged():
+        crossed = _crossed(dynamics, t, q, u)
         if not len(crossed):
             return crossed
         far, near = (
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (_sides(mechanics, t, q, u, size) for size in (FAR, NEAR))
+            for a, b in (_sides(dynamics, t, q, u, size) for size in (FAR, NEAR))
         )
     return crossed if near > max(JUMPS * far, LEAST) else crossed[:0]
 
 
-def sliding(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float = FAR) -> np.ndarray:
-    """The switches that the motion is driven to from both sides, by a force that jumps there.
+def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = FAR) -> np.ndarray:
+    """The event functions that the motion is driven to from both sides, by a force that jumps there.
 
     There is then no solution in the ordinary sense but a sliding mode (Filippov, Differential Equations with
     Discontinuous Righthand Sides, 1988, ch. 2): sign(v) at rest is one.
@@ -64,54 +64,58 @@ def sliding(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach:
     reach : float
         Size of the move, as `FAR`, within which a jump is looked for.
     """
-    with mechanics.state.unchanged():
-        crossed = _crossed(mechanics, t, q, u, reach)
+    with dynamics.state.unchanged():
+        crossed = _crossed(dynamics, t, q, u, reach)
         if not len(crossed):
             return crossed
-        back = _driven_back(_sides(mechanics, t, q, u, reach), crossed)
-        return np.array([k for k in crossed[back] if _slides(mechanics, t, q, u, reach, k)], dtype=int)
+        back = _driven_back(_sides(dynamics, t, q, u, reach), crossed)
+        return np.array([k for k in crossed[back] if _slides(dynamics, t, q, u, reach, k)], dtype=int)
 
 
-def _driven_back(sides: list[_Side], switches: np.ndarray) -> np.ndarray:
-    """Whether the motion returns from both sides to the zero of each switch."""
+def _driven_back(sides: list[_Side], event_functions: np.ndarray) -> np.ndarray:
+    """Whether the motion returns from both sides to the zero of each event function."""
     a, b = sides
-    return (a.rates[switches] * a.values[switches] < 0.0) & (b.rates[switches] * b.values[switches] < 0.0)
+    return (a.rates[event_functions] * a.values[event_functions] < 0.0) & (
+        b.rates[event_functions] * b.values[event_functions] < 0.0
+    )
 
 
-def _slides(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float, switch: int) -> bool:
-    """Whether the rates on both sides of a switch's zero differ as much however near the sides are to it."""
-    q, u = _moved(q, u, _zero_within(mechanics, t, q, u, reach, switch))
+def _slides(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float, event_function: int) -> bool:
+    """Whether the rates on both sides of an event function's zero differ as much however near the sides are to it."""
+    q, u = _moved(q, u, _zero_within(dynamics, t, q, u, reach, event_function))
     change = []
     for size in (FAR, NEAR):
-        sides = _sides(mechanics, t, q, u, size)
-        if not _driven_back(sides, np.array([switch]))[0]:
+        sides = _sides(dynamics, t, q, u, size)
+        if not _driven_back(sides, np.array([event_function]))[0]:
             return False
-        change.append(abs(sides[0].rates[switch] - sides[1].rates[switch]))
+        change.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
     far, near = change
     return bool(near > max(JUMPS * far, LEAST))
 
 
-def _zero_within(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float, switch: int) -> float:
-    """The size of the move, between -reach and reach, at which a switch changes its sign."""
+def _zero_within(
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float, event_function: int
+) -> float:
+    """The size of the move, between -reach and reach, at which an event function changes its sign."""
     low, high = -reach, reach
-    above = _values(mechanics, t, *_moved(q, u, high))[switch] > 0.0
+    above = _values(dynamics, t, *_moved(q, u, high))[event_function] > 0.0
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        if (_values(mechanics, t, *_moved(q, u, middle))[switch] > 0.0) == above:
+        if (_values(dynamics, t, *_moved(q, u, middle))[event_function] > 0.0) == above:
             high = middle
         else:
             low = middle
     return 0.5 * (low + high)
 
 
-def _crossed(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, reach: float = NEAR) -> np.ndarray:
-    """The switches that differ in sign between the two sides of a move."""
-    one, other = (_values(mechanics, t, *_moved(q, u, way * reach)) for way in (1.0, -1.0))
+def _crossed(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = NEAR) -> np.ndarray:
+    """The event functions that differ in sign between the two sides of a move."""
+    one, other = (_values(dynamics, t, *_moved(q, u, way * reach)) for way in (1.0, -1.0))
     return np.flatnonzero(one * other < 0.0)
 
 
-def _sides(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, size: float) -> list[_Side]:
-    return [_side(mechanics, t, *_moved(q, u, way * size)) for way in (1.0, -1.0)]
+def _sides(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, size: float) -> list[_Side]:
+    return [_side(dynamics, t, *_moved(q, u, way * size)) for way in (1.0, -1.0)]
 
 
 def _moved(q: np.ndarray, u: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
@@ -128,19 +132,19 @@ def _direction(n_q: int, n_u: int) -> tuple[np.ndarray, np.ndarray]:
     return first, second
 
 
-def _side(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> _Side:
-    values = _values(mechanics, t, q, u)
-    status, acceleration = mechanics.accelerate(t)
+def _side(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> _Side:
+    values = _values(dynamics, t, q, u)
+    status, acceleration = dynamics.accelerate(t)
     if status < 0:
         acceleration = np.full(len(u), np.nan)  # compares as no jump
-    moved = mechanics.system.of_body.moved(q, AHEAD * u)
-    ahead = _values(mechanics, t + AHEAD, moved, u + AHEAD * acceleration)
+    moved = dynamics.system.of_body.moved(q, AHEAD * u)
+    ahead = _values(dynamics, t + AHEAD, moved, u + AHEAD * acceleration)
     return _Side(values, acceleration, (ahead - values) / AHEAD)
 
 
-def _values(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """The switches at a state, which the mechanics' own becomes."""
-    state = mechanics.state
+def _values(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """The event functions at a state, which the mechanics' own becomes."""
+    state = dynamics.state
     state.q[:], state.u[:] = q, u
-    state.evaluate("switch", t)
-    return state.values["switch"][: mechanics.system.n_switches].copy()
+    state.evaluate("event_function", t)
+    return state.values["event_function"][: dynamics.system.n_event_functions].copy()

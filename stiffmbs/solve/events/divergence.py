@@ -6,7 +6,7 @@ import numpy as np
 
 from ...compile.system import System
 from ...errors import SolverError
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 from ..suspect import suspect
 from ..trajectory import Rows
 
@@ -23,12 +23,12 @@ INSTANTS = 2000
 """Of those stored, at which growth is looked at."""
 
 
-def refuse_beyond_sense(mechanics: Mechanics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
+def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
     """Stop a run that has diverged, after very many steps.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
     rows : Rows
         What the run has stored so far.
     t : float
@@ -46,22 +46,22 @@ def refuse_beyond_sense(mechanics: Mechanics, rows: Rows, t: float, q: np.ndarra
     """
     if steps < MANY:
         return
-    system = mechanics.system
+    system = dynamics.system
     speed, body = fastest(system, u)
     if speed > LIGHT:
         raise SolverError(
-            _sentence(mechanics, t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
+            _sentence(dynamics, t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
         )
     times, places, _ = rows.stored
     few = slice(None, None, 1 + len(times) // INSTANTS)
     far = np.max(np.abs(np.vstack([places[few], q]) - places[0]) * reaches(system), axis=1, initial=0.0)
     if far[-1] > BEYOND * system.size and exponential(np.append(times[few], t), np.maximum.accumulate(far)):
         what = f"body '{body}' has moved by {far[-1]:.3g} m, and ever faster, in a mechanism of {system.size:.3g} m"
-        raise SolverError(_sentence(mechanics, t, q, u, what))
+        raise SolverError(_sentence(dynamics, t, q, u, what))
 
 
-def _sentence(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, what: str) -> str:
-    likely = suspect(mechanics, t, q.copy(), u.copy())
+def _sentence(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, what: str) -> str:
+    likely = suspect(dynamics, t, q.copy(), u.copy())
     remedy = "look for a wrong sign of a stiffness, damping or force"
     return f"stopped at t = {t:.9g} s: the motion grows beyond sense: {what}{likely}; {remedy}"
 

@@ -5,37 +5,43 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.law_zones import edges_of
-from ...compile.machine.layout import WATCH, packed
+from ...compile.machine.layout import EVENT_SEARCH, packed
 from ...compile.state import State
 
 NODES = 8
 """States that describe a step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
 
 
-class EventWatch:
+class EventSearch:
     """Event functions of a system, and what the search for their events within a step works on.
 
     Parameters
     ----------
     state : State
     waits : ndarray of int, shape (n_switches,), optional
-        A switch that waits (above zero) is not looked at.
+        An event function that waits (above zero) is not looked at.
 
     Attributes
     ----------
     table : ndarray of int
-        Addresses for compiled code (`stiffmbs.compile.machine.layout.WATCH`).
+        Addresses for compiled code (`stiffmbs.compile.machine.layout.EVENT_SEARCH`).
     found : ndarray of int, shape (n,)
         1 for the functions of the last event, 0 for others.
     """
 
     def __init__(self, state: State, waits: np.ndarray | None = None) -> None:
         system = state.system
-        state.load("switch")
-        n, n_switches, n_state = system.n_values("switch"), system.n_switches, system.n_q + system.n_u
+        state.load("event_function")
+        n, n_event_functions, n_state = (
+            system.n_values("event_function"),
+            system.n_event_functions,
+            system.n_q + system.n_u,
+        )
         self.found, self._mark = np.zeros(n, dtype=np.int64), np.zeros(3)
         if not n:
-            self.table = np.zeros(len(WATCH), dtype=np.int64)  # nothing to search for: none of its arrays is read
+            self.table = np.zeros(
+                len(EVENT_SEARCH), dtype=np.int64
+            )  # nothing to search for: none of its arrays is read
             return
         first_edge, edges, period = edges_of(system)
         place = np.arange(NODES) * np.pi / (NODES - 1)
@@ -44,12 +50,12 @@ class EventWatch:
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high")  # fmt: skip
         self._arrays = {
-            "n": n, "n_switches": n_switches, "waits": np.zeros(n_switches, dtype=np.int64) if waits is None else waits,
+            "n": n, "n_event_functions": n_event_functions, "waits": np.zeros(n_event_functions, dtype=np.int64) if waits is None else waits,
             "first_edge": first_edge, "edges": edges, "period": period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
             "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles, "mark": self._mark,
         }  # fmt: skip
-        self.table = packed(WATCH, self._arrays)
+        self.table = packed(EVENT_SEARCH, self._arrays)
 
     def begin(self) -> None:
         """Forget the last step: the integrator starts anew."""

@@ -6,26 +6,26 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from ...compile.inputs.ends import InputEnd
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 from ..trajectory import Grid, Outcome, Trajectory
 
 CLOSE = 1e-3
 """Part of the run before the end of an input within which a solver that stops by itself stops for that input."""
 
 
-def solve_up_to_the_inputs_end(mechanics: Mechanics, grid: Grid, solve: Callable[[Grid], Trajectory]) -> Trajectory:
+def solve_up_to_the_inputs_end(dynamics: Dynamics, grid: Grid, solve: Callable[[Grid], Trajectory]) -> Trajectory:
     """Solve over a grid, or over as much of it as all inputs have values for.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
         Of the whole.
     grid : Grid
         Of the whole run.
     solve : callable
         Gives the trajectory over a grid.
     """
-    end = mechanics.input_end(grid.start, grid.end)
+    end = dynamics.input_end(grid.start, grid.end)
     if end is None:
         return solve(grid)
     found = solve(_up_to(grid, end))

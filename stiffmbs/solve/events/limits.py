@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ...errors import SolverError
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 
 
-def refuse_beyond_limits(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray) -> None:
+def refuse_beyond_limits(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
     """Stop a run whose state has passed the limits of a force.
 
     Raises
@@ -16,12 +16,12 @@ def refuse_beyond_limits(mechanics: Mechanics, t: float, q: np.ndarray, u: np.nd
     SolverError
         Names the element.
     """
-    system, state = mechanics.system, mechanics.state
-    first, end = system.first_limit, system.n_switches
+    system, state = dynamics.system, dynamics.state
+    first, end = system.first_limit, system.n_event_functions
     if first == end:
         return
     state.q[:], state.u[:] = q, u
-    state.evaluate("switch", t)
-    passed = np.flatnonzero(state.values["switch"][first:end] <= 0)
+    state.evaluate("event_function", t)
+    passed = np.flatnonzero(state.values["event_function"][first:end] <= 0)
     if len(passed):
         raise SolverError(f"stopped at t = {t:.9g} s: {system.beyond(first + int(passed[0]))}")

@@ -1,7 +1,7 @@
-"""Switches that stay about zero: left alone for a while where the force has a corner there, told where it jumps.
+"""Switches that stay about zero: left alone for a while where the force has a breakpoint there, told where it jumps.
 
 A contact whose gap is zero at the start, or max(0, x) at rest, changes its sign by rounding alone.  A force without a
-jump loses nothing when the integrator goes on across its corner.
+jump loses nothing when the integrator goes on across its breakpoint.
 """
 
 from __future__ import annotations
@@ -10,47 +10,47 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 from .chattering import Chattering, jump_sentence
 from .discontinuity import jumping
 
 FEW_STEPS, TIMES_THE_WAIT = 4, 4
 """An event within so many steps of a start, and of the wait before, counts as one by rounding."""
 FIRST_WAIT, LONGER, MOST = 8, 4, 4
-"""Steps for which a switch is left alone after its first event of that kind, times how many after each further one, up to
+"""Steps for which an event function is left alone after its first event of that kind, times how many after each further one, up to
 so many: a start's first steps double from one to the next."""
 TELLING = 3
 """Such events in succession from which on a force that jumps is told; the first may be those of a start at zero."""
 
 
-class HeldSwitches:
-    """The switches of one run, and how long each is to be left alone.
+class MaskedEvents:
+    """The event functions of one run, and how long each is to be left alone.
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
     chattering : Chattering
         Of the same run.
 
     Attributes
     ----------
     waits : ndarray of int
-        Steps from the next start on for which each switch is not to be looked at.
+        Steps from the next start on for which each event_function is not to be looked at.
     """
 
-    def __init__(self, mechanics: Mechanics, chattering: Chattering) -> None:
-        self._mechanics, self._chattering = mechanics, chattering
-        n = mechanics.system.n_switches
+    def __init__(self, dynamics: Dynamics, chattering: Chattering) -> None:
+        self._dynamics, self._chattering = dynamics, chattering
+        n = dynamics.system.n_event_functions
         self.waits, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         self._steps = 0
 
     @property
     def any(self) -> bool:
-        """Whether the system has switches."""
+        """Whether the system has event functions."""
         return bool(len(self.waits))
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
-        """Take note of the end of a leg, after so many steps of the run, by the switches that have fired.
+        """Take note of the end of a leg, after so many steps of the run, by the event functions that have fired.
 
         Raises
         ------
@@ -60,14 +60,16 @@ class HeldSwitches:
         left_behind = steps - self._steps > TIMES_THE_WAIT * self.waits + FEW_STEPS
         self._steps = steps
         self._in_succession[left_behind] = 0
-        again = np.array([switch for switch in fired if not left_behind[switch]], dtype=np.int64)
+        again = np.array(
+            [event_function for event_function in fired if not left_behind[event_function]], dtype=np.int64
+        )
         self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MOST)
         telling = again[self._in_succession[again] >= TELLING]
         if len(telling):
-            self._chattering.refuse(t, np.intersect1d(telling, jumping(self._mechanics, t, q, u)))
+            self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
         self.waits = np.where(self._in_succession, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 1, 0), 0)
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Why the integrator could not go on, where a force that jumps is the reason; empty for other reasons."""
-        found = jumping(self._mechanics, t, q, u) if self.any else self.waits
-        return jump_sentence(self._mechanics, int(found[0])) if len(found) else ""
+        found = jumping(self._dynamics, t, q, u) if self.any else self.waits
+        return jump_sentence(self._dynamics, int(found[0])) if len(found) else ""

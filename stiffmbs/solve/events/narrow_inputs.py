@@ -14,7 +14,7 @@ HIDDEN = 0.05
 LOOKS, MOST_LOOKS = 8, 5000
 """Instants between two output points at which an input is looked at, and within all of its narrow features."""
 STANDS = 1e-9
-"""Change of an input, in parts of its values, that may be rounding."""
+"""Change of an input, relative to its values, that may be rounding."""
 
 
 def narrower_than_output(features: InputFeatures, spacing: float) -> str:
@@ -32,7 +32,7 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
     """A sentence on an input that goes beyond what output points show of it; empty for nothing."""
     parts = times[:-1, None] + np.diff(times)[:, None] * np.arange(LOOKS) / LOOKS
     narrow = features.instants(times[0], times[-1], float(np.max(np.diff(times), initial=0.0)), MOST_LOOKS)
-    between = np.concatenate([parts.ravel(), narrow, features.corners])
+    between = np.concatenate([parts.ravel(), narrow, features.breakpoints])
     for given in inputs:
         with np.errstate(all="ignore"):
             shown, values = given.at(times), given.at(between)

@@ -1,4 +1,4 @@
-"""Starting anew in the middle of a run, at a corner or an event."""
+"""Starting anew in the middle of a run, at a breakpoint or an event."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import numpy as np
 
 from ...compile.state import LEFT_OPEN
 from ...errors import SolverError
+from ..dynamics import Dynamics
 from ..failures import FAILURES
 from ..initial import InitialValues
-from ..mechanics import Mechanics
 
 INDISTINCT = 4 * float(np.finfo(float).eps)
-"""Part of a time within which another one is taken for the same, by IDA and for corners, which rounding moves by as much."""
+"""Part of a time within which another one is taken for the same, by IDA and for breakpoints, which rounding moves by as much."""
 
 
 def just_before(t: float) -> float:
@@ -24,7 +24,7 @@ def just_after(t: float) -> float:
     return t + INDISTINCT * abs(t)
 
 
-def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
+def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
     """Consistent values near given ones: projected onto the constraints, with new accelerations and multipliers.
 
     Parameters
@@ -40,14 +40,14 @@ def restarted(mechanics: Mechanics, t: float, q: np.ndarray, u: np.ndarray, proj
     SolverError
         When the constraints cannot be satisfied or are dependent there, or accelerations are not determined.
     """
-    state = mechanics.state
+    state = dynamics.state
     state.q[:], state.u[:] = q, u
-    if project and mechanics.system.n_c:
-        status = mechanics.assemble(t)
-        _go_on(status, t, "" if status >= 0 else _no_longer_redundant(mechanics, t, q))
-        _go_on(mechanics.correct_velocities(t), t)
+    if project and dynamics.system.n_c:
+        status = dynamics.assemble(t)
+        _go_on(status, t, "" if status >= 0 else _no_longer_redundant(dynamics, t, q))
+        _go_on(dynamics.correct_velocities(t), t)
     state.count_anew(t)
-    status, acceleration = mechanics.accelerate(t)
+    status, acceleration = dynamics.accelerate(t)
     _go_on(status, t)
     return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), ())
 
@@ -57,9 +57,9 @@ def _go_on(status: int, t: float, clause: str = "") -> None:
         raise SolverError(f"no consistent values were found to start anew at t = {t:.9g} s: {FAILURES[status]}{clause}")
 
 
-def _no_longer_redundant(mechanics: Mechanics, t: float, q: np.ndarray) -> str:
+def _no_longer_redundant(dynamics: Dynamics, t: float, q: np.ndarray) -> str:
     """A clause on the equation left out as redundant that is furthest from holding; empty where all hold."""
-    system, state = mechanics.system, mechanics.state
+    system, state = dynamics.system, dynamics.state
     state.q[:] = q
     state.evaluate("position", t)
     gaps = np.abs(state.vector("position", "C")) * (~system.active & system.holonomic)

@@ -1,15 +1,15 @@
-"""Jumps of velocities that drives ask for at corners: no equation holds their impulses, so that they are told."""
+"""Jumps of velocities that drives ask for at breakpoints: no equation holds their impulses, so that they are told."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..mechanics import Mechanics
+from ..dynamics import Dynamics
 
 MOST_TOLD = 3
 """Jumps that are told one by one."""
 WORTH_TELLING = 1e-2
-"""Change of a velocity at a corner, in parts of the largest, that no error of an integrator explains."""
+"""Change of a velocity at a breakpoint, relative to the largest, that no error of an integrator explains."""
 
 
 class VelocityJumps:
@@ -17,20 +17,20 @@ class VelocityJumps:
 
     Parameters
     ----------
-    mechanics : Mechanics
+    dynamics : Dynamics
     """
 
-    def __init__(self, mechanics: Mechanics) -> None:
-        self._mechanics = mechanics
+    def __init__(self, dynamics: Dynamics) -> None:
+        self._dynamics = dynamics
         self._told: list[str] = []
 
     def note(self, t: float, change: np.ndarray) -> None:
-        """Note a change of velocities at a corner; the mechanics' state is the one behind it."""
+        """Note a change of velocities at a breakpoint; the mechanics' state is the one behind it."""
         if not change.any():
             return
         k = int(np.argmax(np.abs(change)))
-        if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self._mechanics.state.u)))):
-            system = self._mechanics.system
+        if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self._dynamics.state.u)))):
+            system = self._dynamics.system
             name = system.name_of(k, system.of_body.velocities)
             self._told.append(
                 f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); no force shows that blow"

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
+from ..dynamics import Dynamics
 from ..error_control.tolerances import absolute_tolerances
 from ..events.chattering import Chattering
 from ..events.divergence import refuse_beyond_sense
@@ -17,9 +18,8 @@ from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
-from ..mechanics import Mechanics
 from ..suspect import suspect
-from ..trajectory import Ending, Grid, History, Outcome, Rows, Trajectory, Watch
+from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
@@ -45,9 +45,9 @@ class Leaving:
 
 
 class AdaptiveRun:
-    """One integration with a scheme that estimates its error, from corner to corner and from event to event.
+    """One integration with a scheme that estimates its error, from breakpoint to breakpoint and from event to event.
 
-    Steps are not cut by output times: states there come from the scheme's interpolant.  They are cut by corners in
+    Steps are not cut by output times: states there come from the scheme's interpolant.  They are cut by breakpoints in
     time, and by other features of the inputs, which long steps of a motion at rest would jump over, and where a force
     changes its law (a contact closes).
 
@@ -59,40 +59,40 @@ class AdaptiveRun:
     """
 
     def __init__(
-        self, scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch
+        self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
     ) -> None:  # fmt: skip
-        system = mechanics.system
-        self.work = work = Integration(scheme, mechanics, start, grid, settings)
+        system = dynamics.system
+        self.work = work = Integration(scheme, dynamics, start, grid, settings)
         self.left = False
-        self._scheme, self._mechanics, self._start, self._grid = scheme, mechanics, start, grid
+        self._scheme, self._dynamics, self._start, self._grid = scheme, dynamics, start, grid
         self._settings, self._watch = settings, watch
         self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
-        features = mechanics.input_features(grid.start, grid.end)
-        self._corners, self._note = grid.with_stops(features.corners), features.note
+        features = dynamics.input_features(grid.start, grid.end)
+        self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
         work.step_bound.follow(features)
-        self._tolerances = settings.rtol, absolute_tolerances(mechanics.system, settings)
-        self._jumps = VelocityJumps(mechanics)
-        self._chattering, self._events = Chattering(mechanics, grid.end, settings.rtol), 0
+        self._tolerances = settings.rtol, absolute_tolerances(dynamics.system, settings)
+        self._jumps = VelocityJumps(dynamics)
+        self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg
 
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:
         """Integrate to the end, or to where the run is left; the contract is in `stiffmbs.solve.trajectory`."""
         work, status = self.work, AT_END
         with Ending() as ending:
-            for corner in (*self._corners.tolist(), self._grid.end):
-                stop, status = just_before(corner) if corner < self._grid.end else corner, AT_EVENT
+            for breakpoint in (*self._breakpoints.tolist(), self._grid.end):
+                stop, status = just_before(breakpoint) if breakpoint < self._grid.end else breakpoint, AT_EVENT
                 while status == AT_EVENT and not self.left:
-                    status = self._leg(stop, leaving)
-                if status < 0 or self.left or corner == self._grid.end:
+                    status = self._segment(stop, leaving)
+                if status < 0 or self.left or breakpoint == self._grid.end:
                     break
-                self._go_past(corner)
+                self._go_past(breakpoint)
         if ending.outcome is Outcome.STOPPED:
             self._store_rows()
         if status < 0:
             self.left = True
-            likely = suspect(self._mechanics, work.t, work.q.copy(), work.u.copy())
+            likely = suspect(self._dynamics, work.t, work.q.copy(), work.u.copy())
             ending.stop(f"stopped at t = {work.t:.9g} s: {REASONS[status]}{likely}")
         elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
             ending.message = f"{ending.message}; {stiff_sentence(work)}"
@@ -101,11 +101,11 @@ class AdaptiveRun:
         note = "; ".join(filter(None, (self._note, self._jumps.sentence())))
         return Trajectory(*self._rows.stored, ending.outcome, ending.message, statistics, history, note)
 
-    def _leg(self, stop: float, leaving: Leaving | None) -> int:
+    def _segment(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
         work, advance, status = self.work, ADVANCE.load(), PAUSED
         most = min(leaving.first, work.room) if leaving else work.room
-        work.h = first_step(self._scheme, self._mechanics, self._start, work.t, self._grid.end, self._tolerances)
+        work.h = first_step(self._scheme, self._dynamics, self._start, work.t, self._grid.end, self._tolerances)
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
@@ -115,7 +115,7 @@ class AdaptiveRun:
             work.collect(self._rows)
             self._watch(work.t)
             if work.t < self._grid.end:
-                refuse_beyond_sense(self._mechanics, self._rows, work.t, work.q, work.u, work.count("steps"))
+                refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
@@ -124,25 +124,25 @@ class AdaptiveRun:
                 self._store_rows()
                 return status
         if status == AT_EVENT and work.t < self._grid.end:
-            switch = self._start_anew()
+            event_function = self._start_anew()
             self._events += 1
-            self._chattering.note_event(work.t, self._start.q, self._start.u, switch)
+            self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
         return status
 
-    def _go_past(self, corner: float) -> None:
-        """Start anew behind a corner, where min(2*t, 1) has its new slope; what is asked for at it is the state before."""
-        self.work.t = corner
+    def _go_past(self, breakpoint: float) -> None:
+        """Start anew behind a breakpoint, where min(2*t, 1) has its new slope; what is asked for at it is the state before."""
+        self.work.t = breakpoint
         self._store_rows()
-        self.work.t = min(just_after(corner), self._grid.end)
+        self.work.t = min(just_after(breakpoint), self._grid.end)
         before = self.work.u.copy()
         self._start_anew()
-        self._jumps.note(corner, self._start.u - before)
+        self._jumps.note(breakpoint, self._start.u - before)
 
     def _start_anew(self) -> int:
-        """Go on from consistent values at the time reached; the first switch of the event met there, or -1."""
+        """Go on from consistent values at the time reached; the first event_function of the event met there, or -1."""
         work = self.work
-        self._start = restarted(self._mechanics, work.t, work.q, work.u, self._settings.projection)
-        refuse_beyond_limits(self._mechanics, work.t, self._start.q, self._start.u)
+        self._start = restarted(self._dynamics, work.t, work.q, work.u, self._settings.projection)
+        refuse_beyond_limits(self._dynamics, work.t, self._start.q, self._start.u)
         return work.begin(self._start)
 
     def _store_rows(self) -> None:
@@ -157,14 +157,14 @@ class AdaptiveRun:
         return {
             "scheme": self._scheme.name,
             **counted,
-            "corners": int(np.sum(self._corners < self.work.t)),
+            "breakpoints": int(np.sum(self._breakpoints < self.work.t)),
             "events": self._events,
         }
 
 
 def first_step(
     scheme: Scheme,
-    mechanics: Mechanics,
+    dynamics: Dynamics,
     start: InitialValues,
     t: float,
     end: float,
@@ -176,7 +176,7 @@ def first_step(
     """
     rtol, atol = tolerances
     y = np.concatenate([start.q, start.u])
-    rate = np.concatenate([mechanics.position_rates(start.q, start.u), start.acceleration])
+    rate = np.concatenate([dynamics.position_rates(start.q, start.u), start.acceleration])
     weights = 1.0 / (atol + rtol * np.abs(y))
     count = max(len(y), 1)
 
@@ -186,10 +186,10 @@ def first_step(
 
     of_state, of_rate = size(y), size(rate)
     h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 and math.isfinite(of_rate) else 1e-6
-    q, u = mechanics.system.of_body.moved(start.q, h * start.u), start.u + h * start.acceleration
-    mechanics.state.q[:], mechanics.state.u[:] = q, u
-    status, acceleration = mechanics.accelerate(t + h)
-    change = size(np.concatenate([mechanics.position_rates(q, u), acceleration]) - rate) / h
+    q, u = dynamics.system.of_body.moved(start.q, h * start.u), start.u + h * start.acceleration
+    dynamics.state.q[:], dynamics.state.u[:] = q, u
+    status, acceleration = dynamics.accelerate(t + h)
+    change = size(np.concatenate([dynamics.position_rates(q, u), acceleration]) - rate) / h
     largest = max(of_rate, change)
     if status < 0 or not math.isfinite(largest):
         return h

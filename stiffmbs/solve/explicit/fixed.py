@@ -12,13 +12,13 @@ import numpy as np
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ...errors import SolverError
+from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..events.chattering import jump_sentence
 from ..events.discontinuity import FAR, sliding
 from ..events.limits import refuse_beyond_limits
 from ..events.narrow_inputs import narrower_than_steps
 from ..initial import InitialValues
-from ..mechanics import POSITION_TOLERANCE, Mechanics
-from ..trajectory import Ending, Grid, Rows, Trajectory, Watch
+from ..trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS
@@ -57,9 +57,9 @@ class Stepper:
     accelerations: int
 
 
-def euler_cromer(mechanics: Mechanics, start: InitialValues, settings: RunSettings) -> Stepper:
+def euler_cromer(dynamics: Dynamics, start: InitialValues, settings: RunSettings) -> Stepper:
     """Semi-implicit Euler: u_{n+1} = u_n + h u'(q_n, u_n), q_{n+1} = q_n + h u_{n+1}, then both projections."""
-    state, table, steps_of = mechanics.state, mechanics.table.ctypes.data, EULER_CROMER.load()
+    state, table, steps_of = dynamics.state, dynamics.table.ctypes.data, EULER_CROMER.load()
     state.q[:], state.u[:] = start.q, start.u
 
     def take(t: float, h: float, steps: int) -> int:
@@ -68,11 +68,9 @@ def euler_cromer(mechanics: Mechanics, start: InitialValues, settings: RunSettin
     return Stepper("euler_cromer", state.q, state.u, take, 1)
 
 
-def runge_kutta(
-    scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
-) -> Stepper:
+def runge_kutta(scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> Stepper:
     """A Runge-Kutta scheme, then both projections."""
-    work, steps_of = Integration(scheme, mechanics, start, grid, settings), FIXED_STEPS.load()
+    work, steps_of = Integration(scheme, dynamics, start, grid, settings), FIXED_STEPS.load()
 
     def take(t: float, h: float, steps: int) -> int:
         return steps_of(t, h, steps, work.at)
@@ -81,7 +79,7 @@ def runge_kutta(
 
 
 def solve_with_fixed_steps(
-    mechanics: Mechanics, stepper: Stepper, grid: Grid, settings: RunSettings, watch: Watch
+    dynamics: Dynamics, stepper: Stepper, grid: Grid, settings: RunSettings, watch: ProgressCallback
 ) -> Trajectory:
     """Integrate with steps of one length; the contract is in `stiffmbs.solve.trajectory`.
 
@@ -101,29 +99,29 @@ def solve_with_fixed_steps(
             if status < 0:
                 raise SolverError(f"stopped after t = {t:.9g} s: {REASONS[status]}")
             steps += count
-            refuse_beyond_limits(mechanics, end, stepper.q, stepper.u)
+            refuse_beyond_limits(dynamics, end, stepper.q, stepper.u)
             rows.append(end, stepper.q, stepper.u)
             if not note and row % apart == 0:
-                note = _jumps(mechanics, stepper, end, settings.step)
+                note = _jumps(dynamics, stepper, end, settings.step)
             watch(end)
     statistics: dict[str, int | float | str] = {
         "scheme": stepper.scheme, "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": ending.seconds,
     }  # fmt: skip
-    narrow = narrower_than_steps(mechanics.input_features(grid.start, grid.end), settings.step, stepper.scheme)
+    narrow = narrower_than_steps(dynamics.input_features(grid.start, grid.end), settings.step, stepper.scheme)
     note = "; ".join(filter(None, (note, narrow, _cut(longest, settings))))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
-def _jumps(mechanics: Mechanics, stepper: Stepper, t: float, step: float) -> str:
+def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
     """That steps cross the jump of a force back and forth about a state; empty where they do not."""
-    if not mechanics.system.n_switches:
+    if not dynamics.system.n_event_functions:
         return ""
     q, u = stepper.q.copy(), stepper.u.copy()
-    mechanics.state.q[:], mechanics.state.u[:] = q, u
-    change = 2.0 * step * float(np.max(np.abs(mechanics.accelerate(t)[1]), initial=0.0))
-    found = sliding(mechanics, t, q, u, min(max(change, FAR), FARTHEST))
+    dynamics.state.q[:], dynamics.state.u[:] = q, u
+    change = 2.0 * step * float(np.max(np.abs(dynamics.accelerate(t)[1]), initial=0.0))
+    found = sliding(dynamics, t, q, u, min(max(change, FAR), FARTHEST))
     stepper.q[:], stepper.u[:] = q, u
-    return f"at t = {t:.6g} s and before, {jump_sentence(mechanics, int(found[0]))}" if len(found) else ""
+    return f"at t = {t:.6g} s and before, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
 
 
 def _cut(longest: float, settings: RunSettings) -> str:

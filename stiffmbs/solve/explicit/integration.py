@@ -8,11 +8,11 @@ import numpy as np
 
 from ...compile.machine.layout import EXPLICIT, packed
 from ...describe.settings import RunSettings
+from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
-from ..events.event_functions import EventWatch
+from ..events.event_functions import EventSearch
 from ..events.step_bound import StepBound
 from ..initial import InitialValues
-from ..mechanics import POSITION_TOLERANCE, Mechanics
 from ..trajectory import Grid, Rows
 from .scheme import Scheme
 
@@ -37,25 +37,25 @@ class Integration:
     """
 
     def __init__(
-        self, scheme: Scheme, mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings
+        self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
     ) -> None:
         self._n_q = len(start.q)
         n = self._n_q + len(start.u)
         self.room = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been taken over
-        self._mechanics = mechanics
-        self._scheme, self._eliminated = scheme, mechanics.eliminated
+        self._dynamics = dynamics
+        self._scheme, self._eliminated = scheme, dynamics.eliminated
         self._end = scheme.stages
         self.step_bound = StepBound()
-        atol = absolute_tolerances(mechanics.system, settings)
+        atol = absolute_tolerances(dynamics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
-        n_switches = mechanics.system.n_switches
-        self._watch = EventWatch(mechanics.state)
+        n_event_functions = dynamics.system.n_event_functions
+        self._watch = EventSearch(dynamics.state)
         marks = ("at_event", "uncertain", "dense_ready")
         counters = ("steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
         self._arrays: dict[str, Any] = {
-            "mechanics": mechanics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
+            "dynamics": dynamics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
             "pivots_tell": self._eliminated.pivots_tell,
             "scheme": scheme.table, "n": n, "n_q": self._n_q,
             "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
@@ -63,7 +63,7 @@ class Integration:
             "longest": np.array([settings.max_step or np.inf]), "step_bound": self.step_bound.table,
             "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
             "t": np.array([grid.start]), "t_before": np.array([grid.start]), "span": np.zeros(1),
-            "n_switches": n_switches, "n_events": mechanics.system.n_values("switch"), "sides": np.zeros(n_switches),
+            "n_event_functions": n_event_functions, "n_events": dynamics.system.n_values("event_function"), "sides": np.zeros(n_event_functions),
             "watch": self._watch.table,
             "h": np.array([settings.step]), "last_error": np.array([SMALLEST_ERROR]),
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
@@ -110,16 +110,16 @@ class Integration:
         return self._arrays["y"][self._n_q :]
 
     def begin(self, start: InitialValues) -> int:
-        """Go on from consistent values at the time reached; the first switch of the event that was met there, or -1."""
+        """Go on from consistent values at the time reached; the first event_function of the event that was met there, or -1."""
         self.q[:], self.u[:] = start.q, start.u
-        rates = self._mechanics.position_rates(start.q, start.u)
+        rates = self._dynamics.position_rates(start.q, start.u)
         self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
         self._arrays["last_error"][0] = SMALLEST_ERROR
         self._arrays["at_event"][0] = 0
-        state, sides = self._mechanics.state, self._arrays["sides"]
+        state, sides = self._dynamics.state, self._arrays["sides"]
         state.q[:], state.u[:] = start.q, start.u
-        state.evaluate("switch", self.t)
-        sides[:] = state.values["switch"][: len(sides)]
+        state.evaluate("event_function", self.t)
+        sides[:] = state.values["event_function"][: len(sides)]
         met = np.flatnonzero(self._watch.found[: len(sides)])
         self._watch.begin()
         return int(met[0]) if len(met) else -1

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ...describe.settings import RunSettings
+from ..dynamics import Dynamics
 from ..initial import InitialValues
-from ..mechanics import Mechanics
 from ..solver import Traits
-from ..trajectory import Grid, Trajectory, Watch
+from ..trajectory import Grid, ProgressCallback, Trajectory
 from . import SCHEMES
 from .adaptive import AdaptiveRun
 from .fixed import euler_cromer, runge_kutta, solve_with_fixed_steps
@@ -36,20 +36,20 @@ def traits(settings: RunSettings) -> Traits:
     return TRAITS[settings.scheme or (EULER_CROMER if "step" in settings.model_fields_set else "dop853")]
 
 
-def solve(mechanics: Mechanics, start: InitialValues, grid: Grid, settings: RunSettings, watch: Watch) -> Trajectory:
+def solve(
+    dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
+) -> Trajectory:
     """Integrate q' = u, u' = u'(q, u, t) explicitly; the contract is in `stiffmbs.solve.trajectory`.
 
     After each step positions return by Newton's smallest moves to |C| < 1e-12 and velocities by the smallest
     correction in the mass matrix (Hairer, Wanner, Solving Ordinary Differential Equations II, 1996, ch. VII.2,
     "projection methods").
     """
-    mechanics.forget_pivots()
+    dynamics.forget_pivots()
     chosen = traits(settings).name
     if chosen == EULER_CROMER:
-        return solve_with_fixed_steps(mechanics, euler_cromer(mechanics, start, settings), grid, settings, watch)
+        return solve_with_fixed_steps(dynamics, euler_cromer(dynamics, start, settings), grid, settings, watch)
     scheme = SCHEMES[chosen]
     if scheme.adaptive:
-        return AdaptiveRun(scheme, mechanics, start, grid, settings, watch).integrate()
-    return solve_with_fixed_steps(
-        mechanics, runge_kutta(scheme, mechanics, start, grid, settings), grid, settings, watch
-    )
+        return AdaptiveRun(scheme, dynamics, start, grid, settings, watch).integrate()
+    return solve_with_fixed_steps(dynamics, runge_kutta(scheme, dynamics, start, grid, settings), grid, settings, watch)

@@ -10,7 +10,7 @@ from ...compile.equations import Equations
 from ...compile.machine.layout import NATIVE_IDA, packed
 from ...compile.machine.routines import Routine
 from ...compile.state import State
-from ..events.event_functions import EventWatch
+from ..events.event_functions import EventSearch
 from ..events.step_bound import StepBound
 from .error_norm import ErrorNorm
 from .iteration import Iteration
@@ -25,7 +25,7 @@ RESIDUAL = Routine(MODULE, "residual", "int32(float64, int64, int64, int64, int6
 JACOBIAN = Routine(
     MODULE, "jacobian", "int32(float64, float64, int64, int64, int64, int64, int64*, int64, int64, int64)"
 )
-SWITCHES = Routine(MODULE, "switches", "int32(float64, int64, int64, float64*, int64*)")
+SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
 
 RETURNED, INTERNAL, SIZE, NEXT_SIZE = range(4)
 SERVED, RECORDED, ORDER, TINY, SINCE, NEXT, WITHIN = range(7)
@@ -57,10 +57,10 @@ class Connection:
     iteration : Iteration
     error_norm : ErrorNorm
     step_bound : StepBound
-    n_switches : int
+    n_event_functions : int
     sides, waits : ndarrays, shape (n_switches,)
         As in `stiffmbs.solve.native.event_signs`.
-    watch : EventWatch
+    watch : EventSearch
     history : StepLog
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
         Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
@@ -82,10 +82,10 @@ class Connection:
         self.balance, self.iteration, self.step_bound = Balance(n), Iteration(n), StepBound()
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
-        self.n_switches = equations.system.n_switches
-        self.sides, self.waits = np.zeros(self.n_switches), np.zeros(self.n_switches, dtype=np.int64)
-        self.watch = EventWatch(state, self.waits)
-        for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "switch"):
+        self.n_event_functions = equations.system.n_event_functions
+        self.sides, self.waits = np.zeros(self.n_event_functions), np.zeros(self.n_event_functions, dtype=np.int64)
+        self.watch = EventSearch(state, self.waits)
+        for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "event_function"):
             state.load(term_set)
         self._table = self._packed()
         self.table = self._table.ctypes.data
@@ -104,7 +104,7 @@ class Connection:
                 "state": self._state_table, "equations": self._equations_table,
                 "array_of": address("N_VGetArrayPointer"),
                 "matrix": self._assembled.values, "pattern": self._assembled.pattern,
-                "n_switches": self.n_switches, "sides": self.sides, "waits": self.waits,
+                "n_event_functions": self.n_event_functions, "sides": self.sides, "waits": self.waits,
                 "memory": self.memory, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
                 "n_reported": len(self.reported), "reported": self.reported,
@@ -124,8 +124,8 @@ class Connection:
         self.ask("IDASetLinearSolver", self._assembled.solver, self._assembled.matrix)
         self.ask("IDASetJacFn", JACOBIAN.address())
         self.ask("IDASetMaxNumSteps", -1)  # a call of IDASolve is of one step
-        if self.n_switches:
-            self.ask("IDARootInit", self.n_switches, SWITCHES.address())
+        if self.n_event_functions:
+            self.ask("IDARootInit", self.n_event_functions, SWITCHES.address())
             self.ask("IDASetNoInactiveRootWarn")
 
     def ask(self, function: str, *arguments: Any) -> None:

@@ -26,7 +26,7 @@ class Reached:
     y : ndarray, shape (n,)
         Where it is now, with all unknowns.
     fired : tuple of int
-        The switches that stopped it by changing their sign; empty where none did.
+        The event functions that stopped it by changing their sign; empty where none did.
     failure : str
         Why it cannot go on; empty where it can.
     """
@@ -49,7 +49,7 @@ class Engine(Protocol):
         """Take no step that might miss what the inputs do, from the next start on."""
 
     def leave_out(self, waits: np.ndarray) -> None:
-        """Do not look at each switch for so many steps from the next start on."""
+        """Do not look at each event function for so many steps from the next start on."""
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
         """Start, or start anew, at consistent values.

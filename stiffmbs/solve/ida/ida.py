@@ -58,7 +58,7 @@ class NativeIda:
         Relative change of cj from which the iteration matrix is made anew (IDASetDeltaCjLSetup); 0.25 by default.
     growth : float, optional
         Factor by which a step must be allowed to grow before it is changed (IDASetEtaFixedStepBounds); 2 by default.
-    doubtful : bool
+    predicted_residual : bool
         Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix
         (`stiffmbs.solve.native.iteration`); IDA's own test trusts it until cj changes.
     reported : ndarray of int, optional
@@ -68,7 +68,7 @@ class NativeIda:
     ----------
     y, yp : ndarrays, shape (n,)
         The solution at `t`, overwritten by every call.
-    n_switches : int
+    n_event_functions : int
         Switches of the system; `advance` returns where one of them changes its sign.
     matrix : Matrix
 
@@ -98,7 +98,7 @@ class NativeIda:
         newton: float | None = None,
         renewal: float | None = None,
         growth: float | None = None,
-        doubtful: bool = False,
+        predicted_residual: bool = False,
         reported: np.ndarray | None = None,
     ) -> None:
         n = equations.n
@@ -108,7 +108,7 @@ class NativeIda:
         self._ida = ida = Connection(
             equations, state, self.matrix, np.arange(n) if reported is None else reported, session
         )
-        self.y, self.yp, self.n_switches = ida.y, ida.yp, ida.n_switches
+        self.y, self.yp, self.n_event_functions = ida.y, ida.yp, ida.n_event_functions
         self._statistics = Statistics(session.libraries, ida.memory)
         self._flag, self._begun = 0, False
         self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
@@ -125,7 +125,7 @@ class NativeIda:
             ida.ask("IDASetDeltaCjLSetup", renewal)
         if growth is not None:
             ida.ask("IDASetEtaFixedStepBounds", 1.0, growth)
-        if doubtful:
+        if predicted_residual:
             ida.doubt_rates()
 
     @property
@@ -154,7 +154,7 @@ class NativeIda:
         self._look = max(steps, 1)
 
     def leave_out(self, waits: np.ndarray) -> None:
-        """Do not look at each switch for so many steps from the next beginning on."""
+        """Do not look at each event function for so many steps from the next beginning on."""
         self._ida.waits[:] = waits
 
     def see_inputs(self, features: InputFeatures) -> None:
@@ -273,13 +273,13 @@ class NativeIda:
         return failure_sentence(self._flag)
 
     def roots(self) -> np.ndarray:
-        """After `Status.ROOT`: for each switch other than 0 where it went through zero.
+        """After `Status.ROOT`: for each event function other than 0 where it went through zero.
 
         None is where the step has passed a zone of a law (`stiffmbs.solve.native.within_step`).
         """
         if self._ida.count[WITHIN]:
-            return self._ida.watch.found[: self.n_switches].astype(np.intc)
-        found = np.zeros(self.n_switches, dtype=np.intc)
+            return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
+        found = np.zeros(self.n_event_functions, dtype=np.intc)
         self._ida.ask("IDAGetRootInfo", found.ctypes.data)
         return found * self._ida.sides.astype(np.intc)
 

@@ -12,7 +12,7 @@ from ...compile.state import State
 from ...describe.settings import RunSettings
 from ..error_control.error_test import ErrorControl
 from ..error_control.newton import NUMBERS_END, Stiffness
-from ..error_control.stability_limit import OrderWatch
+from ..error_control.stability_limit import StabilityLimitDetection
 from ..storage import blocks, release, room
 from ..trajectory import History
 from .engine import Reached
@@ -50,12 +50,12 @@ class NativeEngine:
         self._ida = NativeIda(
             equations, state, matrix, *control.tolerances(equations, settings), max_step=settings.max_step,
             suppressed=control.untested(equations), reported=reported, growth=control.growth,
-            doubtful=control.doubtful,
+            predicted_residual=control.predicted_residual,
             renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,
         )  # fmt: skip
         self._width, self._equations, self._matrix = len(reported), equations, matrix
         self._rtol = settings.rtol
-        self._order = OrderWatch(equations, settings)
+        self._order = StabilityLimitDetection(equations, settings)
         self.forget()
 
     def forget(self) -> None:
@@ -70,14 +70,14 @@ class NativeEngine:
         self._ida.see_inputs(features)
 
     def leave_out(self, waits: np.ndarray) -> None:
-        """Do not look at each switch for so many steps."""
+        """Do not look at each event function for so many steps."""
         self._ida.leave_out(waits)
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
         """Start, or start anew, at consistent values."""
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
-        self._ida.balance_within(stiffness.long_step, max(stiffness.bearable, NUMBERS_END / self._rtol))
+        self._ida.balance_within(stiffness.long_step, max(stiffness.allowed_residual, NUMBERS_END / self._rtol))
         self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)

@@ -10,16 +10,14 @@ class Status(Enum):
 
     GOING = "more work is left; call again"
     STOP = "the stop time is reached"
-    ROOT = "a switch changed its sign"
+    ROOT = "an event function changed its sign"
     FAILED = "IDA cannot go on"
 
 
 _UNDEFINED = (
     "a formula leaves its domain or a force grows without bound there: see sqrt, log and divisions in the scene"
 )
-_JUMP = (
-    "an equation jumps or bends where no corner is declared, or the tolerance is finer than the equations' own digits"
-)
+_JUMP = "an equation jumps or bends where no breakpoint is declared, or the tolerance is finer than the equations' own digits"
 _INSIDE = "this is a fault of the program or of its libraries: please report it with the scene"
 
 FAILURES = {
@@ -34,7 +32,7 @@ FAILURES = {
     -7: f"the linear solver failed: {_INSIDE}",
     -8: f"the residual failed: {_INSIDE}",
     -9: f"the residual has no finite value however small the step: {_UNDEFINED}",
-    -10: f"the switches could not be evaluated: {_UNDEFINED}, or the gap of a contact has no value",
+    -10: f"the event functions could not be evaluated: {_UNDEFINED}, or the gap of a contact has no value",
     -11: f"a bound on an unknown could not be kept: {_INSIDE}",
     -12: f"the residual has no finite value at the start: {_UNDEFINED}",
     -13: f"the line search for initial values failed: {_INSIDE}",

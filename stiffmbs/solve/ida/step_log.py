@@ -34,7 +34,7 @@ class StepLog:
         self.count = self._kept = 0
 
     def begin(self, t: float) -> None:
-        """The integrator starts at `t`: a step that went beyond it, to where a switch was met, ends there."""
+        """The integrator starts at `t`: a step that went beyond it, to where an event function was met, ends there."""
         if self._chunks and len(self._chunks[-1]):
             last = self._chunks[-1][-1]
             if last[0] > t:

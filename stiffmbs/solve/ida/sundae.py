@@ -21,7 +21,7 @@ from .engine import Reached
 _MODULE = "stiffmbs.solve.native.ida_callbacks"
 RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
 JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
-SWITCHES = Routine(_MODULE, "switches", "void(float64, int64, int64, int64, int64*)")
+SWITCHES = Routine(_MODULE, "event_functions", "void(float64, int64, int64, int64, int64*)")
 
 HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
 """Numbers before the first time in the history (as in `stiffmbs.solve.native.ida_callbacks`), and times kept."""
@@ -50,28 +50,32 @@ class Callbacks:
     Attributes
     ----------
     waits : ndarray of int
-        For how many steps each switch is still left out (`stiffmbs.solve.native.event_signs`).
+        For how many steps each event function is still left out (`stiffmbs.solve.native.event_signs`).
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
         state.load(equations.formulation.residual_set)
         state.load(equations.formulation.matrix_set)
-        state.load("switch")
+        state.load("event_function")
         rows, columns = equations.pattern
         slots = rows * equations.n + columns if dense else None
         self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
         self._history[3] = HISTORY_ROOM
-        n_switches = state.system.n_switches
-        self._sides, self.waits = np.zeros(n_switches), np.zeros(n_switches, dtype=np.int64)
+        n_event_functions = state.system.n_event_functions
+        self._sides, self.waits = np.zeros(n_event_functions), np.zeros(n_event_functions, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
             "state": state.table, "equations": self._equations_table, "history": self._history,
-            "array_header": object.__basicsize__, "n_switches": n_switches, "sides": self._sides, "waits": self.waits,
+            "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "sides": self._sides, "waits": self.waits,
         }  # fmt: skip
         table = packed(IDA, fields)
         self._kept = (state, equations, slot_of_entry, table)
         at = table.ctypes.data
-        self.residual, self.jacobian, self.switches = self._residual(at), self._jacobian(at), self._switches(at)
+        self.residual, self.jacobian, self.event_functions = (
+            self._residual(at),
+            self._jacobian(at),
+            self._event_functions(at),
+        )
 
     @staticmethod
     def _residual(table: int) -> Any:
@@ -92,16 +96,16 @@ class Callbacks:
         return jacobian
 
     @staticmethod
-    def _switches(table: int) -> Any:
+    def _event_functions(table: int) -> Any:
         call = SWITCHES.load()
 
-        def switches(t: float, y: np.ndarray, yp: np.ndarray, values: np.ndarray) -> None:
+        def event_functions(t: float, y: np.ndarray, yp: np.ndarray, values: np.ndarray) -> None:
             call(t, id(y), id(yp), id(values), table)
 
-        return switches
+        return event_functions
 
     def begin(self, t: float) -> None:
-        """Go on with the history from an instant at which IDA starts anew, and look at the switches' sides again."""
+        """Go on with the history from an instant at which IDA starts anew, and look at the event functions' sides again."""
         self._history[0] = t
         self._sides[:] = 0.0
 
@@ -149,9 +153,9 @@ class SundaeEngine:
         self._linear_solver = f"{'dense' if dense else 'SuperLU_MT'}, {equations.n} unknowns"
         self.callbacks = Callbacks(equations, state, dense)
         options: dict[str, Any] = {"linsolver": "dense"} if dense else self._sparse()
-        n_switches = state.system.n_switches
-        if n_switches:
-            options |= {"eventsfn": self.callbacks.switches, "num_events": n_switches}
+        n_event_functions = state.system.n_event_functions
+        if n_event_functions:
+            options |= {"eventsfn": self.callbacks.event_functions, "num_events": n_event_functions}
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
             self._ida = SundialsIda(
@@ -178,7 +182,7 @@ class SundaeEngine:
         self._features = features
 
     def leave_out(self, waits: np.ndarray) -> None:
-        """Do not look at each switch for so many steps."""
+        """Do not look at each event function for so many steps."""
         self.callbacks.waits[:] = waits
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:

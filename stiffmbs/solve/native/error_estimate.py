@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from stiffmbs.compile.machine.native.access import compiled, mechanics_view, shifted, state_view
+from stiffmbs.compile.machine.native.access import compiled, dynamics_view, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.stages import add_stages, load_state
-from stiffmbs.solve.native.within_step import noted, watch_view, zone
+from stiffmbs.solve.native.within_step import event_search_view, noted, zone
 
 DOUBTED = 1e3
 """The error that a step counts for which cannot be trusted."""
@@ -46,8 +46,8 @@ def error_of(x, c, h):
 @compiled
 def _sees_other_laws(x, h):
     """Whether some event function of a force is in another zone at the last stage, still in `y_stage`, than at the step's end."""
-    s = state_view(mechanics_view(x.mechanics).state)
-    w = watch_view(x.watch)
+    s = state_view(dynamics_view(x.dynamics).state)
+    w = event_search_view(x.watch)
     if w.n == 0:
         return False
     t = x.t_before[0] + h

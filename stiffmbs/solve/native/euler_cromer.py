@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import isfinite
 
-from stiffmbs.compile.machine.native.access import compiled, factors_view, mechanics_view, state_view
+from stiffmbs.compile.machine.native.access import compiled, dynamics_view, factors_view, state_view
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
-from stiffmbs.solve.native.mechanics import (
+from stiffmbs.solve.native.dynamics import (
     MOST_MOVES,
     to_accelerations,
     to_position_constraints,
@@ -37,9 +37,9 @@ def _step(s, m, t, h, project, tolerance):
     return status if status < 0 else to_velocity_constraints(s, m, t + h)
 
 
-def euler_cromer(t, h, steps, project, tolerance, mechanics):
+def euler_cromer(t, h, steps, project, tolerance, dynamics):
     """So many steps from the current state; 0 or a negative status."""
-    m = mechanics_view(mechanics)
+    m = dynamics_view(dynamics)
     s = state_view(m.state)
     for step in range(steps):
         status = _step(s, m, t + step * h, h, project, tolerance)

@@ -1,4 +1,4 @@
-"""The switches as IDA's search for roots is to see them: each positive where it is first looked at, so that none that is
+"""The event functions as IDA's search for roots is to see them: each positive where it is first looked at, so that none that is
 zero at a start, or noise about zero, counts as a change."""
 
 from __future__ import annotations
@@ -8,9 +8,9 @@ from stiffmbs.compile.machine.native.access import compiled
 
 @compiled
 def watched(values, sides, waits, g, count):
-    """Fill g; a switch is left out for as many calls (IDA's steps) as it waits, and while it is exactly zero after that.
+    """Fill g; an event function is left out for as many calls (IDA's steps) as it waits, and while it is exactly zero after that.
 
-    `sides` is +1 or -1 for the sign that a switch had when it was first looked at, and 0 before.
+    `sides` is +1 or -1 for the sign that an event function had when it was first looked at, and 0 before.
     """
     for k in range(count):
         if waits[k] > 0:

@@ -11,16 +11,16 @@ from stiffmbs.solve.native.stages import copied, load_state, weighted
 from stiffmbs.solve.native.within_step import (
     DIFFERENCE,
     LOOKED_AT,
+    event_search_view,
     first_event,
     keep_row,
     noted,
     noted_rates,
     suspicious,
-    watch_view,
 )
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
-"""How far behind the change the step ends, so that the new law holds there: in parts of the step, and of the time."""
+"""How far behind the change the step ends, so that the new law holds there: relative to the step, and of the time."""
 MOST_RETAKEN, BISECTIONS = 8, 40
 BEFORE_END, ALL = 1.0, 2.0
 """Which stages must not have seen another law: those at the end of a step that has been cut to a change may be just behind it."""
@@ -36,15 +36,15 @@ def _values(x, s, y, t):
 
 @compiled
 def _has_changed(x, values, k):
-    """Whether a switch has left the side on which it was at the step's start; from zero it may go either way."""
+    """Whether an event function has left the side on which it was at the step's start; from zero it may go either way."""
     return x.sides[k] * values[k] < 0.0 or (values[k] == 0.0 and x.sides[k] != 0.0)
 
 
 @compiled
 def _changed(x, values):
-    """Whether any switch has."""
+    """Whether any event function has."""
     changed = False
-    for k in range(x.n_switches):
+    for k in range(x.n_event_functions):
         if _has_changed(x, values, k):
             changed = True
     return changed
@@ -52,16 +52,16 @@ def _changed(x, values):
 
 @compiled
 def _note_changed(x, values):
-    """Keep which switches have."""
-    found = watch_view(x.watch).found
-    for k in range(x.n_switches):
+    """Keep which event functions have."""
+    found = event_search_view(x.watch).found
+    for k in range(x.n_event_functions):
         found[k] = 1 if _has_changed(x, values, k) else 0
 
 
 @compiled
 def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
     """Values and rates of all event functions at a state; rates are taken over a time `ahead`, which may be negative."""
-    w = watch_view(x.watch)
+    w = event_search_view(x.watch)
     noted(value, _values(x, s, y, t), w.n)
     for i in range(x.n):
         x.difference[i] = y[i] + ahead * rates[i]
@@ -71,7 +71,7 @@ def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
 @compiled
 def _look_between(x, c, s):
     """Values of all event functions at `LOOKED_AT`, on the cubic through states and rates at both ends."""
-    w = watch_view(x.watch)
+    w = event_search_view(x.watch)
     h, theta = x.span[0], LOOKED_AT
     rest = 1.0 - theta
     begins, ends = x.k, shifted(x.k, c.stages * x.n)
@@ -100,7 +100,7 @@ def _stages_have_changed(x, c, s, until):
 def _event_within(x, c, s, m, until):
     """The time from the step's start to an event that begins and ends within it; 0 for none, a negative status, or the whole
     length where stages before the part `until` of the step show that there is one but not where."""
-    w = watch_view(x.watch)
+    w = event_search_view(x.watch)
     h = x.span[0]
     if not h > ROUNDINGS * abs(x.t[0]):
         return 0.0
@@ -161,7 +161,7 @@ def _go_past(x, c, s, ahead):
 
 @compiled
 def _taken_to_change(x, c, s, m, high, behind):
-    """Take the step again until it ends just before the first change of a switch; 0, a negative status, or `RETRIED`.
+    """Take the step again until it ends just before the first change of an event function; 0, a negative status, or `RETRIED`.
 
     The first guess comes from the interpolant of a step whose stages have seen both laws, the next ones from those of
     steps that end where the guess says.
@@ -204,7 +204,7 @@ def _taken_to_event(x, c, s, m, h, behind):
 
 @compiled
 def end_at_event(x, c, s, m):
-    """Where a switch has changed within the last step, or has changed twice, take the step again up to the first change.
+    """Where an event function has changed within the last step, or has changed twice, take the step again up to the first change.
 
     0, a negative status, or `RETRIED` where the step's shortened form cannot be trusted and is left.
     """
@@ -212,7 +212,7 @@ def end_at_event(x, c, s, m):
     behind = max(BEHIND * h, ROUNDINGS * abs(x.t[0]))
     status = _taken_to_event(x, c, s, m, h, behind)
     if status == NO_EVENT:
-        copied(x.sides, _values(x, s, x.y, x.t[0]), x.n_switches)
+        copied(x.sides, _values(x, s, x.y, x.t[0]), x.n_event_functions)
         return 0
     if status < 0:
         return status

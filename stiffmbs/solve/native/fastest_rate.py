@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import sin, sqrt
 
-from stiffmbs.compile.machine.native.access import compiled, mechanics_view, shifted, state_view
+from stiffmbs.compile.machine.native.access import compiled, dynamics_view, shifted, state_view
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.solve.native.mechanics import largest_of
+from stiffmbs.solve.native.dynamics import largest_of
 from stiffmbs.solve.native.stages import accelerated, copied
 
 ITERATIONS = 5
@@ -59,9 +59,9 @@ def _growth(t, of_pose, mass, eliminates, work, eliminated, s, m):
     return growth
 
 
-def fastest_rate(t, eliminates, mass, work, eliminated, mechanics):
+def fastest_rate(t, eliminates, mass, work, eliminated, dynamics):
     """The largest |lambda|, 1/s, of the motion about the state at hand; 0 where it has no accelerations."""
-    m = mechanics_view(mechanics)
+    m = dynamics_view(dynamics)
     s = state_view(m.state)
     if accelerated(eliminates, eliminated, s, m, t, work) < 0:
         return 0.0

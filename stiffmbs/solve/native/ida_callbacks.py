@@ -54,10 +54,10 @@ def jacobian(t, y, yp, cj, a, ida):
     add_entries(e, evaluate(s, e.matrix_set, t), cj, _data(a, c.array_header))
 
 
-def switches(t, y, yp, values, ida):
-    """What changes its sign at the corners in the state, into a numpy array."""
+def event_functions(t, y, yp, values, ida):
+    """What changes its sign at the breakpoints in the state, into a numpy array."""
     c = ida_view(ida)
     s = state_view(c.state)
     load(s, equations_view(c.equations), _data(y, c.array_header), _data(yp, c.array_header))
     found = evaluate(s, SWITCH, t)
-    watched(found, c.sides, c.waits, _data(values, c.array_header), c.n_switches)
+    watched(found, c.sides, c.waits, _data(values, c.array_header), c.n_event_functions)

@@ -16,13 +16,13 @@ from stiffmbs.solve.native.within_step import (
     LOOKED_AT,
     READY,
     clear,
+    event_search_view,
     first_event,
     keep_row,
     noted,
     noted_rates,
     shift_ends,
     suspicious,
-    watch_view,
 )
 
 OK, RECOVERABLE = 0, 1
@@ -96,14 +96,14 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
 
 
-def switches(t, yy, yp, g, user_data):
-    """IDARootFn: what changes its sign at the corners of forces."""
+def event_functions(t, yy, yp, g, user_data):
+    """IDARootFn: what changes its sign at the breakpoints of forces."""
     c = native_ida_view(user_data)
     s = state_view(c.state)
     load(s, equations_view(c.equations), _array(c, yy), _array(c, yp))
     values = evaluate(s, SWITCH, t)
-    watched(values, c.sides, c.waits, g, c.n_switches)
-    return int32(OK if _finite(g, c.n_switches) else RECOVERABLE)
+    watched(values, c.sides, c.waits, g, c.n_event_functions)
+    return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
 
 
 @compiled
@@ -148,7 +148,7 @@ def _note_rates(c, t, ahead, value, rate):
     """Rates of all event functions at the state in c.y, by their values there and a time `ahead` later, which may be negative."""
     s = state_view(c.state)
     e = equations_view(c.equations)
-    w = watch_view(c.watch)
+    w = event_search_view(c.watch)
     y, yp = _array(c, c.y), _array(c, c.yp)
     for k in range(e.n):
         c.probe[k] = y[k] + ahead * yp[k]
@@ -159,7 +159,7 @@ def _note_rates(c, t, ahead, value, rate):
 @compiled
 def _watch_start(c, toward):
     """Where the integrator starts anew, look at the event functions there."""
-    w = watch_view(c.watch)
+    w = event_search_view(c.watch)
     c.count[WITHIN] = 0
     if w.n > 0 and w.mark[READY] == 0.0:
         w.mark[READY] = 1.0
@@ -175,7 +175,7 @@ def _watch_start(c, toward):
 @compiled
 def _looked_within(c, flag):
     """Where an event has begun and ended within the last step, go back to its beginning; IDA's flag, or ROOT_RETURN."""
-    w = watch_view(c.watch)
+    w = event_search_view(c.watch)
     if w.n == 0:
         return flag
     begun = w.mark[BEGUN]

@@ -11,7 +11,7 @@ from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.solve.native.stages import add_stages, copied, take_stage
 
 ASTRAY = 100.0
-"""Size of what stages add to the ends of a step, in parts of these, from which on they have gone astray; with smooth
+"""Size of what stages add to the ends of a step, relative to these, from which on they have gone astray; with smooth
 motions it is a tenth to ten."""
 
 

@@ -39,7 +39,7 @@ LAST = 3
 NOTHING = 1e-8
 """Part of what may be left that is not worth a look at the rate, as IDA has it."""
 UNKNOWN = 20.0
-"""What is left of a correction at the most, in parts of it, as IDA has it after a new matrix."""
+"""What is left of a correction at the most, relative to it, as IDA has it after a new matrix."""
 DIVERGING = 0.9
 """The rate from which the iteration is given up, as IDA has it."""
 SLOWEST = 0.1
@@ -73,7 +73,7 @@ def _left(rate, size):
 
 
 @compiled
-def _foreseen(c):
+def _predicted(c):
     """The rate, from those measured before; 1 where it has to be measured."""
     c.count[SINCE] += 1
     age = c.count[AGE]
@@ -91,7 +91,7 @@ def _first(c, size, enough):
     """After the first correction, the rate is what is foreseen."""
     c.count[AGE] += 1
     age = c.count[AGE]
-    rate = _foreseen(c)
+    rate = _predicted(c)
     c.mark[FIRST] = size
     if size <= NOTHING * enough:
         return SETTLED
@@ -127,5 +127,5 @@ def converged(solver, total, correction, enough, weights, table):
     call_int(c.iteration_of, (solver, shifted(c.count, DONE)))
     if c.count[DONE] == 0:
         call_int(c.cj_of, (c.memory, shifted(c.mark, CJ)))
-    bearable = max(enough, min(LOOSEST, enough * c.mark[CJ] / LONG_STEPS))
-    return int32(_first(c, size, bearable) if c.count[DONE] == 0 else _later(c, size, bearable))
+    allowed_residual = max(enough, min(LOOSEST, enough * c.mark[CJ] / LONG_STEPS))
+    return int32(_first(c, size, allowed_residual) if c.count[DONE] == 0 else _later(c, size, allowed_residual))

@@ -77,7 +77,7 @@ def _corrected(b, s, e, t):
 
 
 @compiled
-def _foreseen(b, t):
+def _predicted(b, t):
     """The rate for the first correction: as bodies turn away from where the factors were made; 1 where it has to be measured."""
     b.mark[SINCE] += 1.0
     known = b.mark[GROWTH] >= 0.0 and b.mark[SINCE] <= TRUSTED
@@ -95,7 +95,7 @@ def _note_rate(b, t, rate):
 @compiled
 def _settled(b, s, e, t):
     """Correct until what is left, by the rate at which corrections shrink, makes no force that counts."""
-    rate = _foreseen(b, t)
+    rate = _predicted(b, t)
     before = 0.0
     for k in range(MOST):
         size = _corrected(b, s, e, t)

@@ -24,7 +24,7 @@ LU, ROW, COLUMN, PLACE, UPDATE = (
 FIRST, SECOND = 0, 1
 """Which side of its items a column has; one alone has the first."""
 WORTH_A_PAIR = 0.8
-"""Items of a pair of columns, in parts of its entries, above which they are better taken one by one."""
+"""Items of a pair of columns, relative to its entries, above which they are better taken one by one."""
 
 paired_view = view_of("PairedColumns", PAIRED_COLUMNS)
 

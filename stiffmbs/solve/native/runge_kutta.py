@@ -6,8 +6,8 @@ from math import isfinite
 
 from stiffmbs.compile.machine.native.access import (
     compiled,
+    dynamics_view,
     explicit_view,
-    mechanics_view,
     scheme_view,
     shifted,
     state_view,
@@ -123,7 +123,7 @@ def advance(end, steps, held, own_steps, explicit):
     """
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
-    m = mechanics_view(x.mechanics)
+    m = dynamics_view(x.dynamics)
     s = state_view(m.state)
     held += x.stiff_steps[0]
     for _ in range(steps):
@@ -156,7 +156,7 @@ def fixed_steps(start, h, steps, explicit):
     """So many steps of length h from the time `start`; 0 or a negative status."""
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
-    m = mechanics_view(x.mechanics)
+    m = dynamics_view(x.dynamics)
     s = state_view(m.state)
     for step in range(steps):
         x.t[0] = start + step * h

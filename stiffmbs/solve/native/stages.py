@@ -5,8 +5,8 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, eliminated_view, factors_view, floats, shifted
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION
 from stiffmbs.compile.machine.native.orientation import add_rates
+from stiffmbs.solve.native.dynamics import to_accelerations
 from stiffmbs.solve.native.eliminated import eliminated_accelerations
-from stiffmbs.solve.native.mechanics import to_accelerations
 
 
 @compiled

@@ -5,7 +5,7 @@ the ends first, by bounds that hold for a cubic and for a convex function.  Only
 function along the step's interpolant, in parts that are halved until a cubic describes each of them (Shampine and
 Thompson, Comput. Math. Appl. 39 (2000) 43-49, for the need; Park and Barton, ACM TOMACS 6 (1996) 137-165).
 
-An edge of a switch is zero: the step ends where the switch passes it.  The edges of an argument part its law into zones;
+An edge of an event function is zero: the step ends where the event function passes it.  The edges of an argument part its law into zones;
 to go from one zone into the next is nothing that a step's error control does not see, but a zone that the step has passed
 through, or has visited between its ends, has been overlooked.
 """
@@ -14,12 +14,12 @@ from __future__ import annotations
 
 from math import floor, isfinite, sqrt
 
-from stiffmbs.compile.machine.layout import WATCH
+from stiffmbs.compile.machine.layout import EVENT_SEARCH
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 
 READY, BEGUN, DEPTH = range(3)
-"""Marks: whether values at the start of the step are known, that start's time, and how far a switch must go beyond zero."""
+"""Marks: whether values at the start of the step are known, that start's time, and how far an event function must go beyond zero."""
 MARGIN = 0.1
 """Part of the range of a function's bounds that is added to those between the ends."""
 LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
@@ -28,7 +28,7 @@ FITS, NOISE = 0.02, 1e-9
 """Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
 state that rounding takes of values and rates."""
 SHALLOW = 1e-5
-"""Part of that noise which no switch is taken to go beyond zero by: rounding alone changes the sign of a contact that is just closed."""
+"""Part of that noise which no event function is taken to go beyond zero by: rounding alone changes the sign of a contact that is just closed."""
 WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
@@ -48,7 +48,7 @@ CLEAR = 4.0
 TURNED, HARDLY_TURNED = 1.0, 0.3
 """rad, by which a body may turn in a step without a look inside, or at rates: those at the ends tell nothing of whole turns."""
 
-watch_view = view_of("Watch", WATCH)
+event_search_view = view_of("EventSearch", EVENT_SEARCH)
 
 
 @compiled
@@ -92,7 +92,7 @@ def _left_out(w, k):
     """Whether a function is not looked at: it waits, or has no number."""
     if not isfinite(w.value_before[k] - w.value_after[k]):
         return True
-    return k < w.n_switches and (w.waits[k] > 0 or w.value_before[k] == 0.0)
+    return k < w.n_event_functions and (w.waits[k] > 0 or w.value_before[k] == 0.0)
 
 
 @compiled
@@ -119,7 +119,7 @@ def _bound(start, start_rate, end, end_rate, missed, side):
 
 @compiled
 def _reaches(w, k, start, start_rate, end, end_rate, missed):
-    """Whether a switch may leave its side, or another function come into a zone that is none of those at the ends of the step."""
+    """Whether an event function may leave its side, or another function come into a zone that is none of those at the ends of the step."""
     one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
     if abs(one - other) > 1:
         return True
@@ -127,7 +127,7 @@ def _reaches(w, k, start, start_rate, end, end_rate, missed):
         _bound(start, start_rate, end, end_rate, missed, -1),
         _bound(start, start_rate, end, end_rate, missed, 1),
     )
-    if k < w.n_switches:
+    if k < w.n_event_functions:
         return zone(w, k, low) != one or zone(w, k, high) != one
     return zone(w, k, low) < min(one, other) or zone(w, k, high) > max(one, other)
 
@@ -144,7 +144,7 @@ def _turned(w, q_before, q_after, most):
 @compiled
 def clear(w, h, q_before, q_after):
     """Whether all functions are so far from zero that rates need not be looked at; rates at the end are then those of the step."""
-    if w.n > w.n_switches or _turned(w, q_before, q_after, HARDLY_TURNED):
+    if w.n > w.n_event_functions or _turned(w, q_before, q_after, HARDLY_TURNED):
         return False
     for k in range(w.n):
         change = w.value_after[k] - w.value_before[k]
@@ -228,7 +228,7 @@ def _values(w, s, begun, h, place):
 
 @compiled
 def _mismatch(w, part, noise):
-    """By how much cubics miss the functions that may have an event within a part of the step, in parts of what is allowed."""
+    """By how much cubics miss the functions that may have an event within a part of the step, relative to what is allowed."""
     worst = 0.0
     for k in range(w.n):
         if _left_out(w, k):
@@ -268,7 +268,7 @@ def _visits(w, k, value, low, high):
     here = zone(w, k, value)
     if here != one and w.left_high[k] < 0.0:
         w.left_low[k], w.left_high[k] = low, high
-    if k < w.n_switches:
+    if k < w.n_event_functions:
         return here != one and abs(value) > w.mark[DEPTH]
     if abs(one - other) > 1:
         return here != one
@@ -296,8 +296,8 @@ def _visits_extremum(w, s, begun, h, k, low, place, part):
 
 @compiled
 def _seen_at_end(w, k):
-    """Whether a switch has changed at the end of the step, which is seen without a search: it may have changed before, too."""
-    return k < w.n_switches and zone(w, k, w.value_before[k]) != zone(w, k, w.value_after[k])
+    """Whether an event function has changed at the end of the step, which is seen without a search: it may have changed before, too."""
+    return k < w.n_event_functions and zone(w, k, w.value_before[k]) != zone(w, k, w.value_after[k])
 
 
 @compiled

@@ -28,7 +28,7 @@ HOW: dict[str, Any] = {"duration": DURATION, "points": 61, "max_step": 0.01}
 TOLERANCES = 1e-7, 1e-10
 """Of a first pair of runs, and of a second one where those differ: an error of integration becomes less."""
 ALLOWED = 1e-4
-"""Difference of a coordinate or velocity, in parts of its largest value and at least of 1 m, rad, m/s, rad/s."""
+"""Difference of a coordinate or velocity, relative to its largest value and at least of 1 m, rad, m/s, rad/s."""
 DOUBTFUL = "the motion depends on the last digits"
 """In the note of a scene whose motion is no matter of its equations alone."""
 COORDINATES = ("x", "y", "z", "angle", "vx", "vy", "vz", "omega", "wx", "wy", "wz")

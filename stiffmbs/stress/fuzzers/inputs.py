@@ -18,9 +18,9 @@ WHAT = "Random inputs over time (tables under any argument, pulses, steps, produ
 POINTS = 21
 """Output points."""
 MISSED = 3e-4
-"""Error of momentum and way in parts of the input's, from which on a feature counts as missed."""
+"""Error of momentum and way relative to the input's, from which on a feature counts as missed."""
 GLOBAL = 300.0
-"""Global error, in parts of the tolerance, that steps may add up to."""
+"""Global error, relative to the tolerance, that steps may add up to."""
 IMPULSE = 10.0
 """Of the absolute value of each input, N s: absolute tolerances then do not matter."""
 NOTHING = 1e-9

@@ -28,7 +28,7 @@ EXPLICIT_PARTS = (
 )
 """Steps from one output time to the next."""
 THIRDS = 3
-"""Parts of which the half car's output spacing is a multiple meet the corners of its road."""
+"""Parts of which the half car's output spacing is a multiple meet the breakpoints of its road."""
 
 
 def contestants(task: Task) -> Iterator[Contestant]:
@@ -45,7 +45,7 @@ def contestants(task: Task) -> Iterator[Contestant]:
 
     yield contestant("Exudyn generalised-alpha", lambda: Bodies(m), kinds.GeneralizedAlpha, IMPLICIT_PARTS)
     chain = chain_of(m)
-    explicit = tuple(part for part in EXPLICIT_PARTS if not task.corners or part % THIRDS == 0)
+    explicit = tuple(part for part in EXPLICIT_PARTS if not task.breakpoints or part % THIRDS == 0)
     for name in ("RK44", "RK67"):
         if chain is not None:
             yield contestant(f"Exudyn {name}, tree", lambda: Tree(m, chain), getattr(kinds, name), explicit)

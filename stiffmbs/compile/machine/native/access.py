@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..layout import ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, INT, MECHANICS, POINTERS, SCHEME, STATE, Layout
+from ..layout import DYNAMICS, ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, INT, POINTERS, SCHEME, STATE, Layout
 from ..translate.code import Code, constant
 from ..translate.values import Builtin, Operand, Record, Value, builtin
 
@@ -61,7 +61,7 @@ state_view = view_of("State", STATE)
 equations_view = view_of("Equations", EQUATIONS)
 factors_view = view_of("Factors", FACTORS)
 ida_view = view_of("Ida", IDA)
-mechanics_view = view_of("Mechanics", MECHANICS)
+dynamics_view = view_of("Dynamics", DYNAMICS)
 scheme_view = view_of("Scheme", SCHEME)
 explicit_view = view_of("Explicit", EXPLICIT)
 eliminated_view = view_of("Eliminated", ELIMINATED)

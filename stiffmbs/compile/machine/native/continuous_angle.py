@@ -8,7 +8,7 @@ from .access import compiled
 
 
 @compiled
-def counted_angle(sine, cosine, counted):
+def continuous_angle(sine, cosine, counted):
     """The angle with a sine and a cosine that is nearest to what is counted."""
     c, s = cos(counted), sin(counted)
     return counted + atan2(sine * c - cosine * s, cosine * c + sine * s)

@@ -1,4 +1,4 @@
-"""Functions with corners in kernels (`stiffmbs.compile.symbolic.nonsmooth`)."""
+"""Nonsmooth functions in kernels (`stiffmbs.compile.symbolic.nonsmooth`)."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def _near_one(x, order):
 
 
 @compiled
-def unwound(h, order):
+def rotation_vector(h, order):
     """The order-th derivative of c(h) = 2 acos(h)/sqrt(1 - h^2), the angle of a rotation over the sine of its half.
 
     h is the scalar part of a unit quaternion, the cosine of half the angle, and c v the rotation vector, v being the

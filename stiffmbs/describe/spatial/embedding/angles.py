@@ -34,7 +34,7 @@ class Angles:
 
     def drawn(self, i: MarkerReference, j: MarkerReference) -> float:
         """The angle of one marker against another as the bodies are described, rad."""
-        return self.data.drawn_marker(i).angle - self.data.drawn_marker(j).angle
+        return self.data.initial_marker(i).angle - self.data.initial_marker(j).angle
 
     def measured(self, i: MarkerReference, j: MarkerReference) -> str:
         """A formula for the angle of a named marker against another one."""

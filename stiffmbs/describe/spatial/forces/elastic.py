@@ -107,7 +107,7 @@ class Elastic(Force):
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")
     j: Marker = Field(description="marker of the second body, whose axes orient the forces")
 
-    def as_drawn(self, model: ModelData) -> Self:
+    def at_initial_pose(self, model: ModelData) -> Self:
         """Marker i with that sign of its quaternion with which the bodies are drawn less than half a turn apart."""
         return self.model_copy(update={"i": nearest(model, self.i, self.j)})
 

@@ -11,7 +11,7 @@ from ...units import si
 from ..body import Body
 
 
-class Turning(Force):
+class GyroscopicTorque(Force):
     """The gyroscopic torque -w x (I w) in a body's principal axes; made by the model (hence without a kind).
 
     Euler's equations of motion, I w' + w x (I w) = T; Haug, Computer Aided Kinematics and Dynamics of Mechanical
@@ -33,7 +33,7 @@ class Turning(Force):
         return [((b - c) * q * r, p), ((c - a) * r * p, q), ((a - b) * p * q, r)]
 
 
-def turnings(bodies: Mapping[str, Body]) -> Iterator[tuple[str, Turning]]:
+def turnings(bodies: Mapping[str, Body]) -> Iterator[tuple[str, GyroscopicTorque]]:
     """The gyroscopic torques of bodies by the bodies' names."""
     for name, body in bodies.items():
-        yield name, Turning(i=MarkerReference(body=name), moments=body.principal_moments())
+        yield name, GyroscopicTorque(i=MarkerReference(body=name), moments=body.principal_moments())

@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Joint, Symbolic
-from ...forces.any_joint_friction import BALL, GUIDE, PIN, SLEEVE, RubbingJoint
+from ...forces.any_joint_friction import BALL, GUIDE, PIN, SLEEVE, AnyJointFriction
 from ...units import si
 from ..wrench import Pairs, velocity
 
 
-class JointFriction(RubbingJoint):
+class JointFriction(AnyJointFriction):
     """Dry friction in a revolute, cylindrical, prismatic or spherical joint, pressed by the joint's own reaction.
 
     The reaction is a force at i's point, of which F is the part across the axis z and T the thrust along it, and a

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from ...element import Symbolic
 from ...forces.angle_spring import AngleSpring
 from ...model_data import ModelData
-from ..branches import drawn_without_axis
+from ..branches import initially_without_axis
 from ..marker import Marker
 from ..primitives import angle_about_z
 
@@ -34,8 +34,8 @@ class TorsionSpring(AngleSpring[Marker]):
         "damper_law": "angle",
     }
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
-        yield from drawn_without_axis(model, self.i, self.j)
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+        yield from initially_without_axis(model, self.i, self.j)
 
     @staticmethod
     def angle(e: Symbolic) -> Any:

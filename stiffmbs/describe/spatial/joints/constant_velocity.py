@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...element import Joint, Symbolic
 from ...model_data import ModelData
-from ..branches import drawn_twisted
+from ..branches import initially_twisted
 from ..marker import Marker
 from ..primitives import COINCIDE, coincide
 
@@ -38,14 +38,14 @@ class ConstantVelocity(Joint):
         None, description="sense of the axes z when the shafts are in line; as drawn unless given"
     )
 
-    def as_drawn(self, model: ModelData) -> Self:
+    def at_initial_pose(self, model: ModelData) -> Self:
         if self.axes is not None:
             return self
-        same = model.drawn_marker(self.i).z @ model.drawn_marker(self.j).z > 0
+        same = model.initial_marker(self.i).z @ model.initial_marker(self.j).z > 0
         return self.model_copy(update={"axes": "same" if same else "opposite"})
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
-        yield from drawn_twisted(model, self.i, self.j, self.as_drawn(model).axes == "opposite")
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+        yield from initially_twisted(model, self.i, self.j, self.at_initial_pose(model).axes == "opposite")
 
     @staticmethod
     def position(e: Symbolic) -> Any:

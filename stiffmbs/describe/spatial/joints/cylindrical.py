@@ -11,7 +11,7 @@ from ...element import Joint, Symbolic
 from ...forces.friction import magnitude
 from ...loads import Loads
 from ...model_data import ModelData
-from ..branches import drawn_apart
+from ..branches import initially_apart
 from ..marker import Marker
 from ..primitives import ALIGN, ON_AXIS, align, along, angle_about_z, on_axis
 
@@ -35,8 +35,8 @@ class Cylindrical(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along and to turn about")
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
-        yield from drawn_apart(model, self.i, self.j)
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+        yield from initially_apart(model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...element import Joint, Symbolic
 from ...model_data import ModelData
-from ..branches import drawn_turned
+from ..branches import initially_rotated
 from ..marker import Marker
 from ..primitives import COINCIDE, ORIENT, coincide, orient
 
@@ -32,8 +32,8 @@ class Fixed(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
-        yield from drawn_turned(model, self.i, self.j)
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+        yield from initially_rotated(model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

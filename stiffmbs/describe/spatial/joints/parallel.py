@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...element import Joint, Symbolic
 from ...model_data import ModelData
-from ..branches import drawn_apart
+from ..branches import initially_apart
 from ..marker import Marker
 from ..primitives import ALIGN, align
 
@@ -31,8 +31,8 @@ class Parallel(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
-        yield from drawn_apart(model, self.i, self.j)
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+        yield from initially_apart(model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...element import Joint, Symbolic
 from ...model_data import ModelData
-from ..branches import drawn_aligned
+from ..branches import initially_aligned
 from ..marker import Marker
 from ..primitives import ACROSS, perpendicular
 
@@ -30,8 +30,8 @@ class Perpendicular(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
-        yield from drawn_aligned(model, self.i, self.j)
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+        yield from initially_aligned(model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

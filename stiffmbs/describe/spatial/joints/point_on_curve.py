@@ -17,7 +17,7 @@ class PointOnCurve(Curve[Marker]):
     direction theta from x; a slot ``y`` = Y(x) has y - Y(x) = 0, a cam ``radius`` = R(theta) has rho - R(theta) = 0, R
     repeating after every turn.  Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
-    The curve should have no corners.  The reaction is across the curve, without friction, and may pull: the point
+    The curve should have no breakpoints.  The reaction is across the curve, without friction, and may pull: the point
     cannot lift off.  Of Adams' PTCV it covers the flat curves.
     """
 

@@ -11,7 +11,7 @@ from ...element import Joint, Symbolic
 from ...forces.friction import magnitude
 from ...loads import Loads
 from ...model_data import ModelData
-from ..branches import drawn_apart
+from ..branches import initially_apart
 from ..marker import Marker
 from ..primitives import ALIGN, COINCIDE, align, angle_about_z, coincide
 
@@ -34,8 +34,8 @@ class Revolute(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
-    def misplaced(self, model: ModelData) -> Iterator[str]:
-        yield from drawn_apart(model, self.i, self.j)
+    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+        yield from initially_apart(model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

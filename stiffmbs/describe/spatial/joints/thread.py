@@ -8,13 +8,13 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Symbolic
-from ...joints.offset_constraint import KeptAsDrawn
+from ...joints.offset_constraint import OffsetConstraint
 from ...units import si
 from ..marker import Marker
 from ..primitives import along, angle_about_z
 
 
-class Thread(KeptAsDrawn):
+class Thread(OffsetConstraint):
     """Ties how far marker i is along the z axis of marker j to its angle about it: s - pitch theta/(2 pi) - offset = 0.
 
     Nothing else is held: this is Adams' SCREW, which wants a cylindrical joint beside it.  A pitch above zero is a

@@ -17,7 +17,7 @@ MU, CREEP = 0.3, 1e-4
 
 
 def block(pull: str) -> Model:
-    """1 kg on a rail with friction, pulled by a force in parts of what friction can hold."""
+    """1 kg on a rail with friction, pulled by a force relative to what friction can hold."""
     model = Model("Block", gravity=(0, -GRAVITY))
     model.add("block", Body(mass=1, inertia=1))
     model.add("rail", JOINTS["prismatic"](i="block", j="ground"))
@@ -27,7 +27,7 @@ def block(pull: str) -> Model:
 
 
 def _creep(solution: Solution, part: float) -> float:
-    """Against the speed at which smooth friction holds the pull: mu tanh(v/v_s) = part mu, in parts of v_s."""
+    """Against the speed at which smooth friction holds the pull: mu tanh(v/v_s) = part mu, relative to v_s."""
     return float(np.max(np.abs(solution["block.vx"][1:] / CREEP - np.arctanh(part))[len(solution.t) // 10 :]))
 
 
@@ -54,7 +54,7 @@ def jammed() -> Model:
 CASES = (
     *(
         simulation(
-            f"block held at {part:g} of what friction holds", "speed against the creep of smooth friction, in parts of v_s",
+            f"block held at {part:g} of what friction holds", "speed against the creep of smooth friction, relative to v_s",
             partial(block, str(part)), partial(_creep, part=part), 1e-3, duration=10.0, points=101, rtol=1e-6,
         )
         for part in (0.0, 0.5, 0.9, 0.999)

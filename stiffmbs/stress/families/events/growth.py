@@ -111,7 +111,7 @@ def _sensible(name: str, scene: Callable[[], Any], error: Callable[[Solution], f
 
 
 def _fallen(solution: Solution) -> float:
-    """Of the way of a thrown body, in parts of it."""
+    """Of the way of a thrown body, relative to it."""
     expected = 20 * solution.t - 9.81 / 2 * solution.t**2
     return float(np.max(np.abs(solution["body.y"] - expected)) / np.max(np.abs(expected)))
 

@@ -48,7 +48,7 @@ def dropped() -> Model:
 
 
 def _at_rest(solution: Solution) -> float:
-    """Sag m g = k delta^1.5 at the end, in parts of it, and a floor that carries the weight."""
+    """Sag m g = k delta^1.5 at the end, relative to it, and a floor that carries the weight."""
     sag = (9.81 / 1e9) ** (2 / 3)
     return float(max(abs(solution["ball.y"][-1] / sag + 1), abs(solution["floor.fy"][-1] / 9.81 - 1)))
 
@@ -56,7 +56,7 @@ def _at_rest(solution: Solution) -> float:
 CASES = (
     *(
         simulation(
-            f"{impacts} impacts, one a millisecond, rtol {rtol:.0e}", "the ball's place in parts of the gap",
+            f"{impacts} impacts, one a millisecond, rtol {rtol:.0e}", "the ball's place relative to the gap",
             ball_between_walls, _error, 1e-2, duration=impacts * (FLIGHT + CONTACT), points=2 * impacts + 1, rtol=rtol,
             quick=impacts <= 100,
         )

@@ -47,7 +47,7 @@ def _cosine(solution: Solution) -> float:
 
 
 def _spacing(solution: Solution, output: float) -> float:
-    """Largest deviation of the output points' spacing, in parts of it."""
+    """Largest deviation of the output points' spacing, relative to it."""
     return float(np.max(np.abs(np.diff(solution.t) / output - 1)))
 
 

@@ -92,7 +92,7 @@ def _nothing(solution: Solution) -> float:
 
 
 def _relay(solution: Solution) -> float:
-    """x'' = -5 sign(x) from x = 0 at 0.1 m/s: arches of 0.04 s, parabolas, in parts of their height of 1 mm."""
+    """x'' = -5 sign(x) from x = 0 at 0.1 m/s: arches of 0.04 s, parabolas, relative to their height of 1 mm."""
     t = np.mod(solution.t, 0.08)
     arch = np.where(t < 0.04, t, t - 0.04)
     expected = np.where(t < 0.04, 1.0, -1.0) * (0.1 * arch - 2.5 * arch**2)

@@ -31,7 +31,7 @@ FORCES_WITH_ENDS: dict[str, tuple[float, Callable[[np.ndarray], np.ndarray]]] = 
 
 
 def _way(solution: Solution, law: Callable[[np.ndarray], np.ndarray], channel: str) -> float:
-    """Up to 1 % before the last row, against the law, in parts of its largest value."""
+    """Up to 1 % before the last row, against the law, relative to its largest value."""
     before = solution.t <= 0.97 * solution.t[-1]
     expected = law(solution.t[before])
     return float(np.max(np.abs(solution[channel][before] - expected)) / max(1.0, np.max(np.abs(expected))))

@@ -33,7 +33,7 @@ def driven(**law: Any) -> Model:
 
 
 def _speed(solution: Solution, expected: float) -> float:
-    """Of the speed at the end, in parts of the impulse."""
+    """Of the speed at the end, relative to the impulse."""
     return float(abs(solution["sled.vx"][-1] / expected - 1))
 
 

@@ -61,7 +61,7 @@ def chain(count: int) -> Model:
 
 
 def _chain_energy(solution: Solution) -> float:
-    """Change of the energy in parts of the greatest kinetic energy."""
+    """Change of the energy relative to the greatest kinetic energy."""
     kinetic = float(np.max(solution["energy.kinetic"]))
     return solution.energy_drift() / kinetic if kinetic else np.inf
 
@@ -86,11 +86,11 @@ CASES = (
         duration=0.2, points=3, rtol=1e-5, quick=False,
     ),
     simulation(
-        "chain of 1000 rods, dop853", "change of energy in parts of the kinetic energy", partial(chain, 1000), _chain_energy, 1e-4,
+        "chain of 1000 rods, dop853", "change of energy relative to the kinetic energy", partial(chain, 1000), _chain_energy, 1e-4,
         duration=0.5, points=11, rtol=1e-6, solver="projected", scheme="dop853", quick=False,
     ),
     simulation(
-        "chain of 10 000 rods", "change of energy in parts of the kinetic energy", partial(chain, 10_000), _chain_energy, 1e-2,
+        "chain of 10 000 rods", "change of energy relative to the kinetic energy", partial(chain, 10_000), _chain_energy, 1e-2,
         duration=0.05, points=3, rtol=1e-5, quick=False,
     ),
 )  # fmt: skip

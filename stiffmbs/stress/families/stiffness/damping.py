@@ -56,7 +56,7 @@ CASES = (
     *(_case(damping) for damping in (0.0, 0.02, 19.999, 2e3, 1e6, 1e9, 1e12, -0.02, -2.0, -21.0)),
     simulation(
         "no damping, 1000 oscillations: energy",
-        "change of the energy in parts of it",
+        "change of the energy relative to it",
         partial(oscillator, 0.0), _energy, 1e-3, duration=200 * np.pi, points=101, rtol=1e-8,
     ),
 )  # fmt: skip

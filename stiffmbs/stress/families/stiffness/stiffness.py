@@ -89,7 +89,7 @@ CASES = (
     *(
         simulation(
             f"mass on {k:.0e} N/m, undamped, 20 oscillations",
-            "the whole oscillation against its closed form, in parts of its size",
+            "the whole oscillation against its closed form, relative to its size",
             partial(cart_with_stiff_spring, k), partial(_oscillation, stiffness=k), 1e-2,
             duration=40 * np.pi / np.sqrt(k), points=201, rtol=1e-8, atol=1e-12,
         )

@@ -37,12 +37,12 @@ def door(hinges: int = 2) -> spatial.Model:
     return model
 
 
-def table(legs: int = 4) -> spatial.Model:
+def table(segments: int = 4) -> spatial.Model:
     """10 kg on legs on a circle of 1 m."""
     model = spatial.Model("Table", gravity=(0, 0, -GRAVITY))
     top = model.add("top", spatial.Body(mass=10, inertia=(1, 1, 2), position=(0, 0, 1)))
-    for k in range(legs):
-        at = 2 * math.pi * k / legs
+    for k in range(segments):
+        at = 2 * math.pi * k / segments
         foot = top.at(math.cos(at), math.sin(at), -1)
         model.add(f"leg{k}", spatial.PointOnPlane(i=foot, j="ground"))
     return model

@@ -17,7 +17,7 @@ from ...simulation import refusal, simulation
 TOLD_FROM = 1e-9
 
 
-def misplaced(gap: float) -> Model:
+def invalid_placement(gap: float) -> Model:
     """A pendulum whose bar is drawn off its hinge, to the side and above."""
     model = Model("Misplaced", gravity=(0, -GRAVITY))
     bar = model.add("bar", Body(mass=1, inertia=1 / 12, position=(0.5 + gap, gap)))
@@ -59,7 +59,7 @@ CASES = (
     *(
         simulation(
             f"off by {gap:.0e} m", "told; place against the nearest pose, motion against elliptic functions",
-            partial(misplaced, gap), partial(_error, gap=gap), 1e-5,
+            partial(invalid_placement, gap), partial(_error, gap=gap), 1e-5,
             noted=("assembly changed bar",) if gap > TOLD_FROM else (),
             expected=Outcome.TOLD if gap > TOLD_FROM else Outcome.RIGHT, duration=2.0, points=101, rtol=1e-8,
         )
@@ -74,5 +74,5 @@ CASES = (
         )
         for speed in (1e-1, 1e-6, 1e-12)
     ),
-    refusal("off by 1e300 m", "too far for numbers", partial(misplaced, 1e300), ("position", "below 1e+100 m"), duration=2.0),
+    refusal("off by 1e300 m", "too far for numbers", partial(invalid_placement, 1e300), ("position", "below 1e+100 m"), duration=2.0),
 )  # fmt: skip

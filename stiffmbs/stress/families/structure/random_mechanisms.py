@@ -29,11 +29,11 @@ def _tree(seed: int) -> Model:
 def _worst(seeds: range, error) -> Verdict:
     errors = {seed: error(seed) for seed in seeds}
     seed = max(errors, key=lambda seed: errors[seed])
-    return measured(errors[seed], 1.0, f"in parts of what is allowed; worst is seed {seed}")
+    return measured(errors[seed], 1.0, f"relative to what is allowed; worst is seed {seed}")
 
 
 def _disagreement(seed: int) -> float:
-    """Largest difference of bdf and dop853 in any coordinate or reaction, in parts of 1e-5 of its size."""
+    """Largest difference of bdf and dop853 in any coordinate or reaction, relative to 1e-5 of its size."""
     how: dict[str, Any] = {"duration": DURATION, "points": 11}
     bdf = run(_tree(seed), rtol=1e-9, solver="bdf", **how)
     explicit = run(_tree(seed), rtol=1e-11, solver="projected", scheme="dop853", **how)

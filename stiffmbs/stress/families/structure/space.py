@@ -29,7 +29,7 @@ def _tree(seed: int) -> Model:
 
 
 def _disagreement(seed: int) -> float:
-    """Largest difference of bdf and dop853 in any coordinate, velocity or reaction, in parts of 3e-5 of its size."""
+    """Largest difference of bdf and dop853 in any coordinate, velocity or reaction, relative to 3e-5 of its size."""
     how: dict[str, Any] = {"duration": DURATION, "points": 6}
     bdf = run(_tree(seed), rtol=1e-8, solver="bdf", **how)
     explicit = run(_tree(seed), rtol=1e-10, solver="projected", scheme="dop853", **how)
@@ -41,7 +41,7 @@ def _disagreement(seed: int) -> float:
 def _worst(seeds: range) -> Verdict:
     errors = {seed: _disagreement(seed) for seed in seeds}
     seed = max(errors, key=lambda seed: errors[seed])
-    return measured(errors[seed], 1.0, f"in parts of what is allowed; worst is seed {seed}")
+    return measured(errors[seed], 1.0, f"relative to what is allowed; worst is seed {seed}")
 
 
 def tumbling(faster: float = 1.0) -> Model:
@@ -61,7 +61,7 @@ def _angular_momentum(solution: Solution) -> np.ndarray:
 
 
 def _momentum_change(solution: Solution) -> float:
-    """Of the vector, in parts of itself."""
+    """Of the vector, relative to itself."""
     momentum = _angular_momentum(solution)
     return float(np.max(np.abs(momentum - momentum[:, :1])) / np.linalg.norm(momentum[:, 0]))
 

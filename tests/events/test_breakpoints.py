@@ -1,11 +1,11 @@
-"""Corners in time: found, stopped at, and so nothing short is jumped over."""
+"""Breakpoints in time: found, stopped at, and so nothing short is jumped over."""
 
 import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic, SpringDamper, compile_model
-from stiffmbs.compile.inputs.breakpoints import corner_times
+from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.of_time import _OF_ARRAYS, inputs_of
@@ -38,11 +38,11 @@ def test_a_short_pulse_after_a_long_rest_is_seen(at_rest, how):
     gained = 0.9 / 2
     total = solution["energy.kinetic"][-1] + (solution["energy.potential"][-1] if at_rest != "free" else 0)
     assert total == pytest.approx(gained**2, rel=2e-3)
-    assert solution.solver["corners"] == 4
+    assert solution.solver["breakpoints"] == 4
 
 
-def corners(force, start=0.0, end=10.0):
-    return corner_times(inputs_of(compile_model(sled(force).data())), start, end)
+def breakpoints(force, start=0.0, end=10.0):
+    return breakpoint_times(inputs_of(compile_model(sled(force).data())), start, end)
 
 
 @pytest.mark.parametrize(
@@ -80,24 +80,24 @@ def corners(force, start=0.0, end=10.0):
     ],
 )
 def test_where_formulas_have_their_corners(force, times):
-    np.testing.assert_allclose(corners(force), sorted(times), atol=1e-12)
+    np.testing.assert_allclose(breakpoints(force), sorted(times), atol=1e-12)
 
 
 def test_an_unmoved_scene_is_not_stopped():
-    assert len(corners("1.5")) == 0
+    assert len(breakpoints("1.5")) == 0
 
 
 def test_corners_before_the_start_and_after_the_end_do_not_count():
-    np.testing.assert_allclose(corners("abs(t - 3) + abs(t - 5)", 4, 5), [])
+    np.testing.assert_allclose(breakpoints("abs(t - 3) + abs(t - 5)", 4, 5), [])
 
 
 def test_tables_of_time_have_corners_where_flat_parts_end():
     from stiffmbs.compile.inputs.table_ranges import TableRanges
 
     pulse = Table(table=((0, 0), (4, 0), (4.1, 1), (4.2, 0), (9, 0), (10, 0)))
-    np.testing.assert_allclose(TableRanges(pulse).corners_between(0, 10), [0, 4, 4.2, 10])
+    np.testing.assert_allclose(TableRanges(pulse).breakpoints_between(0, 10), [0, 4, 4.2, 10])
     lines = Table(table=((0, 0), (1, 1), (2, 2), (3, 0)), lines=True)
-    np.testing.assert_allclose(TableRanges(lines).corners_between(0, 10), [0, 2, 3])
+    np.testing.assert_allclose(TableRanges(lines).breakpoints_between(0, 10), [0, 2, 3])
 
 
 def test_the_result_does_not_depend_on_output_points():
@@ -111,7 +111,7 @@ def test_the_result_does_not_depend_on_output_points():
 
 
 def test_an_output_time_may_be_a_rounding_behind_a_corner():
-    """0.01 s * 70 is above 0.7 s by one rounding: the row there is that of the corner, and the run goes on."""
+    """0.01 s * 70 is above 0.7 s by one rounding: the row there is that of the breakpoint, and the run goes on."""
     assert 0.01 * 70 > 0.7
     model = sled("step(t, 0.2, 0, 0.7, 4)")
     solution = stiffmbs.run(model, duration=1.0, output=0.01, rtol=1e-8, solver="bdf")
@@ -121,16 +121,16 @@ def test_an_output_time_may_be_a_rounding_behind_a_corner():
 
 def test_more_corners_than_samples_could_show():
     """200 000 tops of a sine of 100 Hz, in a run of 1000 s."""
-    found = corners("max(0, sin(200*pi*t) - 0.9)", end=1000.0)
+    found = breakpoints("max(0, sin(200*pi*t) - 0.9)", end=1000.0)
     expected = (np.arange(100_000)[:, None] + 0.25 + np.array([-1, 1]) * np.arccos(0.9) / (2 * np.pi)) / 100
     np.testing.assert_allclose(found, expected.ravel(), atol=1e-11)
 
 
 def test_corners_without_number_are_refused():
     with pytest.raises(
-        stiffmbs.InputError, match=r"'sign\(sin\(t\^-3\)\)': found more than 1e\+06 corners between 0 and 10 s"
+        stiffmbs.InputError, match=r"'sign\(sin\(t\^-3\)\)': found more than 1e\+06 breakpoints between 0 and 10 s"
     ):
-        corners("sign(sin(t^-3))")
+        breakpoints("sign(sin(t^-3))")
 
 
 @pytest.mark.parametrize("name", sorted(FUNCTIONS))

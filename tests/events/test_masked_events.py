@@ -1,4 +1,4 @@
-"""bdf at switches that stay about zero: corners are passed, jumps that the motion is driven back to are told."""
+"""bdf at event functions that stay about zero: breakpoints are passed, jumps that the motion is driven back to are told."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_the_cam_under_its_follower_starts_with_no_gap(examples, rtol):
 
 
 def test_motion_that_comes_to_rest_on_a_corner_goes_on(engine):
-    """A damped spring, four times as stiff to the left, at rest on its corner: nothing of it is lost."""
+    """A damped spring, four times as stiff to the left, at rest on its breakpoint: nothing of it is lost."""
     solution = solved(block("-9*block.x + 27*max(0, -block.x) - 3*block.vx", 1.0), duration=60.0, rtol=1e-8)
     assert solution.outcome is Outcome.DONE
     assert solution.solver["events"] < 100

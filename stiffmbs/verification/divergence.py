@@ -23,7 +23,7 @@ SENSITIVE = 2.0
 
 
 @dataclass(frozen=True)
-class Parting:
+class Divergence:
     """Two motions that part.
 
     Attributes
@@ -42,7 +42,7 @@ class Parting:
 def distance(
     first: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], count: int, sizes: Mapping[str, float]
 ) -> dict[str, np.ndarray]:
-    """How far each body is from where it is in another run, in parts of the motion's size and in rad, over time.
+    """How far each body is from where it is in another run, relative to the motion's size and in rad, over time.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def distance(
 
 def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
     """By how much two motions differ in orientation over time: about all axes but that of the turning in rad, about this
-    one in parts of all that the first turns by, if that is more than 1 rad (as for angles in the plane).
+    one relative to all that the first turns by, if that is more than 1 rad (as for angles in the plane).
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.maximum(phase, np.linalg.norm(turn - along * axis, axis=1))
 
 
-def parting(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Parting | None:
+def divergence(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Divergence | None:
     """Where two motions part; None where they stay together.
 
     Parameters
@@ -107,4 +107,4 @@ def parting(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Parting |
     k = int(np.argmax(beyond.any(axis=0)))
     body = int(np.argmax(rows[:, k]))
     together = np.flatnonzero(rows[:, :k].max(axis=0) < TOGETHER * APART)
-    return Parting(bodies[body], float(times[together[-1] if len(together) else 0]), float(times[k]))
+    return Divergence(bodies[body], float(times[together[-1] if len(together) else 0]), float(times[k]))

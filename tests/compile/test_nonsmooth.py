@@ -1,10 +1,10 @@
-"""Functions with corners in equations: each derivative is the slope of what it is the derivative of."""
+"""Nonsmooth functions in equations: each derivative is the slope of what it is the derivative of."""
 
 import numpy as np
 import pytest
 import sympy as sp
 
-from stiffmbs.compile.machine.native import nonsmooth as corners
+from stiffmbs.compile.machine.native import nonsmooth as breakpoints
 from stiffmbs.compile.symbolic.nonsmooth import (
     Chosen,
     Greater,
@@ -22,7 +22,7 @@ from stiffmbs.compile.symbolic.nonsmooth import (
 
 x = sp.Symbol("x", real=True)
 NATIVE = {
-    kind.__name__: getattr(corners, kind.native)
+    kind.__name__: getattr(breakpoints, kind.native)
     for kind in (Chosen, Greater, Inside, Less, Magnitude, Sign, Step, Step5)
 }
 LAWS = {
@@ -37,7 +37,7 @@ LAWS = {
     "branch": Chosen(x - 0.5, sp.sin(x), x, x**2),
 }
 POINTS = (-2.9, -2.17, -1.42, -0.71, -0.43, 0.11, 0.63, 1.27, 1.88, 2.23, 2.9)
-"""On all sides of the corners, away from them by more than differences reach."""
+"""On all sides of the breakpoints, away from them by more than differences reach."""
 H = 1e-3
 
 
@@ -54,7 +54,9 @@ def test_each_derivative_is_the_slope_of_the_one_before(law):
         np.testing.assert_allclose(function(law)(t), slope, rtol=1e-7, atol=1e-7)
 
 
-@pytest.mark.parametrize(("ramp", "rise"), [(corners.step, [-2, 3, 0, 0]), (corners.step5, [6, -15, 10, 0, 0, 0])])
+@pytest.mark.parametrize(
+    ("ramp", "rise"), [(breakpoints.step, [-2, 3, 0, 0]), (breakpoints.step5, [6, -15, 10, 0, 0, 0])]
+)
 def test_a_ramp_and_its_derivatives_are_those_of_its_polynomial(ramp, rise):
     t = np.array(POINTS)
     z = (t + 1) / 3

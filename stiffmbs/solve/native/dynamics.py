@@ -6,10 +6,10 @@ from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import (
     compiled,
+    dynamics_view,
     equations_view,
     factors_view,
     floats,
-    mechanics_view,
     shifted,
     state_view,
 )
@@ -32,7 +32,7 @@ ROUNDING = 9e-16
 """Part of the largest coordinate that no violation can be told below: four roundings."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
-"""Change of the multipliers, in parts of the largest of them and of the applied forces, at which they are in balance with the friction that they press."""
+"""Change of the multipliers, relative to the largest of them and of the applied forces, at which they are in balance with the friction that they press."""
 ROUNDED_OFF = 1e-9
 """Change that is taken for balance all the same when no iteration brings it further down."""
 
@@ -160,21 +160,21 @@ def to_accelerations(s, m, t):
     return 0 if change <= ROUNDED_OFF * largest else NO_BALANCE
 
 
-def assemble(t, tolerance, most, mechanics):
+def assemble(t, tolerance, most, dynamics):
     """`to_position_constraints` from Python."""
-    m = mechanics_view(mechanics)
+    m = dynamics_view(dynamics)
     return to_position_constraints(state_view(m.state), m, t, tolerance, most)
 
 
-def correct_velocities(t, mechanics):
+def correct_velocities(t, dynamics):
     """`to_velocity_constraints` from Python."""
-    m = mechanics_view(mechanics)
+    m = dynamics_view(dynamics)
     return to_velocity_constraints(state_view(m.state), m, t)
 
 
-def accelerate(t, acceleration, mechanics):
+def accelerate(t, acceleration, dynamics):
     """`to_accelerations` from Python; accelerations are copied out."""
-    m = mechanics_view(mechanics)
+    m = dynamics_view(dynamics)
     s = state_view(m.state)
     status = to_accelerations(s, m, t)
     for k in range(s.n_u):
@@ -205,7 +205,7 @@ def _output_point(s, m, t, project, tolerance, largest):
     return 0
 
 
-def output_points(count, times, project, tolerance, n_output, q, u, acceleration, lam, output, largest, mechanics):
+def output_points(count, times, project, tolerance, n_output, q, u, acceleration, lam, output, largest, dynamics):
     """Everything that is reported at `count` instants, row by row; the number of rows done.
 
     q and u (rows of n_q, n_u) are brought back to the constraints where `project` asks for it; written are u', lam,
@@ -213,7 +213,7 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
     velocities (largest of a joint), and of positions before the projection.  Where an instant has no solution, the
     mechanics' `status` holds why.
     """
-    m = mechanics_view(mechanics)
+    m = dynamics_view(dynamics)
     s = state_view(m.state)
     for row in range(count):
         for k in range(s.n_q):

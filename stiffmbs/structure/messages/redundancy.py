@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from ...compile.system import System
 from ...errors import AssemblyError
-from ..inconsistent_constraints import Contradiction
+from ..inconsistent_constraints import Inconsistency
 from ..loop_equations import AGREES, CLOSED
 from ..overconstraint import Overconstraint, listed, overconstraints
-from ..rank_result import LoopFinding
+from ..rank_result import LoopRankResult
 from ..redundancy import Redundancy
 from ..unproven import unproven
 from .indeterminate_reactions import channel_words, directed_words
@@ -23,7 +23,7 @@ def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
     return not rows.isdisjoint(case.redundant)
 
 
-def refuse_contradictions(redundancy: Redundancy) -> None:
+def refuse_inconsistencies(redundancy: Redundancy) -> None:
     """Stop before a run that has no solution.
 
     Raises
@@ -31,12 +31,12 @@ def refuse_contradictions(redundancy: Redundancy) -> None:
     AssemblyError
         When equations contradict each other, or the start is a singular pose.
     """
-    for sentence in (*contradiction_sentences(redundancy), *singular_sentence(redundancy)):
+    for sentence in (*inconsistency_sentences(redundancy), *singular_sentence(redundancy)):
         raise AssemblyError(sentence)
 
 
 def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> Iterator[str]:
-    """An overconstraint in sentences: reason, what gives way, what is not unique, remedy.
+    """An overconstraint in sentences: reason, what is dropped, what is not unique, remedy.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> 
     """
     what_then = f"and {STOPS_WHERE}" if near_start else "which does not change the motion"
     yield f"{case.reason}; a run leaves out {_given_way(case)}, {what_then}"
-    if case.undetermined:
+    if case.indeterminate:
         shared = ["what they carry together is unique"] if case.shared else []
-        directed = "; ".join([*directed_words(case.undetermined), *shared])
-        yield f"rigid bodies do not determine {channel_words(case.undetermined)}" + (
+        directed = "; ".join([*directed_words(case.indeterminate), *shared])
+        yield f"rigid bodies do not determine {channel_words(case.indeterminate)}" + (
             f": {directed}" if directed else ""
         )
     yield case.remedy
@@ -63,31 +63,31 @@ def _given_way(case: Overconstraint) -> str:
     return listed([f"{joint} ({', '.join(equations)})" for joint, equations in of_joint.items()])
 
 
-def contradiction_sentences(redundancy: Redundancy) -> Iterator[str]:
+def inconsistency_sentences(redundancy: Redundancy) -> Iterator[str]:
     """Equations that cannot hold together, a sentence for each loop that has such."""
-    for finding in redundancy.findings:
-        for contradiction in finding.contradictions[:1]:
-            yield _contradiction_sentence(redundancy.system, finding, contradiction)
+    for rank_result in redundancy.rank_results:
+        for inconsistency in rank_result.inconsistencies[:1]:
+            yield _inconsistency_sentence(redundancy.system, rank_result, inconsistency)
 
 
-def _contradiction_sentence(system: System, finding: LoopFinding, contradiction: Contradiction) -> str:
-    joint, equation = system.equations[finding.rank.equations.loop.rows[contradiction.row]]
-    others = listed([name for name in contradiction.joints if name != joint])
+def _inconsistency_sentence(system: System, rank_result: LoopRankResult, inconsistency: Inconsistency) -> str:
+    joint, equation = system.equations[rank_result.rank.equations.loop.rows[inconsistency.row]]
+    others = listed([name for name in inconsistency.joints if name != joint])
     against = f"joint '{joint}' (equation {equation}) contradicts {others or 'itself'}"
-    where = "its positions do not agree with theirs" if contradiction.level == "position" else "their velocities differ"
+    where = "its positions do not agree with theirs" if inconsistency.level == "position" else "their velocities differ"
     return (
-        f"the scene cannot be assembled: {against} at t = {contradiction.t:.6g} s, {where} (by {contradiction.gap:.3g})"
+        f"the scene cannot be assembled: {against} at t = {inconsistency.t:.6g} s, {where} (by {inconsistency.gap:.3g})"
     )
 
 
 def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
     """That the start is a singular pose, where it is one."""
-    assembled = [finding for finding in redundancy.findings if finding.rank.start.gap <= AGREES]
+    assembled = [rank_result for rank_result in redundancy.rank_results if rank_result.rank.start.gap <= AGREES]
     bodies = [
         redundancy.system.bodies[body]
-        for finding in assembled
-        for body in finding.rank.equations.loop.bodies
-        if finding.extra_freedoms
+        for rank_result in assembled
+        for body in rank_result.rank.equations.loop.bodies
+        if rank_result.extra_freedoms
     ]
     if not bodies:  # a pose whose joints do not close is no pose: the search for initial values names the gap
         return
@@ -102,19 +102,19 @@ def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
 
 def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
     """What else makes the motion doubtful: equations that nearly repeat each other, friction without a unique load."""
-    for finding in redundancy.findings:
-        joints = [joint.name for joint in finding.rank.equations.loop.joints]
-        if finding.nearly_dependent and not finding.contradictions:
+    for rank_result in redundancy.rank_results:
+        joints = [joint.name for joint in rank_result.rank.equations.loop.joints]
+        if rank_result.nearly_dependent and not rank_result.inconsistencies:
             yield (
-                f"{listed(joints)} nearly repeat each other (smallest singular value {finding.rank.least:.1g}): the motion "
+                f"{listed(joints)} nearly repeat each other (smallest singular value {rank_result.rank.least:.1g}): the motion "
                 "depends on the last digits of their geometry, expected either an exact or a clear difference"
             )
-        if finding.redundant and CLOSED < finding.rank.start.gap <= AGREES:
+        if rank_result.redundant and CLOSED < rank_result.rank.start.gap <= AGREES:
             yield (
-                f"{listed(joints)} agree to {finding.rank.start.gap:.1g} of their size only: the equations left out stay open by "
+                f"{listed(joints)} agree to {rank_result.rank.start.gap:.1g} of their size only: the equations left out stay open by "
                 "so much"
             )
-        if not finding.motion_unique:
+        if not rank_result.motion_unique:
             yield f"friction depends on reactions of {listed(joints)} that are not unique, so the motion is not unique either"
 
 
@@ -123,7 +123,7 @@ def note_sentences(redundancy: Redundancy) -> Iterator[str]:
     for case in overconstraints(redundancy):
         where = f"; the run {STOPS_WHERE}" if known_near_start(case, redundancy) else ""
         yield f"{case.reason}; left out: {_given_way(case)}{where}"
-    if redundancy.undetermined:
-        words = channel_words(redundancy.undetermined)
+    if redundancy.indeterminate:
+        words = channel_words(redundancy.indeterminate)
         yield f"rigid bodies do not determine {words}: one of many possible values is shown"
     yield from pose_sentences(redundancy)

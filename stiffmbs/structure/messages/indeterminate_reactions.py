@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 
 from ..directions import Direction
 from ..overconstraint import listed
-from ..uniqueness import Undetermined
+from ..uniqueness import Indeterminate
 
 
-def channel_words(parts: Sequence[Undetermined]) -> str:
+def channel_words(parts: Sequence[Indeterminate]) -> str:
     """Their components, those of elements with the same ones together: ``fz and tx of lower and upper``."""
     alike: dict[tuple[str, ...], list[str]] = {}
     for part in parts:
@@ -19,7 +19,7 @@ def channel_words(parts: Sequence[Undetermined]) -> str:
     return "; ".join(f"{listed(components)} of {listed(elements)}" for components, elements in alike.items())
 
 
-def directed_words(parts: Sequence[Undetermined]) -> Iterator[str]:
+def directed_words(parts: Sequence[Indeterminate]) -> Iterator[str]:
     """The directions in which forces and torques are undetermined; nothing where they have none that stays."""
     in_plane = [
         f"of {part.element} at {_degrees(direction.vector):.4g} deg of {direction.axes}"
@@ -51,7 +51,7 @@ def _axis(vector: Sequence[float]) -> str:
     return f"({', '.join(f'{part:.4g}' for part in vector)})"
 
 
-def _told_by_channels(part: Undetermined, direction: Direction) -> bool:
+def _told_by_channels(part: Indeterminate, direction: Direction) -> bool:
     """Whether the components without a unique value are as few as the directions."""
     components = [name for name in part.channels if name.rpartition(".")[2].startswith(direction.quantity[0])]
     return len(components) <= (2 if direction.across else 1)

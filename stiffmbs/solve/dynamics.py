@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import InputFeatures, input_features
-from ..compile.machine.layout import MECHANICS, packed
+from ..compile.machine.layout import DYNAMICS, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
@@ -22,7 +22,7 @@ from .storage import blocks, release, room
 
 T = TypeVar("T")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS = together(
-    "stiffmbs.solve.native.mechanics",
+    "stiffmbs.solve.native.dynamics",
     assemble="int64(float64, float64, int64, int64*)",
     correct_velocities="int64(float64, int64*)",
     accelerate="int64(float64, float64*, int64*)",
@@ -60,7 +60,7 @@ class OutputRows:
     status: int
 
 
-class Mechanics:
+class Dynamics:
     """Block systems of one state, and the compiled routines that use them.
 
     Parameters
@@ -94,7 +94,7 @@ class Mechanics:
         self._features = np.inf, -np.inf, InputFeatures()
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
-            MECHANICS,
+            DYNAMICS,
             {
                 "state": self.state.table,
                 "positions": self._positions.equations_table,
