@@ -29,7 +29,7 @@ class Indeterminate:
     channels : tuple of str
         Components in ground axes, such as ``hinge.fx``.
     directions : tuple of Direction
-        Where the undetermined force always lies, and in space the torque; what is at right angles to that is unique.
+        Where the indeterminate force always lies, and in space the torque; what is at right angles to that is unique.
     """
 
     element: str
