@@ -220,8 +220,8 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
             s.q[k] = q[row * s.n_q + k]
         for k in range(s.n_u):
             s.u[k] = u[row * s.n_u + k]
-        m.status[0] = _output_point(s, m, times[row], project, tolerance, shifted(largest, 3 * row))
-        if m.status[0] < 0:
+        m.status = _output_point(s, m, times[row], project, tolerance, shifted(largest, 3 * row))
+        if m.status < 0:
             return row
         solution = factors_view(m.acceleration_factors).b
         values = floats(s.values[OUTPUT])

@@ -46,7 +46,7 @@ def back_to_constraints(x, s, m, t):
     """Bring q and u of the state at hand, the end of a step, to both constraints; 0 or a negative status."""
     if x.eliminates:
         r = eliminated_view(x.eliminated)
-        if r.ready[0] and _by_frozen_factors(r, s, t, x.tolerance[0]):
+        if r.ready and _by_frozen_factors(r, s, t, x.tolerance):
             return 0
-    status = to_position_constraints(s, m, t, x.tolerance[0], MOST_MOVES)
+    status = to_position_constraints(s, m, t, x.tolerance, MOST_MOVES)
     return status if status < 0 else to_velocity_constraints(s, m, t)

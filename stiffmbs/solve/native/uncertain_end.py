@@ -25,16 +25,16 @@ def uncertain_end(x, c, h):
     if not x.pivots_tell:
         return False
     r = eliminated_view(x.eliminated)
-    kept = r.kept[0]
-    if kept > CLOSE * r.most_kept[0]:
+    kept = r.kept
+    if kept > CLOSE * r.most_kept:
         return False
     if not kept > 0.0:
         return True
-    distance = (kept / r.most_kept[0]) ** 0.5
+    distance = (kept / r.most_kept) ** 0.5
     rates = shifted(x.k, c.stages * x.n)
     total = 0.0
     for i in range(x.n_q, x.n):
-        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
         change = h * rates[i] * ROUNDING / distance**3 / scale
         total += change * change
     return total > HARMFUL * HARMFUL * x.n
