@@ -28,10 +28,8 @@ from stiffmbs.compile.machine.native.access import (
 )
 from stiffmbs.solve.native.calls import call_address, call_float, call_int
 from stiffmbs.solve.native.iteration import iteration_view
-from stiffmbs.solve.native.statuses import OK
+from stiffmbs.solve.native.statuses import NORM_TABLE, OK, OPERATIONS
 
-OPERATIONS, TABLE = 1, 53
-"""Words of a SUNDIALS vector and of its table of operations: that table; N_VBufPack, which IDA never calls and in whose place stands the address of the table of this module (`stiffmbs.solve.ida.operations.take_norm`)."""
 FADES_LOW, FADES, LOW = 0.99, 0.8, 2
 """What a step leaves of the count of failures, at orders up to the lowest two and above: at these a run creeps."""
 TROUBLED, LASTS = 7.0, 1000
@@ -83,7 +81,7 @@ def _look(c):
 
 def error_norm(estimate, weights):
     """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the error test fails often."""
-    c = error_norm_view(ints(ints(estimate[OPERATIONS])[TABLE]))
+    c = error_norm_view(ints(ints(estimate[OPERATIONS])[NORM_TABLE]))
     cj = iteration_view(c.iteration).cj
     if cj != c.looked:  # as it does with every failure
         _look(c)

@@ -13,10 +13,8 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, float
 from stiffmbs.compile.machine.native.factors import DONE, FULL, equilibrate, factor, scale
 from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
-from stiffmbs.solve.native.statuses import FAILED, OK, RECOVERABLE
+from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK, RECOVERABLE
 
-CONTENT = 0
-"""Where a SUNLinearSolver holds the address of its content."""
 LU, ROW, COLUMN, UPDATE = (list(FIXED_ORDER).index(name) for name in ("lu", "row", "column", "update"))
 LARGEST = 1e3
 """A pivot is refused when an entry of its column is so many times larger."""

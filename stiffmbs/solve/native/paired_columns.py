@@ -15,8 +15,8 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, float
 from stiffmbs.compile.machine.native.factors import DONE, FULL
 from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
-from stiffmbs.solve.native.fixed_order import CONTENT, LARGEST, factored_anew
-from stiffmbs.solve.native.statuses import FAILED, OK, RECOVERABLE
+from stiffmbs.solve.native.fixed_order import LARGEST, factored_anew
+from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK, RECOVERABLE
 
 LU, ROW, COLUMN, PLACE, UPDATE = (
     list(PAIRED_COLUMNS).index(name) for name in ("lu", "row", "column", "place", "update")
