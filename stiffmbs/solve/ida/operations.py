@@ -77,7 +77,7 @@ def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> No
     if words.count(own) != 1 or words[NORM_TABLE] != session.libraries.address("N_VBufPack_Serial"):
         raise Unavailable("the SUNDIALS libraries lay out vectors in another way")
     _write(operations, words.index(own), norm)
-    _write(operations, TABLE, table.ctypes.data)
+    _write(operations, NORM_TABLE, table.ctypes.data)
 
 
 @cache
