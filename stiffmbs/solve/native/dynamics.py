@@ -28,7 +28,7 @@ from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_ROOM, 
 
 MOST_MOVES = 20
 """Newton's moves back to the constraints, from a state that was near them."""
-ROUNDING = 9e-16
+COORDINATE_ROUNDING = 9e-16
 """Part of the largest coordinate that no violation can be told below: four roundings."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
@@ -94,7 +94,7 @@ def to_position_constraints(s, m, t, tolerance, most):
     for move in range(most):
         values = evaluate(s, POSITION, t)
         gap = largest_open(s, values)
-        if gap <= max(tolerance, ROUNDING * largest_of(s.q, s.n_q)):
+        if gap <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_q)):
             return move
         if not isfinite(gap):
             return NOT_FINITE

@@ -17,7 +17,7 @@ from stiffmbs.solve.native.statuses import OK
 
 APART = 2.0
 """Factor between cj of the factors and IDA's beyond which they are made anew: accelerations would change too much, or too little."""
-MOST = 8
+MOST_CORRECTIONS = 8
 """Corrections."""
 SLOWEST = 0.3
 """A correction that is a larger part of the one before asks for new factors, or ends the iteration in vain."""
@@ -93,7 +93,7 @@ def _settled(b, s, e, t):
     """Correct until what is left, by the rate at which corrections shrink, makes no force that counts."""
     rate = _predicted(b, t)
     before = 0.0
-    for k in range(MOST):
+    for k in range(MOST_CORRECTIONS):
         size = _corrected(b, s, e, t)
         if k > 0:
             rate = size / before
