@@ -284,14 +284,10 @@ def _visits(w, k, value, low, high):
         return here != one
     if here > max(one, other):
         passed = max(one, other)
-        return value - _edge(w, k, passed) > max(
-            w.mark[DEPTH], BARELY * (_edge(w, k, passed + 1) - _edge(w, k, passed))
-        )
+        return value - _edge(w, k, passed) > max(w.depth, BARELY * (_edge(w, k, passed + 1) - _edge(w, k, passed)))
     if here < min(one, other):
         passed = min(one, other) - 1
-        return _edge(w, k, passed) - value > max(
-            w.mark[DEPTH], BARELY * (_edge(w, k, passed) - _edge(w, k, passed - 1))
-        )
+        return _edge(w, k, passed) - value > max(w.depth, BARELY * (_edge(w, k, passed) - _edge(w, k, passed - 1)))
     return False
 
 
