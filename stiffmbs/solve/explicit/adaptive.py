@@ -17,6 +17,7 @@ from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
+from ..native.statuses import AT_END, AT_EVENT, PAUSED
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
@@ -24,8 +25,6 @@ from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
 
 ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)")
-PAUSED, AT_END, AT_EVENT = 0, 1, 2
-"""Statuses of a call: to be called again, done, and stopped where a force changes its law."""
 WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
 MOST_LOOKS_APART = 16
