@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..errors import InputError
-from .element import Element, JointName
+from .element import JointName
 from .fields import Described
 from .files.scene_text import scene_text
 from .formula.dimension import Known
@@ -46,7 +46,7 @@ def _written(value: Any) -> Any:
             rows = [[_quantity(*entry) for entry in zip(row, value.dimensions, strict=True)] for row in value.table]
             return {**_fields(value), "table": rows}
         case Described():
-            kind = {"type": value.kind} if isinstance(value, Element) else {}
+            kind = {"type": getattr(value, "type", "")} if "type" in type(value).model_fields else {}
             return {**kind, **_fields(value)}
         case JointName():
             return str(value)

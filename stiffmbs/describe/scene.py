@@ -10,6 +10,7 @@ from pydantic import Field, PrivateAttr
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
+from .element import Component
 from .fields import sentence
 from .figure import Figure
 from .files.expand import (
@@ -34,6 +35,7 @@ from .requests.names import OF_PLANE
 from .requests.order import dimension, dimensions
 from .requests.output import Output
 from .requests.output_field import OutputField
+from .roads.field import AnyRoad, read_roads
 from .settings import RunSettings
 from .table import Table
 from .units.units import Quantity, in_text
@@ -46,6 +48,7 @@ class Scene(ModelData):
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
+    roads: dict[str, AnyRoad] = Field(default_factory=dict, description="roads that tyres name")
     variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
     start: Literal["described", "equilibrium"] = Field(
@@ -73,8 +76,14 @@ class Scene(ModelData):
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
-    """The notes of a scene; a model that is none has none."""
-    return model.notes if isinstance(model, Scene) else ()
+    """The notes of a scene, and what there is to say of the roads and tyres of a model."""
+    told: dict[str, list[str]] = {}
+    for name, element in model.forces.items():
+        for _, component in element.parts(Component):
+            for note in component.notes():
+                told.setdefault(note, []).append(name)
+    own = model.notes if isinstance(model, Scene) else ()
+    return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
 
 
 class PlanarScene(PlanarData, Scene):
@@ -124,7 +133,7 @@ def read_scene(
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, line)
+    return made_scene(found, changes, source, line, file.parent if file else Path())
 
 
 def made_scene(
@@ -132,6 +141,7 @@ def made_scene(
     changes: Sequence[tuple[str, str]],
     source: str,
     line_of: Callable[[tuple[Any, ...]], int | str | None],
+    folder: Path = Path(),
 ) -> Scene:
     """The scene of a mapping.
 
@@ -144,6 +154,8 @@ def made_scene(
         What messages call it.
     line_of : callable
         The line in the source of what a path of keys leads to.
+    folder : Path
+        In which files are looked for that elements name; the working folder by default.
 
     Raises
     ------
@@ -161,7 +173,7 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found, replaced, in_parts)
+        return _validated(found, replaced, in_parts, folder)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
 
@@ -196,7 +208,9 @@ class _Located(Exception):
         self.path = path
 
 
-def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts: Sequence[tuple[str, Any]]) -> Scene:
+def _validated(
+    found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts: Sequence[tuple[str, Any]], folder: Path
+) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"), replaced)
         tables = read_tables(found.get("tables"), parameters)
@@ -204,12 +218,15 @@ def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
         variables = read_variables(raw.get("variables"), parameters, tables)
-        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables}
+        context: dict[str, Any] = {
+            "parameters": parameters, "tables": tables, "variables": variables, "folder": folder
+        }  # fmt: skip
+        context["roads"] = read_roads(raw.get("roads"), context)
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
-    raw["tables"] = tables
+    raw["tables"], raw["roads"] = tables, context["roads"]
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
