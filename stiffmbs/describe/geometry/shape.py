@@ -96,7 +96,7 @@ class OneOfShapes:
     def __init__(self, *kinds: type[Shape]) -> None:
         self.kinds = {kind.model_fields["type"].default: kind for kind in kinds}
 
-    def read(self, found: object, info: ValidationInfo) -> Shape:
+    def read(self, found: Any, info: ValidationInfo) -> Any:
         """The shape that stands in the scene."""
         if isinstance(found, tuple(self.kinds.values())):
             return found

@@ -71,7 +71,9 @@ class Body(Described):
     markers: dict[str, Placement] = Field(
         default_factory=dict, description="named points and orientations on the body, in its own axes"
     )
-    geometry: SpatialGeometry = Field((), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh")
+    geometry: SpatialGeometry = Field(
+        (), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh"
+    )
 
     if TYPE_CHECKING:
 
