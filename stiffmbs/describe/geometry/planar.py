@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from ..units import si
-from .shape import MeshShape, OneOfShapes, PolylineShape, Shape, one_or_more
+from .shape import MeshShape, OneFor, OneOfShapes, PolylineShape, Shape
 
 Point = tuple[si.Length, si.Length]
 
@@ -51,5 +51,5 @@ class Mesh(MeshShape, Placed):
 
 
 SHAPES = (Polyline, Box, Cylinder, Sphere, Mesh)
-PlanarGeometry = Annotated[tuple[Annotated[Any, OneOfShapes(*SHAPES)], ...], BeforeValidator(one_or_more)]
+PlanarGeometry = Annotated[tuple[Annotated[Any, OneOfShapes(*SHAPES)], ...], OneFor()]
 """The shapes of a body, one after the other; one may stand alone."""

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, field_validator
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, field_validator
 from pydantic_core import core_schema
 
 from ..fields import Described
@@ -54,12 +54,25 @@ class PolylineShape(Shape):
         return self.model_copy(update={"points": tuple(frame.to_outside(point) for point in self.points)})
 
 
-def _three(found: Any) -> Any:
-    """One number stands for the same along all axes."""
-    return found if isinstance(found, list | tuple) else (found, found, found)
+class OneFor:
+    """Marks a list for which one entry alone may stand, as many times as the list is long; once where that is open."""
+
+    def __init__(self, times: int | None = None) -> None:
+        self.times = times
+
+    def listed(self, found: Any) -> Any:
+        """What stands in the scene as a list."""
+        return found if isinstance(found, list | tuple) else (found,) * (self.times or 1)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        return core_schema.no_info_before_validator_function(self.listed, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        several = handler(schema)
+        return {"anyOf": [several, several["items"] if "items" in several else several["prefixItems"][0]]}
 
 
-Scale = Annotated[tuple[si.NumberNotZero, si.NumberNotZero, si.NumberNotZero], BeforeValidator(_three)]
+Scale = Annotated[tuple[si.NumberNotZero, si.NumberNotZero, si.NumberNotZero], OneFor(3)]
 
 
 class MeshShape(Shape):
@@ -116,8 +129,3 @@ class OneOfShapes:
             handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])) for kind in self.kinds.values()
         ]
         return {"oneOf": ways}
-
-
-def one_or_more(found: Any) -> Any:
-    """A single shape stands for a list of one."""
-    return (found,) if isinstance(found, dict | Shape) else found

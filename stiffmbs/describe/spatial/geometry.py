@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from ..geometry.shape import MeshShape, OneOfShapes, PolylineShape, Shape, one_or_more
+from ..geometry.shape import MeshShape, OneFor, OneOfShapes, PolylineShape, Shape
 from ..units import si
 from .marker import ORIGIN, Point
 from .orientation import IDENTITY, Orientation
@@ -52,5 +52,5 @@ class Mesh(MeshShape, Placed):
 
 
 SHAPES = (Polyline, Box, Cylinder, Sphere, Mesh)
-SpatialGeometry = Annotated[tuple[Annotated[Any, OneOfShapes(*SHAPES)], ...], BeforeValidator(one_or_more)]
+SpatialGeometry = Annotated[tuple[Annotated[Any, OneOfShapes(*SHAPES)], ...], OneFor()]
 """The shapes of a body, one after the other; one may stand alone."""

@@ -93,7 +93,7 @@ def test_a_planar_scene_takes_its_shapes_to_space():
         ("{type: mesh, file: part.step}", "found 'part.step', expected a file that ends in .stl or .obj"),
         ("{type: polyline, points: [[0, 0]]}", "found 1 values, expected 2"),
         ("{type: box, size: [1, 1], angle: 1 m}", "expected an angle"),
-        ("nothing", "found 'nothing', expected a list"),
+        ("nothing", "found 'nothing', expected a shape such as"),
     ],
 )
 def test_wrong_shapes_are_told_in_one_sentence(shapes, words):
