@@ -19,6 +19,7 @@ from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.far_away import refuse_far_away
 from ..diagnostics.growth import senseless
 from ..diagnostics.lost_turns import lost_turns_sentence
+from ..diagnostics.singular_passage import singular_passage_sentence
 from ..errors import AssemblyError, InputError
 from ..presolve.presolve import parts_of
 from ..results.channels import channels_of, turns_of
@@ -245,7 +246,12 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
     known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
-    wrong = (*wrong, *lost_turns_sentence(job.dynamics, rows), *no_number_sentences(rows.t[solved_there], known))
+    wrong = (
+        *wrong,
+        *singular_passage_sentence(job.dynamics, rows),
+        *lost_turns_sentence(job.dynamics, rows),
+        *no_number_sentences(rows.t[solved_there], known),
+    )
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
