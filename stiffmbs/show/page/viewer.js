@@ -202,13 +202,16 @@ const MOVING = (() => {
     const controls = new THREE.OrbitControls(camera, canvas);
     controls.enableDamping = false;
     const box = new THREE.Box3();
-    for (let k = 0; k <= 20; k++) {
-      for (const machine of machines) {
-        machine.update(time.start + ((time.end - time.start) * k) / 20);
-        machine.root.updateMatrixWorld(true);
-        box.expandByObject(machine.root);
+    const throughout = (act) => {
+      for (let k = 0; k <= 20; k++) {
+        for (const machine of machines) {
+          machine.update(time.start + ((time.end - time.start) * k) / 20);
+          machine.root.updateMatrixWorld(true);
+          act(machine.root);
+        }
       }
-    }
+    };
+    throughout((root) => box.expandByObject(root, true));
     const middle = box.getCenter(new THREE.Vector3()), reach = box.getSize(new THREE.Vector3()).length() || size;
     const home = () => {
       controls.target.copy(middle);
@@ -218,6 +221,18 @@ const MOVING = (() => {
       controls.update();
     };
     home();
+    camera.updateMatrixWorld();
+    const half = new THREE.Vector3(), corner = new THREE.Vector3(), level = camera.quaternion.clone().invert();
+    throughout((root) => root.traverse((part) => {  // half of the width and height of the whole motion, as it is seen first
+      if (!part.geometry) return;
+      part.geometry.computeBoundingBox();
+      const own = part.geometry.boundingBox;
+      for (let k = 0; k < 8; k++) {
+        corner.set(...["x", "y", "z"].map((axis, n) => (k & (1 << n) ? own.min : own.max)[axis]));
+        corner.applyMatrix4(part.matrixWorld).sub(middle).applyQuaternion(level);
+        half.set(Math.max(half.x, Math.abs(corner.x)), Math.max(half.y, Math.abs(corner.y)), 0);
+      }
+    }));
 
     const loads = drawing.loads.map((load) => {
       const found = arrow(drawing.marks[load.name] ? "#e69f00" : drawing.load_color, size);
@@ -255,9 +270,7 @@ const MOVING = (() => {
       if (w === wide && h === high) return;
       [wide, high] = [w, h];
       renderer.setSize(w, h, false);
-      const half = 0.56 * reach * Math.max(1, h / w), ratio = w / h;
-      const span = drawing.dimensions === 2 ? box.getSize(new THREE.Vector3()) : null;
-      const up = span ? 0.56 * Math.max(span.y, span.x / ratio, 0.2 * reach) : half / Math.max(1, h / w) * Math.max(1, 1 / ratio);
+      const ratio = w / h, up = 1.12 * Math.max(half.y, half.x / ratio, 0.1 * reach);
       Object.assign(camera, { left: -up * ratio, right: up * ratio, top: up, bottom: -up });
       camera.updateProjectionMatrix();
     }
@@ -333,7 +346,7 @@ const MOVING = (() => {
       chosen.forEach((c, k) => {
         const button = make("button", make("li", chosenList), { type: "button" }, { "aria-label": `take ${c.name} out of the plot` });
         const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-        svg.setAttribute("width", 26); svg.setAttribute("height", 6);
+        svg.setAttribute("aria-hidden", "true"); svg.setAttribute("width", 26); svg.setAttribute("height", 6);
         const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
         for (const [n, v] of Object.entries({ x1: 0, x2: 26, y1: 3, y2: 3, stroke: COLORS[k % COLORS.length], "stroke-width": 2, "stroke-dasharray": DASHES[k % DASHES.length].join(" ") })) line.setAttribute(n, v);
         svg.append(line);
