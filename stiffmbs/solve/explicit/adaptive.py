@@ -11,7 +11,6 @@ import numpy as np
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
-from ..error_control.tolerances import absolute_tolerances
 from ..events.chattering import Chattering
 from ..events.divergence import refuse_beyond_sense
 from ..events.limits import refuse_beyond_limits
@@ -71,7 +70,7 @@ class AdaptiveRun:
         features = dynamics.input_features(grid.start, grid.end)
         self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
         work.step_bound.follow(features)
-        self._tolerances = settings.rtol, absolute_tolerances(dynamics.system, settings)
+        self._tolerances = settings.rtol, work.atol
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg

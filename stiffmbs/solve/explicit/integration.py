@@ -32,6 +32,8 @@ class Integration:
     step_times : list of ndarray
         Ends of the steps of each call.
     step_bound : StepBound
+    atol : ndarray, shape (n_q + n_u,)
+        Absolute tolerances.
     """
 
     def __init__(
@@ -46,7 +48,7 @@ class Integration:
         self._scheme, self._eliminated = scheme, dynamics.eliminated
         self._end = scheme.stages
         self.step_bound = StepBound()
-        atol = absolute_tolerances(dynamics.system, settings)
+        self.atol = atol = absolute_tolerances(dynamics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         n_event_functions = dynamics.system.n_event_functions
         self._watch = EventSearch(dynamics.state)
