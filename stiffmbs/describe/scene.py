@@ -133,7 +133,7 @@ def read_scene(
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, line)
+    return made_scene(found, changes, source, line, file.parent if file else None)
 
 
 def made_scene(
@@ -141,6 +141,7 @@ def made_scene(
     changes: Sequence[tuple[str, Any]],
     source: str,
     line_of: Callable[[tuple[Any, ...]], int | str | None],
+    folder: Path | None = None,
     unchanged: Unchanged | None = None,
 ) -> Scene:
     """The scene of a mapping.
@@ -155,6 +156,8 @@ def made_scene(
         What messages call it.
     line_of : callable
         The line in the source of what a path of keys leads to.
+    folder : Path, optional
+        Where meshes are looked for; the working folder by default.
     unchanged : Unchanged, optional
         What was validated before and need not be again.
 
@@ -163,7 +166,7 @@ def made_scene(
     InputError
         When it is no valid scene.
     """
-    scene_as_written = WrittenScene(copy.deepcopy(found), tuple(changes), source)
+    scene_as_written = WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
     in_parts = []
@@ -175,7 +178,7 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        scene = _validated(found, replaced, in_parts, unchanged)
+        scene = _validated(found, replaced, in_parts, folder, unchanged)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
     scene._written = scene_as_written
@@ -216,6 +219,7 @@ def _validated(
     found: dict[str, Any],
     replaced: Mapping[str, Quantity],
     in_parts: Sequence[tuple[str, Any]],
+    folder: Path | None,
     unchanged: Unchanged | None,
 ) -> Scene:
     try:
@@ -225,7 +229,7 @@ def _validated(
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
         variables = read_variables(raw.get("variables"), parameters, tables)
-        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables}
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None

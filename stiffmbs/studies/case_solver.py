@@ -92,7 +92,7 @@ class CaseSolver:
         written, names = self._task.scene, self._task.names
         content = copy.deepcopy(dict(written.content))
         changes = (*written.changes, *zip(names, values, strict=True))
-        return made_scene(content, changes, written.source, lambda _: None, self._unchanged)
+        return made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
 
     def solution(self, values: Sequence[Any]) -> Solution:
         """The solution of a case; errors as for `stiffmbs.run`."""

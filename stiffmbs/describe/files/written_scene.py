@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 
@@ -19,8 +20,11 @@ class WrittenScene:
         Values put in place of the file's.
     source : str
         What messages call it.
+    folder : Path or None
+        Where meshes are looked for.
     """
 
     content: Mapping[str, Any]
     changes: tuple[tuple[str, Any], ...]
     source: str
+    folder: Path | None
