@@ -128,7 +128,7 @@ class Element(Described):
         """The names of the element's constraint equations; none for a force."""
         return ()
 
-    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
         yield from ()
 
