@@ -133,7 +133,7 @@ class Element(Described):
         yield from ()
 
     def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        """Why the element cannot act where the bodies are drawn."""
+        """Why the element cannot act at the initial pose."""
         yield from ()
 
     def in_space(self, angles: Any) -> dict[str, Any]:

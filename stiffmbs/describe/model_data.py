@@ -134,7 +134,7 @@ class ModelData(Described):
 
     @abstractmethod
     def initial_marker(self, marker: MarkerReference) -> Any:
-        """A marker with numbers, in ground axes, as the bodies are drawn."""
+        """A marker with numbers, in ground axes, at the initial pose."""
 
     @abstractmethod
     def carried(self, marker: MarkerReference) -> tuple[str, Any]:
