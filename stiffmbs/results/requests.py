@@ -65,6 +65,7 @@ def _value(output: Output, time: np.ndarray, channels: Channels, terms: _Terms, 
     of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
 
     def names(name: str) -> Any:
+        """The values over time that a name stands for."""
         if name == TIME:
             return time
         if name in output.quantities:
