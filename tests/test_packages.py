@@ -13,13 +13,13 @@ import stiffmbs
 
 ROOT = Path(stiffmbs.__file__).parent
 ORDER = (
-    "describe", "adams", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "show",
+    "describe", "adams", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
     "bench", "stress", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts"}
 METHODS = {
-    (ROOT.name, "describe", "model_builder"): {"jobs", "results", "verification"},
+    (ROOT.name, "describe", "model_builder"): {"jobs", "results", "show", "verification"},
     (ROOT.name, "results", "solution"): {"show"},
 }
 """What users hold offers what can be done with it as methods, which load it when they are called."""

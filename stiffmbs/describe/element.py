@@ -97,12 +97,15 @@ class Element(Described):
         law or components along the axes: ``vector``, ``rotations``, ``components`` (of force, then of torque), ``matrix``,
         ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``; names of fields that name joints: as
         the product of their coordinates.  For a marker: its axis whose direction matters, such as ``z``.
+    symbol : str
+        The kind whose symbol drawings show; its own by default, and a diamond or a dashed line where there is none.
     """
 
     kind: ClassVar[str] = ""
     dimensions: ClassVar[tuple[int, ...]] = ()
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
     reflected: ClassVar[dict[str, str] | None] = None
+    symbol: ClassVar[str] = ""
 
     type: str = ""
 
@@ -143,12 +146,12 @@ class Element(Described):
         """The names of the element's constraint equations; none for a force."""
         return ()
 
-    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
         yield from ()
 
     def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        """Why the element cannot act where the bodies are drawn."""
+        """Why the element cannot act at the initial pose."""
         yield from ()
 
     def in_space(self, angles: Any) -> dict[str, Any]:

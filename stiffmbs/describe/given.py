@@ -35,4 +35,6 @@ TyreProperties: TypeAlias = "coefficients.TyreProperties | str | Path | Mapping[
 """A property file, or its coefficients."""
 Markers: TypeAlias = "Mapping[str, Any]"
 """Named points on a body."""
+Geometry: TypeAlias = "Mapping[str, Any] | Sequence[Mapping[str, Any]]"
+"""Shapes of a body, each with its ``type``; one may stand alone."""
 Orientation: TypeAlias = "Sequence[Any] | np.ndarray | Mapping[str, Any]"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -23,7 +24,9 @@ from .files.expand import (
 )
 from .files.include import read_including
 from .files.quoted import written
+from .files.unchanged import Unchanged
 from .files.variables import read_variables
+from .files.written_scene import WrittenScene
 from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .model import PlanarData
@@ -57,6 +60,7 @@ class Scene(ModelData):
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
+    _written: WrittenScene | None = PrivateAttr(default=None)
 
     def check_requests(self) -> None:
         """The same for variables, whose formulas are read as those of requests."""
@@ -73,6 +77,11 @@ class Scene(ModelData):
     def written_parameters(self) -> dict[str, float | str]:
         """The parameters as a scene writes them, with their units."""
         return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
+
+    @property
+    def written(self) -> WrittenScene | None:
+        """What the scene was read from, to read it again with other values; None where it was made in another way."""
+        return self._written
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
@@ -133,15 +142,16 @@ def read_scene(
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, line, file.parent if file else Path())
+    return made_scene(found, changes, source, line, file.parent if file else None)
 
 
 def made_scene(
     found: dict[str, Any],
-    changes: Sequence[tuple[str, str]],
+    changes: Sequence[tuple[str, Any]],
     source: str,
     line_of: Callable[[tuple[Any, ...]], int | str | None],
-    folder: Path = Path(),
+    folder: Path | None = None,
+    unchanged: Unchanged | None = None,
 ) -> Scene:
     """The scene of a mapping.
 
@@ -150,32 +160,38 @@ def made_scene(
     found : mapping
         Is changed.
     changes : sequence of (path, text)
+        Values that are no text are put there as they are.
     source : str
         What messages call it.
     line_of : callable
         The line in the source of what a path of keys leads to.
-    folder : Path
-        In which files are looked for that elements name; the working folder by default.
+    folder : Path, optional
+        Where meshes and property files are looked for; the working folder by default.
+    unchanged : Unchanged, optional
+        What was validated before and need not be again.
 
     Raises
     ------
     InputError
         When it is no valid scene.
     """
+    scene_as_written = WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
     in_parts = []
     for path, value in changes:
-        read = read_yaml(value, f"--set {path}")
+        read = read_yaml(value, f"--set {path}") if isinstance(value, str) else value
         if set_in_instances(path, found.get("use")):
             in_parts.append((path, read))
         else:
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found, replaced, in_parts, folder)
+        scene = _validated(found, replaced, in_parts, folder, unchanged)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
+    scene._written = scene_as_written
+    return scene
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
@@ -189,7 +205,7 @@ def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
 
 
 def _place(
-    fault: tuple[Any, ...], changes: Sequence[tuple[str, str]], line_of: Callable[[tuple[Any, ...]], int | str | None]
+    fault: tuple[Any, ...], changes: Sequence[tuple[str, Any]], line_of: Callable[[tuple[Any, ...]], int | str | None]
 ) -> str:
     """Where a fault is, for a sentence that goes on with its path: in what was changed, or in a line."""
     for path, _ in changes:
@@ -209,7 +225,11 @@ class _Located(Exception):
 
 
 def _validated(
-    found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts: Sequence[tuple[str, Any]], folder: Path
+    found: dict[str, Any],
+    replaced: Mapping[str, Quantity],
+    in_parts: Sequence[tuple[str, Any]],
+    folder: Path | None,
+    unchanged: Unchanged | None,
 ) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"), replaced)
@@ -218,15 +238,16 @@ def _validated(
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
         variables = read_variables(raw.get("variables"), parameters, tables)
-        context: dict[str, Any] = {
-            "parameters": parameters, "tables": tables, "variables": variables, "folder": folder
-        }  # fmt: skip
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
         context["roads"] = read_roads(raw.get("roads"), context)
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"], raw["roads"] = tables, context["roads"]
+    written_entries = dict(raw)
+    if unchanged:
+        raw = unchanged.put_into(raw, context)
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
@@ -236,6 +257,8 @@ def _validated(
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
     scene._quantities = parameters
+    if unchanged:
+        unchanged.keep(written_entries, context, scene)
     return scene
 
 

@@ -160,7 +160,7 @@ def _read(found: object, context: Mapping[str, Any]) -> TyreProperties:
         return found
     if isinstance(found, str | Path):
         try:
-            return TyreProperties.from_file(Path(context.get("folder", "")) / found)
+            return TyreProperties.from_file(Path(context.get("folder") or "") / found)
         except InputError as error:
             raise ValueError(str(error)) from None
     if isinstance(found, dict):
