@@ -1,6 +1,7 @@
 """Roads: their heights as a wheel sees them, random roads of ISO 8608, and what is refused."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -196,3 +197,27 @@ def test_what_is_refused(road, name, said):
         scene(road, name)
     assert said in str(error.value)
     assert "line" in str(error.value)
+
+
+def test_a_quarter_car_answers_a_random_road_as_its_transfer_function_says():
+    """The load's variance from the road's density and the linear model's response, over a long stretch (no lift-off)."""
+    import stiffmbs
+
+    path = Path(__file__).parents[2] / "examples" / "quarter_car.yaml"
+    changes = [
+        ("roads.rough.start", "null"),
+        ("roads.rough.roughness", "A"),
+        ("run.output", "5 ms"),
+        ("run.duration", "27 s"),
+    ]
+    solution = stiffmbs.run(stiffmbs.load_scene(path, changes))
+    load = solution["tyre.load"][solution.time >= 27 - 250 / 20]
+    n = np.arange(3, 834) / 250
+    s = 2j * math.pi * n * 20
+    k, kt, c, ct, m, mw = 20e3, 190e3, 1500, 100, 320, 38
+    suspension, tyre = k + c * s, kt + ct * s
+    wheel = tyre * (m * s**2 + suspension) / ((m * s**2 + suspension) * (mw * s**2 + suspension + tyre) - suspension**2)
+    force = tyre * (1 - wheel)
+    variance = np.sum(np.abs(force) ** 2 * 16e-6 * (n / 0.1) ** -2 / 250)
+    assert np.std(load) == pytest.approx(math.sqrt(variance), rel=0.02)
+    assert load.min() > 0
