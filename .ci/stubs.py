@@ -30,6 +30,8 @@ PLANE = """
 from typing import Literal
 
 from . import spatial as spatial
+from .comparison.compare import compare as compare
+from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
 from .describe import given
 from .describe.body import Body as Body

@@ -35,7 +35,8 @@ __version__ = "0.1.0"
 
 _ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
 _LATER = {
-    "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check",
+    "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
+    "compare_over": ".comparison.over",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
     "transfer": ".jobs.transfer", "verify": ".verification.verify",
 }  # fmt: skip

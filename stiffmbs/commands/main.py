@@ -7,6 +7,7 @@ import click
 from .bench import bench
 from .cache import cache
 from .check import check
+from .compare import compare
 from .convert import convert
 from .equilibrium import equilibrium
 from .modes import modes
@@ -24,5 +25,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, equilibrium, modes, response, convert, schema, bench, cache, report, stress):
+for command in (run, check, equilibrium, modes, response, convert, schema, bench, compare, cache, report, stress):
     main.add_command(command)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import math
+from collections.abc import Sequence
 from importlib.metadata import version
 from importlib.resources import files
 from importlib.util import find_spec
@@ -26,6 +27,7 @@ from .counters import solver_words
 from .digits import with_bar
 from .figure import drawn
 from .force_table import ROUNDING
+from .sections import Section
 from .step_history import step_history
 
 if TYPE_CHECKING:
@@ -51,7 +53,7 @@ def check_report(path: Path) -> None:
             raise InputError(f"-o {path}: found no {package}, expected it installed: pip install 'stiffmbs[report]'")
 
 
-def write_report(path: Path, scene: Scene, solution: Solution) -> None:
+def write_report(path: Path, scene: Scene, solution: Solution, sections: Sequence[Section] = ()) -> None:
     """Write the page; it appears whole or not at all.
 
     Parameters
@@ -61,13 +63,15 @@ def write_report(path: Path, scene: Scene, solution: Solution) -> None:
         As it was solved.
     solution : Solution
         With error bars where it was verified.
+    sections : sequence of Section
+        What else was asked for, such as modes.
     """
-    page = report_page(scene, solution)
+    page = report_page(scene, solution, sections)
     written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
 
 
 @np.errstate(all="ignore")  # of a diverged run sums overflow
-def report_page(scene: Scene, solution: Solution) -> str:
+def report_page(scene: Scene, solution: Solution, sections: Sequence[Section] = ()) -> str:
     """The page as HTML, figures and all."""
     from jinja2 import Environment
 
@@ -83,6 +87,7 @@ def report_page(scene: Scene, solution: Solution) -> str:
         solution=solution, check=check(scene), settings=_settings(scene), peaks=_peaks(solution),
         start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
+        sections=[(section, [_embedded(sheet, 0) for sheet in section.figures]) for section in sections],
         counted=solver_words(solution.solver), violation=float(np.nanmax(solution.channels["constraint.position"])),
     )  # fmt: skip
 
