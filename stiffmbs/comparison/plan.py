@@ -56,8 +56,12 @@ class Plan:
     longest: float
 
     def entries(self, settings: RunSettings) -> tuple[Entry, ...]:
-        """The ways to solve."""
-        return entries_of(self.solvers, self.formulations, settings)
+        """The ways to solve; a tolerance or step that none of them takes is refused."""
+        found = entries_of(self.solvers, self.formulations, settings)
+        for entry in found:
+            for value in self.values(entry, settings):
+                entry.at(settings, value)
+        return found
 
     def values(self, entry: Entry, settings: RunSettings) -> tuple[float, ...]:
         """At what an entry is tried, from loose to tight."""

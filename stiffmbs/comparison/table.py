@@ -21,8 +21,8 @@ BETTER = "*"
 """Stands behind a time at which a solver is more accurate than asked for, at all its settings."""
 BETTER_WORDS = f"{BETTER} more accurate at every setting: the time of the fastest"
 INTERRUPTED = "interrupted by the user; what was measured is shown"
-BESIDE = 3
-"""Solvers whose rows stand beside each other."""
+BESIDE, FIRST, EACH = 4, 16, 28
+"""Solvers whose rows stand beside each other at the most; characters of the first column, and of a solver's."""
 Print = Callable[["Console"], None]
 
 
@@ -51,7 +51,8 @@ def print_comparison(comparison: Comparison, console: Console) -> None:
     say(
         f"{comparison.name or 'model'}: error in {comparison.measure} ({unit}), median time of the integration (ms), steps"
     )
-    for table in measured_tables(comparison):
+    beside = max(1, min(BESIDE, (console.width - FIRST) // EACH))
+    for table in measured_tables(comparison, beside):
         console.print(table)
     for sentence in failures(comparison.rows):
         say(sentence)
@@ -86,19 +87,19 @@ def print_over(comparison: ComparisonOver, console: Console) -> None:
     say(f"conclusion: {comparison.conclusion}")
 
 
-def measured_tables(comparison: Comparison) -> Iterator[Table]:
-    """A line for each setting, a few solvers beside each other; those with the same settings stand together."""
+def measured_tables(comparison: Comparison, beside: int) -> Iterator[Table]:
+    """A line for each setting, so many solvers beside each other; those with the same settings stand together."""
     from rich.table import Table
 
     of_solver: dict[str, dict[str, Row]] = {}
     for row in comparison.rows:
         of_solver.setdefault(row.solver, {})[row.setting] = row
     resolved = comparison.reference.resolved(comparison.measure)
-    for names in _together(of_solver):
+    for names in _together(of_solver, beside):
         table = Table()
         table.add_column("setting", no_wrap=True)
         for name in names:
-            for head in (f"{name}: error", "ms", "steps"):
+            for head in (f"{name}\nerror", "\nms", "\nsteps"):
                 table.add_column(head, justify="right", no_wrap=True)
         for setting in dict.fromkeys(setting for name in names for setting in of_solver[name]):
             rows = [of_solver[name].get(setting) for name in names]
@@ -106,13 +107,13 @@ def measured_tables(comparison: Comparison) -> Iterator[Table]:
         yield table
 
 
-def _together(of_solver: dict[str, dict[str, Row]]) -> Iterator[list[str]]:
+def _together(of_solver: dict[str, dict[str, Row]], beside: int) -> Iterator[list[str]]:
     """Names of solvers whose rows share a table."""
     kinds: dict[str, list[str]] = {}
     for name, rows in of_solver.items():
         kinds.setdefault(next(iter(rows)).partition(" ")[0], []).append(name)
     for names in kinds.values():
-        yield from (names[k : k + BESIDE] for k in range(0, len(names), BESIDE))
+        yield from (names[k : k + beside] for k in range(0, len(names), beside))
 
 
 def _cells(row: Row | None, measure: str, resolved: float) -> list[str]:

@@ -51,7 +51,9 @@ def _fastest(at: AtError, racing: Sequence[str]) -> tuple[str, ...]:
 
 
 def _are_fastest(names: Sequence[str], run: Sequence[AtError], racing: Sequence[str]) -> str:
-    """Who is the fastest, and by how much before the best of the others."""
+    """Who is the fastest, and by how much before the best of the others; of one alone how long it takes."""
+    if len(racing) == 1:
+        return f"{racing[0]} takes {_span([1e3 * at.seconds[racing[0]] for at in run])} ms"
     who = (
         f"{names[0]} is the fastest" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} are equally fast"
     )
