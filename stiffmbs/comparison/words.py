@@ -63,8 +63,11 @@ def _are_fastest(names: Sequence[str], run: Sequence[AtError], racing: Sequence[
         if others:
             following = min(others, key=lambda name: others[name])
             found.append((others[following] / min(at.seconds[name] for name in names), following))
-    if not found:
+    if not found and len(names) == len(racing):
         return who
+    if not found:
+        times = _span([1e3 * min(at.seconds[name] for name in names) for at in run])
+        return f"only {' and '.join(names)} {'has a time' if len(names) == 1 else 'have times'}, {times} ms"
     after = " or ".join(dict.fromkeys(name for _, name in found))
     return f"{who}, {_span([ratio for ratio, _ in found])} times as fast as {after}"
 
@@ -78,7 +81,8 @@ def _choices(found: Sequence[AtError], racing: Sequence[str], choosing: Sequence
             if name in at.seconds and any(other in at.seconds for other in racing)
         ]
         if ratios:
-            yield f"{name} takes {_span(ratios)} times as long as the fastest"
+            span = _span(ratios)
+            yield f"{name} takes {'' if span == '1' else f'{span} times '}as long as the fastest"
 
 
 def _span(ratios: Sequence[float]) -> str:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from stiffmbs.comparison.at_error import AtError, decades, times_at
+from stiffmbs.comparison.compare import Comparison
 from stiffmbs.comparison.crossing import crossings
 from stiffmbs.comparison.entries import entries_of
 from stiffmbs.comparison.row import Row
@@ -58,6 +59,31 @@ def test_decades_are_those_of_the_errors():
     assert decades(rows("bdf"), "positions", 3e-6) == pytest.approx([1e-3, 1e-4, 1e-5])
     assert decades(rows("bdf"), "positions", 0.05) == pytest.approx([0.1])
     assert decades([], "positions", 1e-12) == []
+
+
+def compared(*measured):
+    """A comparison of rows alone."""
+    at_errors = tuple(times_at(measured, "positions", 1e-12, [1e-4, 1e-5, 1e-6]))
+    return Comparison("", "positions", measured, at_errors, None, ENTRIES, False)
+
+
+def test_the_conclusion_names_the_fastest_and_its_lead():
+    told = compared(*rows("bdf"), *rows("dop853", 0.5), *rows("auto", 0.6)).conclusion
+    assert told == (
+        "at an error of 1e-04 to 1e-06 m or rad dop853 is the fastest, 2 times as fast as bdf; auto takes 1.2 times as long as the "
+        "fastest"
+    )
+    assert "bdf and dop853 are equally fast" in compared(*rows("bdf"), *rows("dop853", 0.95)).conclusion
+    assert "only bdf has a time" in compared(*rows("bdf"), *rows("dop853", error=1e4)).conclusion
+
+
+def test_the_conclusion_changes_with_the_error():
+    """Times that cross at 1e-5: one goes by the power -0.2, the other by -0.1."""
+    told = compared(*rows("bdf", 1e-5**0.1), *rows("dop853", 1.0, -0.1)).conclusion
+    assert told.startswith(
+        "at an error of 1e-04 m or rad bdf is the fastest, 1.3 times as fast as dop853; at an error of 1e-05"
+    )
+    assert "1e-06 m or rad dop853 is the fastest" in told
 
 
 def at_each(values, bdf, dop853):
