@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     "--over", metavar="P=A..B[:N]", help="Time at an equal error against a parameter; by decades where A..B has any."
 )
 @click.option("--error", type=float, help="With --over: at which times are compared, 1e-4 m or rad by default.")
-@click.option("--repeats", type=click.IntRange(1), default=5, show_default=True, help="How often a run is timed.")
+@click.option("--repeats", type=click.IntRange(1), default=9, show_default=True, help="How often a run is timed.")
 @click.option(
     "--longest", type=click.FloatRange(0, min_open=True), default=20.0, show_default=True,
     help="A run that takes longer is given up, s; one of the reference may take ten times as long.",

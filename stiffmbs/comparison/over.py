@@ -113,7 +113,7 @@ class ComparisonOver:
         }  # fmt: skip
 
     def _rows(self, one: AtValue) -> list[dict[str, Any]]:
-        setting = f"{self.parameter}={one.value:g}"
+        setting = f"{self.parameter}={one.value:.4g}"
         found = []
         for entry in self.entries:
             row: dict[str, Any] = {"solver": entry.name, "setting": setting}
@@ -202,7 +202,7 @@ def compare_over(
         data = data_of(made(value))
         base = base_settings(data, settings, changes)
         name, entries = data.name, plan.entries(base)
-        report = _prefixed(f"{parameter} = {value:g}", tell)
+        report = _prefixed(f"{parameter} = {value:.4g}", tell)
         try:
             exact = reference(data, base, PATIENCE * plan.longest, report)
             refuse_unmeasured(plan, exact)

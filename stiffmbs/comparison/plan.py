@@ -21,7 +21,7 @@ TOLERANCES = tuple(float(f"{10.0**k:.2g}") for k in np.arange(-3, -8.01, -1 / PE
 """Relative tolerances that are tried where nobody asks for others."""
 STEPS = tuple(10.0**k for k in np.arange(-2, -5.1, -1 / PER_DECADE))
 """Steps of the schemes with fixed steps, in parts of the duration."""
-REPEATS = 5
+REPEATS = 9
 LONGEST = 20.0
 """Time, s, after which a run is given up."""
 PATIENCE = 10.0

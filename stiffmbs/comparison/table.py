@@ -81,7 +81,7 @@ def print_over(comparison: ComparisonOver, console: Console) -> None:
         say(BETTER_WORDS)
     for one in comparison.values:
         if one.message:
-            say(f"{comparison.parameter} = {one.value:g}: {one.message}")
+            say(f"{comparison.parameter} = {one.value:.4g}: {one.message}")
     if comparison.interrupted:
         say(INTERRUPTED)
     say(f"conclusion: {comparison.conclusion}")
@@ -143,7 +143,7 @@ def at_errors_table(comparison: Comparison) -> Table:
 def over_table(comparison: ComparisonOver) -> Table:
     """Time of each solver at each value of the parameter."""
     names = [entry.name for entry in comparison.entries]
-    rows = [[f"{one.value:g}", *(_time(name, one.at) for name in names)] for one in comparison.values]
+    rows = [[f"{one.value:.4g}", *(_time(name, one.at) for name in names)] for one in comparison.values]
     return _table([comparison.parameter, *names], rows)
 
 

@@ -104,7 +104,7 @@ def _crossing_sentences(comparison: ComparisonOver) -> Iterator[str]:
         where = (
             f"about {crossing.at:.1e}"
             if crossing.measured
-            else f"between {crossing.between[0]:g} and {crossing.between[1]:g}"
+            else f"between {crossing.between[0]:.4g} and {crossing.between[1]:.4g}"
         )
         yield f"{crossing.then} is faster than {crossing.before} from {parameter} {where} on"
     if comparison.crossings:
