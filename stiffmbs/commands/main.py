@@ -9,6 +9,7 @@ from .cache import cache
 from .check import check
 from .compare import compare
 from .convert import convert
+from .draw import draw
 from .equilibrium import equilibrium
 from .modes import modes
 from .process import Process
@@ -25,5 +26,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, equilibrium, modes, response, convert, schema, bench, compare, cache, report, stress):
+for command in (run, check, equilibrium, modes, response, compare, convert, schema, bench, cache, draw, report, stress):
     main.add_command(command)
