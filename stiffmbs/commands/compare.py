@@ -37,7 +37,9 @@ if TYPE_CHECKING:
 @click.option(
     "--over", metavar="P=A..B[:N]", help="Time at an equal error against a parameter; by decades where A..B has any."
 )
-@click.option("--error", type=float, help="With --over: at which times are compared, 1e-4 m or rad by default.")
+@click.option(
+    "--error", type=float, help="With --over: at which times are compared; of positions 1e-4 m or rad by default."
+)
 @click.option("--repeats", type=click.IntRange(1), default=9, show_default=True, help="How often a run is timed.")
 @click.option(
     "--longest", type=click.FloatRange(0, min_open=True), default=20.0, show_default=True,
@@ -92,8 +94,7 @@ def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
 
         name, values = over
         made = with_parameter(scene, name, changes)
-        with in_file(scene):
-            return compare_over(made, name, values, error=options["error"], tell=tell, **asked)
+        return compare_over(made, name, values, error=options["error"], tell=tell, **asked)
     from ..comparison.compare import compare
 
     loaded = load_scene(scene, changes)

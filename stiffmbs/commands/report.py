@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..describe.files.text_file import STANDARD_INPUT, file_text
 from ..describe.scene import Scene
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
@@ -30,15 +31,12 @@ if TYPE_CHECKING:
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Where to write the page: .html.")
 @click.option("--verify/--no-verify", default=True, show_default=True, help="Whether peaks get error bars.")
 @click.option("--equilibrium", is_flag=True, help="With the static equilibrium.")
-@click.option("--modes", is_flag=True, help="With the natural modes about the start.")
 @click.option("--compare", is_flag=True, help="With run time against error of bdf, dop853 and auto.")
 @solving_options
-def report(
-    scene: str, output: Path | None, verify: bool, equilibrium: bool, modes: bool, compare: bool, **options: Any
-) -> None:
+def report(scene: str, output: Path | None, verify: bool, equilibrium: bool, compare: bool, **options: Any) -> None:
     """Check and solve SCENE and write one page on it: findings, settings, peaks with error bars, figures, the solver's steps.
 
-    Where there is no equilibrium, no mode or no reference, the page says why.
+    Where there is no equilibrium or no reference for a comparison, the page says why.
     Exit status: 0 done, 1 stopped early (the page is written all the same), 2 the input is wrong.
     """
     from ..show.report import check_report, write_report
@@ -49,9 +47,10 @@ def report(
         refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes_of(options))
         solution = solve_scene(scene, loaded, verify)
-        asked = {"equilibrium": equilibrium, "modes": modes, "compare": compare}
+        asked = {"equilibrium": equilibrium, "compare": compare}
         sections = [_section(name, loaded) for name, wanted in asked.items() if wanted]
-        write_report(path, loaded, solution, sections)
+        text = "" if scene == STANDARD_INPUT else file_text(scene)
+        write_report(path, loaded, solution, text, sections)
     except StiffmbsError as error:
         refuse(scene, error)
     except OSError as error:
@@ -80,13 +79,6 @@ def _equilibrium(scene: Scene) -> Section:
     return equilibrium_section(equilibrium(scene), scene)
 
 
-def _modes(scene: Scene) -> Section:
-    from ..jobs.modes import modes
-    from ..show.sections import modes_section
-
-    return modes_section(modes(scene))
-
-
 def _compared(scene: Scene) -> Section:
     from ..comparison.compare import compare
     from ..comparison.report_section import comparison_section
@@ -94,5 +86,5 @@ def _compared(scene: Scene) -> Section:
     return comparison_section(compare(scene))
 
 
-SECTIONS = {"equilibrium": _equilibrium, "modes": _modes, "compare": _compared}
-TITLES = {"equilibrium": "Static equilibrium", "modes": "Natural modes", "compare": "Solvers compared"}
+SECTIONS = {"equilibrium": _equilibrium, "compare": _compared}
+TITLES = {"equilibrium": "Static equilibrium", "compare": "Solvers compared"}

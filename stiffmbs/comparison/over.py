@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
+from ..describe.scene import read_scene
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, InputError, SolverError
 from ..jobs.load_scene import load_scene
@@ -15,6 +17,7 @@ from .at_error import AtError, times_at
 from .compare import measured, refuse_unmeasured
 from .crossing import Crossing, crossings
 from .entries import USUAL, Entry
+from .measures import measure_of
 from .plan import LONGEST, PATIENCE, REPEATS, TOLERANCES, Plan, base_settings, plan_of
 from .reference import Tell, reference
 from .row import Row
@@ -173,8 +176,7 @@ def compare_over(
     values : sequence of float
         Of the parameter, SI units.
     error : float, optional
-        At which times are compared, in the unit of the measure; 1e-4 m or rad without it, and 1e-4 of the largest value
-        of velocities and forces.
+        At which times are compared, in the unit of the measure; of positions 1e-4 m or rad without it.
     solvers, formulations, tolerances, steps, measure, repeats, longest, settings, tell, **changes
         As for `stiffmbs.compare`.
 
@@ -190,8 +192,7 @@ def compare_over(
         Where there is no reference at any value.
     """
     plan = plan_of(solvers, formulations, tolerances, steps, measure, repeats, longest)
-    if error is not None and not error > 0:
-        raise InputError(f"error: found {error}, expected more than 0")
+    at_error = _error(error, measure)
     if not len(values):
         raise InputError(f"{parameter}: found no values, expected some")
     made = model if callable(model) else with_parameter(model, parameter)
@@ -206,9 +207,8 @@ def compare_over(
         try:
             exact = reference(data, base, PATIENCE * plan.longest, report)
             refuse_unmeasured(plan, exact)
-            error = error or _usual_error(plan.measure, exact.size(plan.measure))
             sweep = Sweep(data, base, exact, plan.longest, report)
-            one, interrupted = _at_value(value, sweep, plan, entries, error, report)
+            one, interrupted = _at_value(value, sweep, plan, entries, at_error, report)
         except (SolverError, AssemblyError) as refused:
             one = AtValue(value, (), None, str(refused))
         except KeyboardInterrupt:
@@ -221,7 +221,7 @@ def compare_over(
             break
     if not any(one.at for one in found):
         raise SolverError(next((one.message for one in found if one.message), "no solver reached the error"))
-    return ComparisonOver(name, parameter, measure, error or USUAL_ERROR, tuple(found), entries, interrupted)
+    return ComparisonOver(name, parameter, measure, at_error, tuple(found), entries, interrupted)
 
 
 def _at_value(
@@ -248,12 +248,22 @@ def _reason(name: str, rows: Sequence[Row]) -> str:
     return messages[-1] if messages else "the error was not reached"
 
 
-def _usual_error(measure: str, size: float) -> float:
-    return USUAL_ERROR if measure == "positions" else float(f"{USUAL_ERROR * size:.0e}")
+def _error(error: float | None, measure: str) -> float:
+    """The error at which times are compared; there is a usual one of positions alone."""
+    if error is None and measure != "positions":
+        raise InputError(
+            f"error: found none, expected one in {measure_of(measure).unit}, as errors of {measure} are compared"
+        )
+    if error is not None and not error > 0:
+        raise InputError(f"error: found {error}, expected more than 0")
+    return error or USUAL_ERROR
 
 
 def with_parameter(path: str | Path, parameter: str, changes: Sequence[tuple[str, str]] = ()) -> Family:
-    """A scene as a function of one of its parameters, or of any other value in it."""
+    """A scene as a function of one of its parameters, or of any other value in it; standard input is read once."""
+    if str(path) == STANDARD_INPUT:
+        text = file_text(path)
+        return lambda value: read_scene(text, [*changes, (parameter, _written(value))], source_name(path))
     return lambda value: load_scene(path, [*changes, (parameter, _written(value))])
 
 

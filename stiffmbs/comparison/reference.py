@@ -11,7 +11,7 @@ from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from ..jobs.run import prepare, solved
-from ..results.scales import scales
+from ..results.scales import kind_of, scales
 from ..results.solution import Solution
 from ..solve import traits_of
 from ..solve.settings import changed
@@ -26,6 +26,8 @@ WELL, AGREED = 1e-6, 1e-5
 """Parts of a channel's motion: two runs that differ by less need no tighter ones; by more they have no reference."""
 FORCES_AGREED = 1e-2
 """Part of a force's size by which it may differ: of stiff springs it magnifies what positions differ by."""
+STILL = 1e-4
+"""Motions smaller than this, in sizes of the mechanism and rad, need not agree to a part of themselves."""
 RESOLVED = 3.0
 """Errors are measured down to so many times what the two integrators differ by."""
 ROUNDING = 1e-11
@@ -168,8 +170,16 @@ def _pair(model: ModelData, settings: RunSettings, rtol: float, allowed: float, 
             return _unended(names[-1], found, job.grid.end, allowed if deadline.passed else 0.0)
         solutions.append(found)
     explicit = solutions[1]
-    sizes = scales(explicit.channels, job.dynamics.system.size, explicit.requested)
-    return _Pair(solutions[0], explicit, (names[0], names[1]), sizes, compared(explicit))
+    return _Pair(
+        solutions[0], explicit, (names[0], names[1]), _sizes(explicit, job.dynamics.system.size), compared(explicit)
+    )
+
+
+def _sizes(solution: Solution, size: float) -> dict[str, float]:
+    """Scales of channels; of places no less than what rounding of a mechanism at rest is small beside."""
+    least = {"position": STILL * size, "angle": STILL}
+    found = scales(solution.channels, size, solution.requested)
+    return {name: max(scale, least.get(kind_of(name), 0.0)) for name, scale in found.items()}
 
 
 def _unended(name: str, found: Solution, end: float, allowed: float) -> str:

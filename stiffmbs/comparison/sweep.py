@@ -26,7 +26,7 @@ from .row import Row
 ENOUGH = 2
 """So many settings in succession that are far more accurate than asked for end a sweep."""
 WARM_UP = 1e-3
-"""Part of the duration that is solved before anything is timed, so that all is compiled."""
+"""Part of the duration that is solved before a run is timed, so that all is compiled and set up."""
 
 
 @dataclass
@@ -78,13 +78,12 @@ class Sweep:
             A measure, and the error that is sought.
         """
         beyond = 0
-        for k, value in enumerate(values):
+        for value in values:
             setting = entry.setting(value)
             self.tell(f"{entry.name}, {setting}")
             try:
                 job = prepare(self.model, entry.at(self.settings, value))
-                if k == 0:
-                    _warm_up(job)
+                _warm_up(job)
                 point, given_up = self._first(job, entry, setting)
             except StiffmbsError as error:
                 yield Point(None, [], entry, setting, {}, 0, str(error))

@@ -1,22 +1,17 @@
-"""Sections of a report that a user asks for: an equilibrium, natural modes."""
+"""Sections of a report that a user asks for."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..compile.bodies import BODY_KINDS
 from ..describe.model_data import ModelData
 from ..jobs.equilibrium import EquilibriumFound
-from ..jobs.modes import Modes
-from ..linear_analysis.modes import Mode, Motion
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
-
-LEAST_SHARE = 0.01
-"""Part in the kinetic energy from which on a body is named."""
 
 
 @dataclass(frozen=True)
@@ -54,21 +49,3 @@ def _channels(title: str, names: Iterable[str], labels: tuple[str, ...], found: 
         values = [found.channels.get(f"{name}.{label}") for label in labels]
         rows += [] if None in values else [(name, *(f"{value:.8g}" for value in values))]
     return Table((title, *labels), tuple(rows))
-
-
-def modes_section(found: Modes) -> Section:
-    """Frequency, damping and eigenvalues of each mode, and the bodies that take part."""
-    count = found.degrees_of_freedom
-    head = f"About the state at t = {found.t:g} s: {count} degree{'s' if count != 1 else ''} of freedom."
-    heads = ("mode", "Hz", "damping", "eigenvalues, 1/s", "kinetic energy")
-    rows = tuple((str(k), *_mode(mode)) for k, mode in enumerate(found.modes, start=1))
-    return Section("Natural modes", (head, *found.notes), (Table(heads, rows),) if rows else ())
-
-
-def _mode(mode: Mode) -> Iterator[str]:
-    one, other = mode.eigenvalues
-    oscillating = mode.motion is Motion.OSCILLATING
-    yield f"{mode.natural_frequency:.6g}"
-    yield "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}"
-    yield f"{one.real:.6g} ± {abs(one.imag):.6g}i" if oscillating else f"{one.real:.6g}, {other.real:.6g}"
-    yield ", ".join(f"{name} {100 * part:.0f} %" for name, part in mode.participation.items() if part >= LEAST_SHARE)

@@ -89,10 +89,9 @@ def test_an_interruption_keeps_the_values_before_it():
     assert [one.value for one in found.values] == [10.0]
 
 
-def test_the_error_is_relative_to_the_forces_where_these_are_measured():
-    """The spring's largest force is 10 N."""
-    found = stiffmbs.compare_over(spring, "k", [100.0], solvers=("dop853",), measure="forces", **FAST)
-    assert found.error == pytest.approx(1e-3)
+def test_times_are_compared_at_an_error_of_the_measure():
+    found = stiffmbs.compare_over(spring, "k", [100.0], error=1e-3, solvers=("dop853",), measure="forces", **FAST)
+    assert "at an error of 0.001 N or N m in forces" in str(found)
 
 
 @pytest.mark.parametrize(
@@ -100,6 +99,7 @@ def test_the_error_is_relative_to_the_forces_where_these_are_measured():
     [
         ([], {}, "k: found no values"),
         ([1.0], {"error": 0.0}, "error: found 0"),
+        ([1.0], {"measure": "forces"}, "error: found none, expected one in N or N m"),
         ([1.0], {"solvers": ("x",)}, "found 'x'"),
     ],
 )
