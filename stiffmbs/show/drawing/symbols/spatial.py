@@ -12,6 +12,7 @@ from ..draft import Draft, Site
 from ..frames import axes_along
 from ..scene_graph import Line, Solid
 from . import profiles
+from .gears import gear, rack_and_pinion
 from .shared import (
     any_force,
     any_joint,
@@ -255,7 +256,7 @@ SYMBOLS: Mapping[str, Callable[[Draft], None]] = {
     "prismatic": prismatic, "cylindrical": cylindrical, "screw": screw, "thread": screw, "planar": planar,
     "point_on_plane": point_on_plane, "point_on_line": point_on_line, "point_on_curve": point_on_curve, "fixed": fixed,
     "parallel": directions, "perpendicular": directions, "orientation": directions, "distance": distance,
-    "revolute_spherical": revolute_spherical, "coupler": coupling, "drive": drive, "spring_damper": spring_damper,
+    "revolute_spherical": revolute_spherical, "coupler": coupling, "gear": gear, "rack_and_pinion": rack_and_pinion, "drive": drive, "spring_damper": spring_damper,
     "torsion_spring": spiral, "bushing": bushing, "beam": beam, "field": elastic, "contact": contact,
     "sphere_contact": contact, "line_force": line_force, "force": force, "torque": torque, "joint_friction": rubbing,
     "joint": any_joint, "any_force": any_force,
