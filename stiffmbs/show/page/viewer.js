@@ -203,9 +203,9 @@ const MOVING = (() => {
     controls.enableDamping = false;
     const box = new THREE.Box3();
     const throughout = (act) => {
-      for (let k = 0; k <= 20; k++) {
+      for (let k = 0; k <= 12; k++) {
         for (const machine of machines) {
-          machine.update(time.start + ((time.end - time.start) * k) / 20);
+          machine.update(time.start + ((time.end - time.start) * k) / 12);
           machine.root.updateMatrixWorld(true);
           act(machine.root);
         }
