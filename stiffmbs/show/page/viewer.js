@@ -505,7 +505,7 @@ const MOVING = (() => {
     const it = { time, data, shown, plotted, frames: 0 };
     const tick = (now) => {
       if (time.playing && last !== null) {
-        const t = time.t + ((now - last) / 1000) * time.speed;
+        const t = time.t + Math.min((now - last) / 1000, 0.5) * time.speed;  // no jump after a pause of the browser
         if (t >= time.end) time.playing = false;
         time.set(t);
       }
