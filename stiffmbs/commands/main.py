@@ -19,6 +19,7 @@ from .response import response
 from .run import run
 from .schema import schema
 from .stress import stress
+from .study import study
 
 
 @click.group(cls=Process, context_settings={"help_option_names": ["-h", "--help"]})
@@ -28,19 +29,6 @@ def main() -> None:
 
 
 for command in (
-    run,
-    check,
-    equilibrium,
-    modes,
-    response,
-    convert,
-    schema,
-    bench,
-    cache,
-    draw,
-    animate,
-    plot,
-    report,
-    stress,
-):
+    run, check, equilibrium, modes, response, study, convert, schema, bench, cache, draw, animate, plot, report, stress,
+):  # fmt: skip
     main.add_command(command)
