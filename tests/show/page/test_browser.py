@@ -92,6 +92,19 @@ def test_it_plays_to_its_end_and_again(tab, opened):
     assert float(tab.run("document.querySelector('input[type=range]').value")) < 900
 
 
+def test_bodies_turn_as_they_do_in_the_run(tab, opened):
+    """A bar let go from the horizontal hangs when it is lowest."""
+    solution = stiffmbs.run(EXAMPLES / "bar_pendulum.yaml")
+    opened("animate", EXAMPLES / "bar_pendulum.yaml")
+    tab.run("shown.shown.state.forces = shown.shown.state.names = false; document.querySelector('.legend')?.remove()")
+    sizes = []
+    for time in (0.0, solution.time[np.argmin(solution["bar.y"])]):
+        tab.run(f"shown.time.set({time})")
+        where = np.argwhere(np.ptp(pixels(tab, ".viewer canvas"), axis=2) > 60)
+        sizes.append(np.ptp(where, axis=0))
+    assert sizes[0][1] > 5 * sizes[0][0] and sizes[1][0] > 5 * sizes[1][1]
+
+
 def test_the_scrubber_sets_the_time_of_plots_and_mechanism(tab, opened):
     opened("animate", EXAMPLES / "cart_pendulum.yaml")
     before = pixels(tab, ".plot canvas")
