@@ -45,6 +45,7 @@ from .describe.scene import Scene as Scene
 from .describe.scene import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
+from .describe.settings import SteadyMotion as SteadyMotion
 from .describe.table import Table as Table
 from .describe.units import si as si
 from .errors import AssemblyError as AssemblyError
