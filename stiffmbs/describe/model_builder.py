@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from ..jobs.modes import Modes
     from ..jobs.start_from import StartFrom
     from ..results.solution import Solution
+    from ..studies.simulation import Simulation
 
 Data = TypeVar("Data", bound=ModelData)
 Body = TypeVar("Body", bound=Described)
@@ -328,6 +329,18 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         from ..jobs.equilibrium import equilibrium
 
         return equilibrium(self, settings, start_from, **changes)
+
+    @takes_settings
+    def simulation(
+        self,
+        inputs: Mapping[str, float] | None = None,
+        settings: RunSettings | None = None,
+        **changes: Unpack[Settings],
+    ) -> Simulation:
+        """The model to be solved step by step; parameters, result and errors are those of `stiffmbs.simulation`."""
+        from ..studies.simulation import simulation
+
+        return simulation(self, inputs, settings, **changes)
 
     @takes_settings
     def modes(
