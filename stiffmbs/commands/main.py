@@ -10,6 +10,7 @@ from .check import check
 from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
+from .fit import fit, optimise
 from .modes import modes
 from .process import Process
 from .report import report
@@ -26,5 +27,21 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, equilibrium, modes, response, study, convert, schema, bench, cache, draw, report, stress):
+for command in (
+    run,
+    check,
+    equilibrium,
+    modes,
+    response,
+    study,
+    fit,
+    optimise,
+    convert,
+    schema,
+    bench,
+    cache,
+    draw,
+    report,
+    stress,
+):
     main.add_command(command)
