@@ -20,6 +20,8 @@ ORDER = (
 ANYWHERE = {"errors", "interrupts"}
 METHODS = {
     (ROOT.name, "describe", "model_builder"): {"studies", "jobs", "results", "show", "verification"},
+    (ROOT.name, "describe", "model_data"): {"show"},
+    (ROOT.name, "jobs", "check"): {"show"},
     (ROOT.name, "results", "solution"): {"show"},
 }
 """What users hold offers what can be done with it as methods, which load it when they are called."""

@@ -68,6 +68,12 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from ..show.html import model_html
+
+        return model_html(self)
+
     @overload
     def add(self, name: str, part: Body) -> BodyHandle: ...
 
