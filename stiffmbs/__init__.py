@@ -41,7 +41,7 @@ _LATER = {
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
-    "draw": ".show.drawing.draw",
+    "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
 

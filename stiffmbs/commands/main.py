@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from .animate import animate
 from .bench import bench
 from .cache import cache
 from .check import check
@@ -12,6 +13,7 @@ from .draw import draw
 from .equilibrium import equilibrium
 from .fit import fit, optimise
 from .modes import modes
+from .plot import plot
 from .process import Process
 from .report import report
 from .response import response
@@ -28,20 +30,6 @@ def main() -> None:
 
 
 for command in (
-    run,
-    check,
-    equilibrium,
-    modes,
-    response,
-    study,
-    fit,
-    optimise,
-    convert,
-    schema,
-    bench,
-    cache,
-    draw,
-    report,
-    stress,
-):
+    run, check, equilibrium, modes, response, study, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress,
+):  # fmt: skip
     main.add_command(command)
