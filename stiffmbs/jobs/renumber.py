@@ -71,7 +71,17 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
         if change is None:
             return None
         written.append(change)
+    if (
+        any(_moved(job.data.forces[change.name], data.forces[change.name]) for change in written)
+        and data.size() != system.size
+    ):
+        return None  # tolerances follow from the size
     return written
+
+
+def _moved(before: Element, after: Element) -> bool:
+    """Whether a force acts at other markers."""
+    return [marker for _, marker in before.markers()] != [marker for _, marker in after.markers()]
 
 
 def _same_structure(before: ModelData, after: ModelData) -> bool:
@@ -117,6 +127,11 @@ class Change:
     element: Element
     first: int
     values: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """Of the element."""
+        return self.group.names[self.number]
 
     @property
     def of_inputs(self) -> bool:
