@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field, WithJsonSchema, field_validator
 
 from ...element import Force, Symbolic
 from ...files.quoted import written
-from ...forces.matrix import from_diagonal, product
+from ...forces.matrix import check_symmetric, from_diagonal, product
 from ...units import si
 from ..marker import Marker
 from ..nearest import nearest
@@ -120,7 +120,11 @@ class Elastic(Force):
     def turned(cls, e: Symbolic) -> Any:
         """How marker i is turned, or only tilted, against marker j."""
         resisted = cls.resisted(e)
-        return e.tilt(e.i, e.j, resisted.index(False)) if resisted.count(False) == 1 else e.turn(e.i, e.j)
+        return (
+            e.shortest_rotation(e.i, e.j, resisted.index(False))
+            if resisted.count(False) == 1
+            else e.relative_rotation(e.i, e.j)
+        )
 
     @classmethod
     def deformation(cls, e: Symbolic) -> list[Any]:
@@ -163,7 +167,22 @@ class Elastic(Force):
     @classmethod
     def limits(cls, e: Symbolic) -> Any:
         """How far the bodies may turn, where moments depend on it."""
-        return [cls.turned(e).room] if any(cls.resisted(e)) else []
+        return [cls.turned(e).margin] if any(cls.resisted(e)) else []
+
+
+class Connection(Elastic):
+    """Base of elastic connections with a stiffness and damping of their own (it has no kind: scenes name its subclasses)."""
+
+    stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+
+    _six_rows = field_validator("stiffness", "damping", mode="before")(six_rows)
+    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
+    _sparse = field_validator("stiffness", "damping", "preload", check_fields=False)(without_zeros)
+
+    @classmethod
+    def resisted(cls, e: Symbolic) -> list[bool]:
+        return has_moments(e.stiffness, e.preload)
 
 
 def pull_back(stiffness: Any, s: list[Any], preload: Any) -> list[Any]:
