@@ -195,7 +195,7 @@ EVENT_SEARCH: Layout = {
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 }  # fmt: skip
-"""What the search for events within a step works on (`stiffmbs.solve.native.within_step`): the event functions with their
+"""What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
 edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes.
 
 Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond

@@ -17,7 +17,7 @@ from ..initial import InitialValues
 from ..trajectory import Grid, Rows
 from .scheme import Scheme
 
-END_AT_EVENT = Routine("stiffmbs.solve.native.events", "end_at_event", "int32(int64*)")
+END_AT_EVENT = Routine("stiffmbs.solve.native.event_search.explicit_events", "end_at_event", "int32(int64*)")
 SHORTEST_PART = 1e-12
 """Shorter steps than this part of the run would never come to its end."""
 MOST_STEPS, MOST_VALUES = 1024, 300_000

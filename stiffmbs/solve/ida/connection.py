@@ -26,7 +26,7 @@ JACOBIAN = Routine(
     MODULE, "jacobian", "int32(float64, float64, int64, int64, int64, int64, int64*, int64, int64, int64)"
 )
 LOOK_AT_START, LOOK_WITHIN = together(
-    "stiffmbs.solve.native.ida_events", look_at_start="int32(float64, int64*)", look_within="int32(int64*)"
+    "stiffmbs.solve.native.event_search.ida_events", look_at_start="int32(float64, int64*)", look_within="int32(int64*)"
 )
 SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
 
@@ -55,7 +55,7 @@ class Connection:
     step_bound : StepBound
     n_event_functions : int
     signs, masked : ndarrays, shape (n_switches,)
-        As in `stiffmbs.solve.native.event_signs`.
+        As in `stiffmbs.solve.native.event_search.event_signs`.
     watch : EventSearch
     history : StepLog
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)

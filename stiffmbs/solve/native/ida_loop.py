@@ -13,7 +13,7 @@ from stiffmbs.compile.machine.native.access import (
 )
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
-from stiffmbs.solve.native.event_signs import watched
+from stiffmbs.solve.native.event_search.event_signs import watched
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import MADE, iteration_view
 from stiffmbs.solve.native.output_correction import corrected, output_correction_view

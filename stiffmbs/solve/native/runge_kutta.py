@@ -15,7 +15,7 @@ from stiffmbs.compile.machine.native.access import (
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.error_estimate import trusted_error
-from stiffmbs.solve.native.events import RETRIED
+from stiffmbs.solve.native.event_search.explicit_events import RETRIED
 from stiffmbs.solve.native.interpolant import store_rows, store_step
 from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF

@@ -14,9 +14,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import int32
 from stiffmbs.solve.native.error_estimate import UNTRUSTED, trusted_error
-from stiffmbs.solve.native.interpolant import interpolated, prepare
-from stiffmbs.solve.native.stages import copied, load_state, weighted
-from stiffmbs.solve.native.within_step import (
+from stiffmbs.solve.native.event_search.within_step import (
     DIFFERENCE,
     LOOKED_AT,
     event_search_view,
@@ -26,6 +24,8 @@ from stiffmbs.solve.native.within_step import (
     noted_rates,
     suspicious,
 )
+from stiffmbs.solve.native.interpolant import interpolated, prepare
+from stiffmbs.solve.native.stages import copied, load_state, weighted
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: relative to the step, and of the time."""

@@ -5,9 +5,7 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, equations_view, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
 from stiffmbs.solve.native.calls import call_int, int32
-from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
-from stiffmbs.solve.native.statuses import OK
-from stiffmbs.solve.native.within_step import (
+from stiffmbs.solve.native.event_search.within_step import (
     DIFFERENCE,
     LOOKED_AT,
     clear,
@@ -19,6 +17,8 @@ from stiffmbs.solve.native.within_step import (
     shift_ends,
     suspicious,
 )
+from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
+from stiffmbs.solve.native.statuses import OK
 
 START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
 """Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning
