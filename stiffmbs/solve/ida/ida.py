@@ -269,7 +269,7 @@ class NativeIda:
     def roots(self) -> np.ndarray:
         """After `Status.ROOT`: for each event function other than 0 where it went through zero.
 
-        None is where the step has passed a zone of a law (`stiffmbs.solve.native.within_step`).
+        None is where the step has passed a zone of a law (`stiffmbs.solve.native.event_search.within_step`).
         """
         if self._ida.cells["within"]:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
