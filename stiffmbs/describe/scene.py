@@ -169,14 +169,14 @@ def made_scene(
     folder : Path, optional
         Where meshes and property files are looked for; the working folder by default.
     unchanged : Unchanged, optional
-        What was validated before and need not be again.
+        What was validated before and need not be again; the scene then does not keep what it was read from.
 
     Raises
     ------
     InputError
         When it is no valid scene.
     """
-    scene_as_written = WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
     in_parts = []
