@@ -67,6 +67,17 @@ PAIRED_COLUMNS: Layout = {
 }  # fmt: skip
 """The same with its columns in pairs (`stiffmbs.solve.native.paired_columns`)."""
 
+BLOCK_LU: Layout = {
+    "n": INT, "pivots": INT, "last_flag": INT, "array_of": INT, "factors": INTS, "found": INTS, "with_pivots": INTS,
+    "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
+    "n_lu": INT, "lu": FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
+    "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
+    "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "sign": FLOATS, "pivot": FLOATS, "tried": FLOATS,
+    "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
+}  # fmt: skip
+"""The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
+of columns in pairs that takes over where those cannot be trusted."""
+
 DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INTS,

@@ -52,6 +52,7 @@ class FixedOrder:
     setup: ClassVar[Routine] = SETUP
     solve: ClassVar[Routine] = SOLVE
     layout: ClassVar[Layout] = FIXED_ORDER
+    counts: ClassVar[int] = 3
 
     n: int
     rows: np.ndarray
@@ -84,7 +85,7 @@ class FixedOrder:
         table = packed_with_memory(FACTORS, factors)
         arrays = {
             "n": self.n, "pivots": 0, "last_flag": 0, "array_of": array_of, "factors": table,
-            "found": np.zeros(3, dtype=np.int64), "slot": np.zeros(len(self.rows), dtype=np.int32),
+            "found": np.zeros(self.counts, dtype=np.int64), "slot": np.zeros(len(self.rows), dtype=np.int32),
             "weight": np.zeros(len(self.rows)), "update_start": np.zeros(self.n + 1, dtype=np.int64),
             "mark": np.zeros(self.n, dtype=np.int64), "x": np.zeros(self.n + 1), **self._lists(),
         }  # fmt: skip

@@ -62,6 +62,27 @@ def elimination_order(equations: Equations) -> EliminationOrder:
     return EliminationOrder(np.concatenate([np.empty(0, dtype=np.int64), *order]), fill, updates)
 
 
+def nodes_in_order(equations: Equations, order: EliminationOrder) -> list[np.ndarray]:
+    """The unknowns of each body's coordinates, then of its velocities, and of each joint, as they are eliminated.
+
+    The diagonal block of coordinates is next to cj times the unit matrix whatever the forces; with them gone, that of
+    velocities holds what masses, dampers and stiff springs resist with.
+    """
+    _, owner = _owners(equations)
+    place = np.full(equations.n, -1)
+    kinds = [name for name in ("q", "u", "mu", "lam") if name in equations.at]
+    part = np.zeros(equations.n, dtype=np.int64)
+    for k, name in enumerate(kinds):
+        at = equations.at[name]
+        part[at[at != ABSENT]] = k
+    place[order.unknowns] = np.arange(equations.n)
+    first = np.full(int(owner.max(initial=-1)) + 1, equations.n)
+    np.minimum.at(first, owner, place)
+    node = 2 * first[owner] + (part == kinds.index("u") if "u" in kinds else 0)
+    sequence = np.lexsort((np.arange(equations.n), part, node))
+    return np.split(sequence, np.flatnonzero(np.diff(node[sequence])) + 1)
+
+
 def _owners(equations: Equations) -> tuple[int, np.ndarray]:
     """The number of bodies, and for each unknown the body or, counted on from there, the joint that it belongs to."""
     system = equations.system

@@ -1,0 +1,93 @@
+"""The iteration matrix factored by dense blocks of bodies and joints without pivots, in place of a solver of SUNDIALS' own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ...compile.equations import ABSENT, Equations
+from ...compile.machine.layout import BLOCK_LU, packed
+from ...compile.machine.routines import Routine
+from ..linear.block_updates import updates
+from ..linear.blocks import Blocks, filled
+from ..linear.elimination_order import EliminationOrder, nodes_in_order
+from .fixed_order import Memory
+from .paired_columns import PairedColumns
+
+_MODULE = "stiffmbs.solve.linear.native.block_lu"
+SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
+SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
+MULTIPLIER, COORDINATE, VELOCITY = range(3)
+"""Kinds of unknowns, as in `stiffmbs.solve.linear.native.block_lu`."""
+SEED = 14
+"""Of the signs of the state that factors are tried on."""
+
+
+@dataclass(frozen=True)
+class BlockLU(PairedColumns):
+    """Block LU along a fixed order, tried by its residual; columns in pairs with pivots where that is too large.
+
+    Attributes
+    ----------
+    nodes : list of ndarray of int
+        The unknowns that are eliminated together, in order.
+    kinds : ndarray of int, shape (n,)
+        What each unknown is.
+    """
+
+    setup: ClassVar[Routine] = SETUP
+    solve: ClassVar[Routine] = SOLVE
+    counts: ClassVar[int] = 7
+    """Those of the columns in pairs, and its own."""
+
+    nodes: list[np.ndarray]
+    kinds: np.ndarray
+
+    @classmethod
+    def of(cls, equations: Equations, order: EliminationOrder) -> BlockLU:
+        """That of a formulation along an order of its bodies and joints."""
+        kinds = np.full(equations.n, MULTIPLIER)
+        for name, kind in (("q", COORDINATE), ("u", VELOCITY)):
+            at = equations.at.get(name, np.empty(0, dtype=np.int64))
+            kinds[at[at != ABSENT]] = kind
+        return cls(equations.n, *equations.pattern, order, nodes_in_order(equations, order), kinds)
+
+    def sentence(self) -> str:
+        """What the summary says of it."""
+        return f"blocks in a fixed order, {self.n} unknowns, {len(self.rows)} entries"
+
+    @cached_property
+    def blocks(self) -> Blocks:
+        """The blocks that are filled."""
+        return filled(self.nodes, self.rows, self.columns)
+
+    def memory(self, array_of: int) -> Memory:
+        """What the compiled routines work on, given the address of N_VGetArrayPointer."""
+        with_pivots = super().memory(array_of)
+        arrays = self._arrays(with_pivots) | {"array_of": array_of}
+        return Memory(packed(BLOCK_LU, arrays), {**arrays, "kept": with_pivots}, with_pivots.factors)
+
+    def _arrays(self, with_pivots: Memory) -> dict[str, Any]:
+        blocks, n = self.blocks, self.n
+        diagonal = np.flatnonzero((self.rows == self.columns) & (self.kinds[self.rows] == COORDINATE))
+        lists = {
+            "size": blocks.sizes, "start": blocks.starts, "down_width": blocks.down_width, "right_width": blocks.right_width,
+            "node_start": blocks.node_starts, "place": blocks.places, "kind": self.kinds, "diagonal": diagonal,
+            **blocks.quads("down", blocks.below), **blocks.quads("right", blocks.right),
+        }  # fmt: skip
+        listed = updates(blocks)
+        largest = max([*blocks.right_width, *(8 * size for size in blocks.sizes)])
+        signs = np.random.default_rng(SEED).choice([-1.0, 1.0], n)
+        return {
+            "n": n, "pivots": 0, "last_flag": 0, "factors": with_pivots.arrays["factors"], "found": with_pivots.arrays["found"],
+            "with_pivots": np.array([with_pivots.content.ctypes.data]), "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal),
+            **{name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()},
+            "n_lu": int(blocks.starts[-1]), "lu": np.zeros(int(blocks.starts[-1])),
+            "slot": blocks.slots(self.rows, self.columns).astype(np.int32),
+            "update_end": listed["update_end"], "update": listed["update"].astype(np.int32),
+            "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(largest), "sign": signs,
+            **{name: np.zeros(n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
+        }  # fmt: skip
