@@ -12,7 +12,7 @@ from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import BLOCK_LU, packed
 from ...compile.machine.routines import Routine
 from ..linear.block_updates import updates
-from ..linear.blocks import Blocks, filled
+from ..linear.blocks import QUAD, Blocks, filled
 from ..linear.elimination_order import EliminationOrder, nodes_in_order
 from .fixed_order import Memory
 from .paired_columns import PairedColumns
@@ -64,30 +64,31 @@ class BlockLU(PairedColumns):
         """The blocks that are filled."""
         return filled(self.nodes, self.rows, self.columns)
 
-    def memory(self, array_of: int) -> Memory:
-        """What the compiled routines work on, given the address of N_VGetArrayPointer."""
-        with_pivots = super().memory(array_of)
-        arrays = self._arrays(with_pivots) | {"array_of": array_of}
-        return Memory(packed(BLOCK_LU, arrays), {**arrays, "kept": with_pivots}, with_pivots.factors)
-
-    def _arrays(self, with_pivots: Memory) -> dict[str, Any]:
-        blocks, n = self.blocks, self.n
+    @cached_property
+    def _plan(self) -> dict[str, Any]:
+        """What stays as it is, and serves all memories of the solver."""
+        blocks = self.blocks
         diagonal = np.flatnonzero((self.rows == self.columns) & (self.kinds[self.rows] == COORDINATE))
         lists = {
             "size": blocks.sizes, "start": blocks.starts, "down_width": blocks.down_width, "right_width": blocks.right_width,
             "node_start": blocks.node_starts, "place": blocks.places, "kind": self.kinds, "diagonal": diagonal,
             **blocks.quads("down", blocks.below), **blocks.quads("right", blocks.right),
         }  # fmt: skip
-        listed = updates(blocks)
-        largest = max([*blocks.right_width, *(8 * size for size in blocks.sizes)])
-        signs = np.random.default_rng(SEED).choice([-1.0, 1.0], n)
         return {
-            "n": n, "pivots": 0, "last_flag": 0, "factors": with_pivots.arrays["factors"], "found": with_pivots.arrays["found"],
-            "with_pivots": np.array([with_pivots.content.ctypes.data]), "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal),
-            **{name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()},
-            "n_lu": int(blocks.starts[-1]), "lu": np.zeros(int(blocks.starts[-1])),
-            "slot": blocks.slots(self.rows, self.columns).astype(np.int32),
-            "update_end": listed["update_end"], "update": listed["update"].astype(np.int32),
-            "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(largest), "sign": signs,
-            **{name: np.zeros(n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
+            "n": self.n, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
+            **{name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}, **updates(blocks),
+            "slot": blocks.slots(self.rows, self.columns), "sign": np.random.default_rng(SEED).choice([-1.0, 1.0], self.n),
         }  # fmt: skip
+
+    def memory(self, array_of: int) -> Memory:
+        """What the compiled routines work on, given the address of N_VGetArrayPointer."""
+        with_pivots = super().memory(array_of)
+        blocks = self.blocks
+        scratch = max([*blocks.right_width, *(2 * QUAD * size for size in blocks.sizes)])
+        arrays = {
+            **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"], "found": with_pivots.arrays["found"],
+            "with_pivots": np.array([with_pivots.content.ctypes.data]), "kept": with_pivots,
+            "lu": np.zeros(int(blocks.starts[-1])), "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(scratch),
+            **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
+        }  # fmt: skip
+        return Memory(packed(BLOCK_LU, arrays), arrays, with_pivots.factors)

@@ -100,21 +100,20 @@ class Blocks:
 
     def slots(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
         """Where the entries of the matrix stand in the panels."""
+        n = len(self.nodes)
         node, within = np.empty(sum(self.sizes), dtype=np.int64), np.empty(sum(self.sizes), dtype=np.int64)
         for k, own in enumerate(self.nodes):
             node[own], within[own] = k, np.arange(len(own))
-        slots = [
-            self._slot(*entry)
-            for entry in zip(*(part.tolist() for part in (node[rows], within[rows], node[columns], within[columns])), strict=True)
-        ]  # fmt: skip
-        return np.array(slots, dtype=np.int64)
+        pairs, pair = np.unique(node[rows] * n + node[columns], return_inverse=True)
+        starts, by_row, by_column = np.array([self._block(*divmod(both, n)) for both in pairs.tolist()]).T
+        slots: np.ndarray = starts[pair] + by_row[pair] * within[rows] + by_column[pair] * within[columns]
+        return slots.astype(np.int32)
 
-    def _slot(self, row: int, in_row: int, column: int, in_column: int) -> int:
+    def _block(self, row: int, column: int) -> tuple[int, int, int]:
+        """Where the block of two nodes begins, and the strides of its rows and columns."""
         if row >= column:
-            line = int(self.starts[2 * column]) + in_column * self.down_width[column]
-            return line + self.down_at[column][row] + in_row
-        line = int(self.starts[2 * row + 1]) + in_row * self.right_width[row]
-        return line + self.right_at[row][column] + in_column
+            return int(self.starts[2 * column]) + self.down_at[column][row], 1, self.down_width[column]
+        return int(self.starts[2 * row + 1]) + self.right_at[row][column], self.right_width[row], 1
 
     def _offsets(self, nodes: Sequence[int]) -> dict[int, int]:
         ends = np.cumsum([0, *(self.widths[a] for a in nodes)]).tolist()
@@ -136,25 +135,58 @@ def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -
     Duff and Reid, The multifrontal solution of unsymmetric sets of linear equations, SIAM J. Sci. Stat. Comput. 5
     (1984) 633-641: dense blocks along an order that is fixed beforehand.  Here the blocks are updated in place.
     """
-    node = np.empty(sum(map(len, nodes)), dtype=np.int64)
-    for k, own in enumerate(nodes):
-        node[own] = k
-    below, right = [0] * len(nodes), [0] * len(nodes)  # sets, as bits of whole numbers
-    for a, b in np.unique(np.stack([node[rows], node[columns]]), axis=1).T.tolist():
-        if a > b:
-            below[b] |= 1 << a
-        elif b > a:
-            right[a] |= 1 << b
+    below, right = _touching(nodes, rows, columns)
+    order = _postorder([one | other for one, other in zip(below, right, strict=True)])
+    nodes = [nodes[k] for k in order]
+    below, right = _touching(nodes, rows, columns)
     listed_below, listed_right = [], []
     for k in range(len(nodes)):
         rows_of, columns_of = _members(below[k]), _members(right[k])
         listed_below.append(rows_of)
         listed_right.append(columns_of)
         for b in columns_of:
-            below[b] |= (below[k] >> (b + 1)) << (b + 1)
+            below[b] |= _beyond(below[k], b)
         for a in rows_of:
-            right[a] |= (right[k] >> (a + 1)) << (a + 1)
+            right[a] |= _beyond(right[k], a)
     return Blocks(nodes, listed_below, listed_right)
+
+
+def _touching(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -> tuple[list[int], list[int]]:
+    """For each node the later ones whose rows and whose columns share entries with it, as bits of whole numbers."""
+    node = np.empty(sum(map(len, nodes)), dtype=np.int64)
+    for k, own in enumerate(nodes):
+        node[own] = k
+    below, right = [0] * len(nodes), [0] * len(nodes)
+    for a, b in np.unique(np.stack([node[rows], node[columns]]), axis=1).T.tolist():
+        if a > b:
+            below[b] |= 1 << a
+        elif b > a:
+            right[a] |= 1 << b
+    return below, right
+
+
+def _postorder(around: list[int]) -> list[int]:
+    """The nodes, each right after those that are eliminated into it, which then are near in memory; nothing more is filled.
+
+    Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. Appl. 11 (1990) 134-172.
+    """
+    n = len(around)
+    children: list[list[int]] = [[] for _ in range(n + 1)]
+    for k in range(n):
+        parent = (around[k] & -around[k]).bit_length() - 1 if around[k] else n
+        children[parent].append(k)
+        if parent < n:
+            around[parent] |= _beyond(around[k], parent)
+    order, waiting = [], [n]
+    while waiting:  # parents before children, from the last to the first: read backwards
+        order.append(waiting.pop())
+        waiting += children[order[-1]]
+    return order[:0:-1]
+
+
+def _beyond(bits: int, last: int) -> int:
+    """Those members of a set that are larger."""
+    return (bits >> (last + 1)) << (last + 1)
 
 
 def _members(bits: int) -> list[int]:

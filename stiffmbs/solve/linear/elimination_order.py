@@ -54,7 +54,7 @@ def elimination_order(equations: Equations) -> EliminationOrder:
             neighbours[b].add(a)
     order, fill, updates = [], 0, 0
     size = sizes.tolist()
-    for node, around in _least_degree(neighbours, n_bodies):
+    for node, around in _least_degree(neighbours, _counted(equations, owner, len(size)), n_bodies):
         order.append(by_owner[starts[node] : starts[node + 1]])
         height = size[node] + sum(size[other] for other in around)
         fill += size[node] * height
@@ -96,12 +96,22 @@ def _owners(equations: Equations) -> tuple[int, np.ndarray]:
     return n_bodies, owner
 
 
-def _least_degree(neighbours: list[set[int]], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
+def _counted(equations: Equations, owner: np.ndarray, n_owners: int) -> list[int]:
+    """The freedoms of each body, and the equations of each joint, on one level."""
+    at = equations.at
+    level = [at["u"] if "u" in at else at["q"], at["lam"] if "lam" in at else at["mu"]]
+    unknowns = np.concatenate(level)
+    counted: list[int] = np.bincount(owner[unknowns[unknowns != ABSENT]], minlength=n_owners).tolist()
+    return counted
+
+
+def _least_degree(neighbours: list[set[int]], counted: list[int], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
     """Nodes, bodies before joints, in the order of least degree, and the neighbours that each has then.
 
-    A joint that has to wait is looked at again after each neighbour's elimination: what it waits for is one of them.
+    Counted are the velocities of bodies and the equations of joints.  A joint that has to wait is looked at again after each neighbour's elimination: what it waits for is one of them.
     """
-    bodies = EliminatedBodies([sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]], n_bodies)
+    bodies_of = [sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]]
+    bodies = EliminatedBodies(bodies_of, counted[:n_bodies], counted[n_bodies:])
     queue = [(len(neighbours[node]), node) for node in range(n_bodies)]
     heapq.heapify(queue)
     gone = [False] * len(neighbours)
