@@ -72,7 +72,7 @@ BLOCK_LU: Layout = {
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
-    "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "sign": FLOATS, "pivot": FLOATS, "tried": FLOATS,
+    "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS, "pivot": FLOATS, "tried": FLOATS,
     "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 }  # fmt: skip
 """The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table

@@ -23,7 +23,7 @@ SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
 MULTIPLIER, COORDINATE, VELOCITY = range(3)
 """Kinds of unknowns, as in `stiffmbs.solve.linear.native.block_lu`."""
 SEED = 14
-"""Of the signs of the state that factors are tried on."""
+"""Of the state that factors are tried on: numbers between 0.5 and 1, as whole ones hide what rounding does."""
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,12 @@ class BlockLU(PairedColumns):
             "node_start": blocks.node_starts, "place": blocks.places, "kind": self.kinds, "diagonal": diagonal,
             **blocks.quads("down", blocks.below), **blocks.quads("right", blocks.right),
         }  # fmt: skip
+        random = np.random.default_rng(SEED)
+        signs = random.choice([-1.0, 1.0], self.n)
         return {
             "n": self.n, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
             **{name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}, **updates(blocks),
-            "slot": blocks.slots(self.rows, self.columns), "sign": np.random.default_rng(SEED).choice([-1.0, 1.0], self.n),
+            "slot": blocks.slots(self.rows, self.columns), "state": signs * random.uniform(0.5, 1.0, self.n),
         }  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:

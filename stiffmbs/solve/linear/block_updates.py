@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -53,11 +53,14 @@ def updates(blocks: Blocks) -> dict[str, np.ndarray]:
     A product is told by its target, the stride there, the factors, and the lines that are taken.
     """
     targets = [target for k in range(len(blocks.nodes)) for target in _targets(blocks, k)]
-    line_target, line, rows = _spread([_lines(target.size) for target in targets])
-    run_target, own, into, quads = _spread([target.runs for target in targets])
-    piece_run, shift, count = _spread([_pieces(int(n)) for n in quads])
+    line_target, line, rows = _spread([_lines(target.size) for target in targets], 2)
+    run_target, own, into, quads = _spread([target.runs for target in targets], 3)
+    piece_run, shift, count = _spread([_pieces(n) for n in quads.tolist()], 2)
     piece_target = run_target[piece_run]
-    column = [np.array([getattr(target, name) for target in targets], dtype=np.int64) for name in ("k", "kind", "start", "stride", "factors")]
+    column = [
+        np.array([getattr(target, name) for target in targets], dtype=np.int64)
+        for name in ("k", "kind", "start", "stride", "factors")
+    ]
     n_lines, n_pieces = (np.bincount(of, minlength=len(targets)) for of in (line_target, piece_target))
     of, within = _numbered(n_lines * n_pieces)
     at_line = (np.cumsum(n_lines) - n_lines)[of] + within // np.maximum(n_pieces[of], 1)
@@ -106,13 +109,19 @@ def _targets(blocks: Blocks, k: int) -> Iterator[Target]:
     below, beside = blocks.below[k], blocks.right[k]
     for b in beside:
         runs = _runs(blocks, [a for a in below if a >= b], down_at, blocks.down_at[b], down)
-        yield Target(k, DOWN, int(blocks.starts[2 * b]), blocks.down_width[b], right + right_at[b], blocks.sizes[b], runs)
+        yield Target(
+            k, DOWN, int(blocks.starts[2 * b]), blocks.down_width[b], right + right_at[b], blocks.sizes[b], runs
+        )
     for a in below:
         runs = _runs(blocks, [b for b in beside if b > a], right_at, blocks.right_at[a], right)
-        yield Target(k, RIGHT, int(blocks.starts[2 * a + 1]), blocks.right_width[a], down + down_at[a], blocks.sizes[a], runs)
+        yield Target(
+            k, RIGHT, int(blocks.starts[2 * a + 1]), blocks.right_width[a], down + down_at[a], blocks.sizes[a], runs
+        )
 
 
-def _runs(blocks: Blocks, nodes: list[int], own: dict[int, int], into: dict[int, int], start: int) -> list[tuple[int, int, int]]:
+def _runs(
+    blocks: Blocks, nodes: list[int], own: dict[int, int], into: dict[int, int], start: int
+) -> list[tuple[int, int, int]]:
     """The quads of some nodes' blocks, those that are neighbours in both panels together."""
     runs: list[tuple[int, int, int]] = []
     for a in nodes:
@@ -126,10 +135,9 @@ def _runs(blocks: Blocks, nodes: list[int], own: dict[int, int], into: dict[int,
     return runs
 
 
-def _spread(lists: list[list[tuple[int, ...]]]) -> tuple[np.ndarray, ...]:
-    """All members of some lists, one after the other: the list that each is of, and its numbers."""
+def _spread(lists: Sequence[Sequence[tuple[int, ...]]], width: int) -> tuple[np.ndarray, ...]:
+    """All members of some lists, one after the other: the list that each is of, and its numbers, `width` of them."""
     of, _ = _numbered(np.array([len(part) for part in lists], dtype=np.int64))
-    width = next((len(part[0]) for part in lists if part), 3)
     members = np.array([number for part in lists for member in part for number in member], dtype=np.int64)
     return of, *members.reshape(-1, width).T
 

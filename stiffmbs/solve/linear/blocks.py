@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 
@@ -93,7 +94,8 @@ class Blocks:
     def quads(self, name: str, nodes: list[list[int]]) -> dict[str, np.ndarray]:
         """For each node where the quads of other nodes stand in a vector, and where each node's list begins."""
         listed = [
-            [self.node_starts[a] + shift for a in others for shift in range(0, self.widths[a], QUAD)] for others in nodes
+            [self.node_starts[a] + shift for a in others for shift in range(0, self.widths[a], QUAD)]
+            for others in nodes
         ]
         ends = np.cumsum([0, *map(len, listed)], dtype=np.int64)
         return {f"{name}_x": np.array([at for part in listed for at in part], dtype=np.int64), f"{name}_at": ends}
@@ -116,8 +118,7 @@ class Blocks:
         return int(self.starts[2 * row + 1]) + self.right_at[row][column], self.right_width[row], 1
 
     def _offsets(self, nodes: Sequence[int]) -> dict[int, int]:
-        ends = np.cumsum([0, *(self.widths[a] for a in nodes)]).tolist()
-        return dict(zip(nodes, ends, strict=False))
+        return dict(zip(nodes, accumulate((self.widths[a] for a in nodes), initial=0), strict=False))
 
 
 def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -> Blocks:
@@ -157,7 +158,8 @@ def _touching(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray
     for k, own in enumerate(nodes):
         node[own] = k
     below, right = [0] * len(nodes), [0] * len(nodes)
-    for a, b in np.unique(np.stack([node[rows], node[columns]]), axis=1).T.tolist():
+    for both in np.unique(node[rows] * len(nodes) + node[columns]).tolist():
+        a, b = divmod(both, len(nodes))
         if a > b:
             below[b] |= 1 << a
         elif b > a:

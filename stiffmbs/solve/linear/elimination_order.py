@@ -47,13 +47,15 @@ def elimination_order(equations: Equations) -> EliminationOrder:
     by_owner = natural[np.argsort(owner[natural], kind="stable")]
     sizes = np.bincount(owner, minlength=n_bodies + len(equations.system.joint_start) - 1)
     starts = np.concatenate([[0], np.cumsum(sizes)]).tolist()
-    neighbours: list[set[int]] = [set() for _ in sizes]
-    for a, b in np.unique(owner[np.stack(equations.pattern)], axis=1).T.tolist():
+    size = sizes.tolist()
+    neighbours: list[set[int]] = [set() for _ in size]
+    rows, columns = equations.pattern
+    for both in np.unique(owner[rows] * len(size) + owner[columns]).tolist():
+        a, b = divmod(both, len(size))
         if a != b:
             neighbours[a].add(b)
             neighbours[b].add(a)
     order, fill, updates = [], 0, 0
-    size = sizes.tolist()
     for node, around in _least_degree(neighbours, _counted(equations, owner, len(size)), n_bodies):
         order.append(by_owner[starts[node] : starts[node + 1]])
         height = size[node] + sum(size[other] for other in around)

@@ -41,7 +41,9 @@ def plus_product(code: Code, total: Operand, a: Operand, b: Operand) -> Value:
 def sum_of(code: Code, value: Operand) -> Value:
     """The sum of four floats: of both halves first."""
     vector = _quad(value).typed
-    upper = code.put_value("quad", f"shufflevector {vector}, <4 x double> poison, <4 x i32> <i32 2, i32 3, i32 2, i32 3>")
+    upper = code.put_value(
+        "quad", f"shufflevector {vector}, <4 x double> poison, <4 x i32> <i32 2, i32 3, i32 2, i32 3>"
+    )
     halves = code.put_value("quad", f"fadd {vector}, {upper.text}")
     first, second = (code.put_value("float", f"extractelement {halves.typed}, i32 {k}") for k in (0, 1))
     return code.put_value("float", f"fadd {first.typed}, {second.text}")

@@ -120,23 +120,21 @@ def _multiplied(s, d, stride, u, width, size):
 def _taken_out(s, k):
     """Take out of later blocks what the elimination of node k makes, shape by shape."""
     depth = s.size[k]
-    update = s.update
     at = s.update_end[SHAPES * k - 1] if k > 0 else 0
     for kind in range(2):
         a_stride = s.right_width[k] if kind == 0 else s.down_width[k]
         b_stride = s.down_width[k] if kind == 0 else s.right_width[k]
         for rows in range(4, 0, -1):
             shape = SHAPES * k + 8 * kind + 8 - 2 * rows
-            end = s.update_end[shape]
-            while at < end:
-                into, a, b = shifted(s.lu, update[4 * at]), shifted(s.lu, update[4 * at + 2]), shifted(s.lu, update[4 * at + 3])
-                _two_quads(rows, into, update[4 * at + 1], a, a_stride, b, b_stride, depth)
-                at += 1
-            end = s.update_end[shape + 1]
-            while at < end:
-                into, a, b = shifted(s.lu, update[4 * at]), shifted(s.lu, update[4 * at + 2]), shifted(s.lu, update[4 * at + 3])
-                _one_quad(rows, into, update[4 * at + 1], a, a_stride, b, b_stride, depth)
-                at += 1
+            for place in range(at, s.update_end[shape]):
+                u = shifted(s.update, 4 * place)
+                a, b = shifted(s.lu, u[2]), shifted(s.lu, u[3])
+                _two_quads(rows, shifted(s.lu, u[0]), u[1], a, a_stride, b, b_stride, depth)
+            for place in range(s.update_end[shape], s.update_end[shape + 1]):
+                u = shifted(s.update, 4 * place)
+                a, b = shifted(s.lu, u[2]), shifted(s.lu, u[3])
+                _one_quad(rows, shifted(s.lu, u[0]), u[1], a, a_stride, b, b_stride, depth)
+            at = s.update_end[shape + 1]
 
 
 @compiled
@@ -226,7 +224,7 @@ def _sized(s, f):
     for i in range(f.n):
         s.terms[i] = 0.0
     for j in range(f.n):
-        s.trial[j] = s.sign[j] * (1.0 if s.kind[j] == COORDINATE else rate)
+        s.trial[j] = s.state[j] * (1.0 if s.kind[j] == COORDINATE else rate)
         if s.kind[j] > 0:
             for p in range(f.a_start[j], f.a_start[j + 1]):
                 s.terms[f.a_row[p]] += abs(f.a[p] * s.trial[j])
@@ -236,7 +234,7 @@ def _sized(s, f):
             for p in range(f.a_start[j], f.a_start[j + 1]):
                 if s.kind[f.a_row[p]] > 0:
                     part = max(part, abs(f.a[p]) / s.terms[f.a_row[p]])
-            s.trial[j] = s.sign[j] / part if 0.0 < part < float("inf") else s.sign[j]
+            s.trial[j] = s.state[j] / part if 0.0 < part < float("inf") else s.state[j]
 
 
 @compiled
