@@ -24,7 +24,14 @@ from .requests.output_field import RequestField
 from .settings import RunSettings, Settings, takes_settings
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure as Sheet
+
     from ..jobs.check import Report
+    from ..jobs.equilibrium import EquilibriumFound
+    from ..jobs.modes import Modes
+    from ..jobs.start_from import StartFrom
     from ..results.solution import Solution
 
 Data = TypeVar("Data", bound=ModelData)
@@ -292,24 +299,48 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         self,
         settings: RunSettings | None = None,
         watch: Callable[[float], None] | None = None,
+        start_from: StartFrom | None = None,
         **changes: Unpack[Settings],
     ) -> Solution:
         """Solve the model; parameters, result and errors are those of `stiffmbs.run`."""
         from ..jobs.run import run
 
-        return run(self, settings, watch, **changes)
+        return run(self, settings, watch, start_from, **changes)
 
     @takes_settings
     def verify(
         self,
         settings: RunSettings | None = None,
         watch: Callable[[float], None] | None = None,
+        start_from: StartFrom | None = None,
         **changes: Unpack[Settings],
     ) -> Solution:
         """Solve the model, and again to see what its results are worth; parameters, result and errors are those of `stiffmbs.verify`."""
         from ..verification.verify import verify
 
-        return verify(self, settings, watch, **changes)
+        return verify(self, settings, watch, start_from, **changes)
+
+    @takes_settings
+    def equilibrium(
+        self, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Unpack[Settings]
+    ) -> EquilibriumFound:
+        """The pose at rest in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
+        from ..jobs.equilibrium import equilibrium
+
+        return equilibrium(self, settings, start_from, **changes)
+
+    @takes_settings
+    def modes(
+        self,
+        settings: RunSettings | None = None,
+        at: float | None = None,
+        start_from: StartFrom | None = None,
+        **changes: Unpack[Settings],
+    ) -> Modes:
+        """Natural frequencies, damping and shapes; parameters, result and errors are those of `stiffmbs.modes`."""
+        from ..jobs.modes import modes
+
+        return modes(self, settings, at, start_from, **changes)
 
     @takes_settings
     def check(self, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
@@ -317,6 +348,15 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         from ..jobs.check import check
 
         return check(self, settings, **changes)
+
+    def draw(
+        self, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
+        view: str = "", names: bool = True, forces: bool = True,
+    ) -> Sheet | None:  # fmt: skip
+        """Draw the model at an instant; parameters, result and errors are those of `stiffmbs.draw`."""
+        from ..show.drawing.draw import draw
+
+        return draw(self, path, at, described, checked, view, names, forces)
 
 
 def _key(name: str) -> str:

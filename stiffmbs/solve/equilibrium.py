@@ -1,12 +1,13 @@
 """Static equilibrium: Newton's method on the balance of forces, with the constraints, from poses far away too.
 
-Each move d solves, at rest and with the multipliers of the current pose,
+A motion in a thick fluid is followed by implicit steps (pseudo-transient continuation: Kelley and Keyes, SIAM J. Numer.
+Anal. 35, 1998), which lead to stable equilibria alone: from the pose q_n each step seeks, at rest,
 
-    (s M - f_q + d(J^T lam)/dq) d + J^T lam+ = f,    J d = -C.
+    s M (q - q_n) + J^T lam = f(q),    C(q) = 0,
 
-With s = 0 it is Newton's; s > 0 is an implicit step of a motion in a thick fluid (pseudo-transient continuation: Kelley and
-Keyes, SIAM J. Numer. Anal. 35, 1998), which leads to stable equilibria alone.  s falls where forces change along the move
-as the linear equations predict, and rises where they do not, as where a wheel meets the road.
+by Newton's method on (s M - f_q + d(J^T lam)/dq) d = what is left.  s falls where Newton's moves become smaller quickly, as
+where forces change along the step as their derivatives predict, and rises where they do not, as where a wheel meets the
+road.  With s = 0 this is Newton's method for the equilibrium itself.
 """
 
 from __future__ import annotations
@@ -26,11 +27,15 @@ TRANSLATION, ROTATION = 0.25, 0.2
 """Longest move of a body, relative to the mechanism's size, and rad (Adams: EQUILIBRIUM/TLIMIT, ALIMIT)."""
 SLOWEST, STIFFEST = 1e-3, 1e15
 """Bounds of the root of s, rad/s: the least holds free directions where they are."""
-FALLS, RISES = 0.125, 8.0
-TRUSTED, REFUSED = 0.25, 1.0
-"""Error of the predicted forces relative to the imbalance, up to which s falls, and from which a move is taken back."""
-BALANCED = 1e-11
-"""Imbalance of forces that counts as none, relative to the largest force."""
+FALLS, RISES = 0.1, 4.0
+WANTED, CLOSE, TOO_FAR = 0.1, 0.05, 0.6
+"""Newton's moves in a step: each relative to the one before, which s is chosen for; relative to the whole step, which ends
+the step, and from which on it is taken back."""
+MOST_CORRECTIONS = 8
+SLOW = 0.5
+"""Part that has to be left after one of the last moves for another one."""
+BALANCED, ROUNDING = 1e-11, 8
+"""Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
 
 
 @dataclass(frozen=True)
@@ -54,14 +59,24 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class _Balance:
-    """What is known at a pose: the multipliers, what is left of the forces, and the largest of them."""
+    """What is known at a pose: multipliers, what is left of the forces, the largest of them, their rounding, derivatives."""
 
     left: np.ndarray
     lam: np.ndarray
     largest: float
+    rounding: np.ndarray
+    stiffness: csc_array
+    jacobian: csc_array
 
-    def norm(self, mass: np.ndarray) -> float:
-        return float(np.sqrt(np.sum(self.left**2 / mass)))
+    @property
+    def imbalance(self) -> float:
+        """Relative to the largest force."""
+        return float(np.max(np.abs(self.left), initial=0.0) / (self.largest or 1.0))
+
+    @property
+    def balanced(self) -> bool:
+        """Whether no more is left than rounding and a little of the largest force."""
+        return bool(np.all(np.abs(self.left) <= np.maximum(BALANCED * self.largest, self.rounding)))
 
 
 def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
@@ -79,46 +94,66 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
     SolverError
         Where none is found; names the body with the largest imbalance.
     """
-    system, state = dynamics.system, dynamics.state
+    state = dynamics.state
     state.u[:] = 0.0
-    limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
-    shift, known = 1.0, _balance(dynamics, t)
-    for count in range(MOST_MOVES):
-        if np.max(np.abs(known.left), initial=0.0) <= BALANCED * known.largest:
-            return Equilibrium(
-                state.q.copy(),
-                known.lam,
-                count,
-                float(np.max(np.abs(known.left), initial=0.0) / (known.largest or 1.0)),
-            )
+    shift, known, moves = 1.0, _balance(dynamics, t), 0
+    while moves < MOST_MOVES and shift < STIFFEST:
+        if known.balanced:
+            known, more = _polished(dynamics, t, known)
+            return Equilibrium(state.q.copy(), known.lam, moves + more, known.imbalance)
         before = state.q.copy()
-        move = _move(dynamics, t, shift**2, known)
-        longest = float(np.max(np.abs(move) / limits, initial=0.0))
-        if known.left @ move < 0 and shift < STIFFEST:  # towards an unstable equilibrium
-            shift *= RISES
-            continue
-        if longest > 1.0:
-            shift = max(2.0 * shift, shift * float(np.sqrt(longest)))
-            continue
-        state.q[:] = system.of_body.moved(before, move)
-        found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
-        off = _misjudged(system.mass, known, found, shift**2, move)
-        if found is None or off > REFUSED:
+        step = _step(dynamics, t, shift, known)
+        moves += step.moves
+        shift = max(SLOWEST, step.factor * shift)
+        if step.known is None:
             state.q[:] = before
-            if shift > STIFFEST:
-                break
-            shift *= RISES
-            continue
-        known = found
-        if off < TRUSTED:
-            shift = max(SLOWEST, FALLS * shift)
+        else:
+            known = step.known
     raise SolverError(_unbalanced(dynamics, known))
+
+
+@dataclass(frozen=True)
+class _Step:
+    """What came of an implicit step: the balance there, or None where it was none; what the root of s is multiplied by."""
+
+    known: _Balance | None
+    factor: float
+    moves: int
+
+
+def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
+    """An implicit step from the present pose; the pose is wherever it led."""
+    system, state = dynamics.system, dynamics.state
+    limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
+    start, first = state.q.copy(), 0.0
+    for count in range(1, MOST_CORRECTIONS + 1):
+        whole = system.move(start, state.q)
+        move = _move(dynamics, shift**2, known, whole)
+        if count == 1 and not known.left @ np.nan_to_num(move) >= 0:  # towards an unstable equilibrium
+            break
+        longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
+        if longest_of_all > 1.0:
+            return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
+        if count > 1 and longest > TOO_FAR * longest_of_all:
+            break
+        state.q[:] = system.of_body.moved(state.q, move)
+        if dynamics.assemble(t) < 0:
+            break
+        known, first = _balance(dynamics, t), first or longest
+        if known.balanced:
+            return _Step(known, 1.0, count)
+        if count > 1 and longest <= CLOSE * longest_of_all:
+            ratio = (longest / first) ** (1 / (count - 1))
+            factor = np.sqrt(np.clip(max(ratio / WANTED, longest_of_all), FALLS**2, 1.0))
+            return _Step(known, float(factor), count)
+    return _Step(None, RISES, count)
 
 
 def _balance(dynamics: Dynamics, t: float) -> _Balance:
     """Multipliers that balance forces best (in the metric of the masses), and what they leave."""
     state, system = dynamics.state, dynamics.system
     state.u[:] = 0.0
+    state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
@@ -126,7 +161,11 @@ def _balance(dynamics: Dynamics, t: float) -> _Balance:
     largest = max(
         np.max(np.abs(state.vector("motion", "f")), initial=0.0), np.max(np.abs(_entries(dynamics)), initial=0.0)
     )
-    return _Balance(system.mass * acceleration, state.lam[: system.n_c].copy(), float(largest))
+    stiffness, jacobian = _derivatives(dynamics, t)
+    farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
+    rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
+    lam = state.lam[: system.n_c].copy()
+    return _Balance(system.mass * acceleration, lam, float(largest), rounding, stiffness, jacobian)
 
 
 def _entries(dynamics: Dynamics) -> np.ndarray:
@@ -136,22 +175,42 @@ def _entries(dynamics: Dynamics) -> np.ndarray:
     return entries
 
 
-def _move(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> np.ndarray:
-    system, state = dynamics.system, dynamics.state
-    state.lam[: system.n_c] = known.lam
-    state.evaluate("tangent", t)
-    rows = np.flatnonzero(system.active)
+def _derivatives(dynamics: Dynamics, t: float) -> tuple[csc_array, csc_array]:
+    """-f_q + d(J^T lam)/dq and J of the equations that are not redundant, by velocities."""
+    system = dynamics.system
+    dynamics.state.evaluate("tangent", t)
     rates = _sparse(dynamics, "tangent", "Z") + _identity(dynamics)
     stiffness = (_sparse(dynamics, "tangent", "G_lam") - _sparse(dynamics, "tangent", "f_q")) @ rates
-    jacobian = _sparse(dynamics, "tangent", "J")[rows]
-    state.evaluate("motion", t)
-    matrix = block_array([[diags_array(shift * system.mass) + stiffness, jacobian.T], [jacobian, None]], format="csc")
-    right = np.concatenate([known.left, np.zeros(len(rows))])
+    return stiffness, _sparse(dynamics, "tangent", "J")[np.flatnonzero(system.active)]
+
+
+def _move(dynamics: Dynamics, shift: float, known: _Balance, whole: np.ndarray) -> np.ndarray:
+    """Newton's move in a step that has come so far as a whole."""
+    mass, jacobian = dynamics.system.mass, known.jacobian
+    matrix = block_array([[diags_array(shift * mass) + known.stiffness, jacobian.T], [jacobian, None]], format="csc")
+    right = np.concatenate([known.left - shift * mass * whole, np.zeros(jacobian.shape[0])])
     try:
-        found: np.ndarray = splu(matrix).solve(right)[: system.n_u]
+        found: np.ndarray = splu(matrix).solve(right)[: len(mass)]
     except RuntimeError:  # exactly singular: a larger shift ends it
-        return np.full(system.n_u, np.inf)
+        return np.full(len(mass), np.inf)
     return found
+
+
+def _polished(dynamics: Dynamics, t: float, known: _Balance) -> tuple[_Balance, int]:
+    """Newton's moves from a balanced pose as long as less and less is left, and their number."""
+    system, state = dynamics.system, dynamics.state
+    for count in range(MOST_CORRECTIONS):
+        before = state.q.copy()
+        move = _move(dynamics, SLOWEST**2, known, np.zeros(system.n_u))
+        if not np.all(np.isfinite(move)):
+            return known, count
+        state.q[:] = system.of_body.moved(before, move)
+        found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
+        if found is None or not np.max(np.abs(found.left)) < SLOW * np.max(np.abs(known.left)):
+            state.q[:] = before
+            return known, count
+        known = found
+    return known, MOST_CORRECTIONS
 
 
 def _identity(dynamics: Dynamics) -> csc_array:
@@ -166,14 +225,6 @@ def _sparse(dynamics: Dynamics, term_set: str, name: str) -> csc_array:
     term = system.term(term_set, name)
     shape = {"Z": (system.n_q, system.n_u), "J": (system.n_c, system.n_u)}.get(name, (system.n_u, system.n_q))
     return csc_array((dynamics.state.values[term_set][term.source], (term.row, term.column)), shape=shape)
-
-
-def _misjudged(mass: np.ndarray, known: _Balance, found: _Balance | None, shift: float, move: np.ndarray) -> float:
-    """How far the forces left after a move are from the predicted s M d, relative to those before."""
-    if found is None:
-        return np.inf
-    off = np.sqrt(np.sum((found.left - shift * mass * move) ** 2 / mass))
-    return float(off / known.norm(mass))
 
 
 def _unbalanced(dynamics: Dynamics, known: _Balance) -> str:

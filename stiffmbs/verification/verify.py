@@ -28,6 +28,7 @@ import numpy as np
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.laws import has_laws
 from ..jobs.run import Job, Runnable, prepare, solved
+from ..jobs.start_from import StartFrom
 from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution
@@ -46,7 +47,7 @@ MOST_EFFORT, PATIENCE = 3.0, 1.0
 """Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
 OTHER_OF_FIXED = 1e-10
 """Relative tolerance of the other solver where the first has fixed steps."""
-ROUNDING = 1e-13
+CHANNEL_ROUNDING = 1e-13
 """Part of a channel's scale that rounding takes."""
 
 
@@ -55,6 +56,7 @@ def verify(
     model: Runnable,
     settings: RunSettings | None = None,
     watch: ProgressCallback | None = None,
+    start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
 ) -> Solution:
     """Solve a model, and solve it again to see what its results are worth; parameters and errors as for `run`.
@@ -66,7 +68,7 @@ def verify(
         further `notes` where the results are in doubt.
     """
     begun = time.perf_counter()
-    job = prepare(model, settings, **changes)
+    job = prepare(model, settings, start_from, **changes)
     first = solved(job, watch)
     if len(first.time) < 2:
         return replace(first, verification=("not verified: nothing was solved",))
@@ -253,7 +255,9 @@ class _Verification:
 
     def _bar(self, name: str, runs: list[Again]) -> ErrorBar:
         fine = self._between.fine(name) if self._between else None
-        return error_bar(self._first[name], [run.reported(name) for run in runs], fine, ROUNDING * self._sizes[name])
+        return error_bar(
+            self._first[name], [run.reported(name) for run in runs], fine, CHANNEL_ROUNDING * self._sizes[name]
+        )
 
     def _told(self) -> list[str]:
         """What was compared with, and what could not be."""

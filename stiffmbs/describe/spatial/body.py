@@ -15,12 +15,13 @@ from ..fields import Described
 from ..formula.names import SPACE
 from ..handle import Handle
 from ..units import si
+from .geometry import SpatialGeometry
 from .marker import ORIGIN, Marker, Placement, Point
 from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated
 
 Row = tuple[si.Inertia, si.Inertia, si.Inertia]
 Inertia = Annotated[tuple[Row, Row, Row], WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})]
-ROUNDING = 1e-9
+MOMENT_ROUNDING = 1e-9
 """Part of the largest moment by which written moments may miss symmetry and the triangle inequality."""
 
 
@@ -47,6 +48,8 @@ class Body(Described):
         are; where these leave a choice, the value written stands.
     markers : mapping of str to Placement
         Named points and orientations on the body, in its own axes from its origin.
+    geometry : mappings, optional
+        What drawings show of the body; derived from its markers and joints without it.
     """
 
     mass: si.PositiveMass = Field(description="mass, kg")
@@ -68,6 +71,9 @@ class Body(Described):
     markers: dict[str, Placement] = Field(
         default_factory=dict, description="named points and orientations on the body, in its own axes"
     )
+    geometry: SpatialGeometry = Field(
+        (), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh"
+    )
 
     if TYPE_CHECKING:
 
@@ -83,6 +89,7 @@ class Body(Described):
             omega: given.Numbers = ORIGIN,
             open: Sequence[Literal["velocity", "omega"]] = (),
             markers: given.Markers = {},  # noqa: B006 is never called
+            geometry: given.Geometry = (),
         ) -> None: ...
 
     @field_validator("inertia", mode="before")
@@ -101,7 +108,7 @@ class Body(Described):
         largest = max(abs(part) for row in inertia for part in row)
         for row, column in itertools.combinations(range(3), 2):
             one, other = inertia[row][column], inertia[column][row]
-            if abs(one - other) > ROUNDING * largest:
+            if abs(one - other) > MOMENT_ROUNDING * largest:
                 raise ValueError(
                     f"found {one:g} in row {row + 1}, column {column + 1} and {other:g} across the diagonal, "
                     "expected a symmetric tensor"
@@ -109,7 +116,7 @@ class Body(Described):
         small, middle, large = np.linalg.eigvalsh(np.array(inertia))
         if small <= 0:
             raise ValueError(f"found a principal moment of {small:g} kg m^2, expected all three greater than zero")
-        if small + middle < large * (1 - ROUNDING):
+        if small + middle < large * (1 - MOMENT_ROUNDING):
             raise ValueError(
                 f"found the principal moments {small:g}, {middle:g} and {large:g} kg m^2, expected none greater than "
                 "the sum of the other two"

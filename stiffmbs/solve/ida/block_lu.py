@@ -9,12 +9,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import BLOCK_LU, packed
+from ...compile.machine.layout import BLOCK_LU, Layout, packed
 from ...compile.machine.routines import Routine
 from ..linear.block_updates import updates
 from ..linear.blocks import QUAD, Blocks, filled
 from ..linear.elimination_order import EliminationOrder, nodes_in_order
-from .fixed_order import Memory
+from .fixed_order import FixedOrder, Memory
 from .paired_columns import PairedColumns
 
 _MODULE = "stiffmbs.solve.linear.native.block_lu"
@@ -27,7 +27,7 @@ SEED = 14
 
 
 @dataclass(frozen=True)
-class BlockLU(PairedColumns):
+class BlockLU(FixedOrder):
     """Block LU along a fixed order, tried by its residual; columns in pairs with pivots where that is too large.
 
     Attributes
@@ -40,8 +40,7 @@ class BlockLU(PairedColumns):
 
     setup: ClassVar[Routine] = SETUP
     solve: ClassVar[Routine] = SOLVE
-    counts: ClassVar[int] = 7
-    """Those of the columns in pairs, and its own."""
+    layout: ClassVar[Layout] = BLOCK_LU
 
     nodes: list[np.ndarray]
     kinds: np.ndarray
@@ -84,11 +83,11 @@ class BlockLU(PairedColumns):
 
     def memory(self, array_of: int) -> Memory:
         """What the compiled routines work on, given the address of N_VGetArrayPointer."""
-        with_pivots = super().memory(array_of)
+        with_pivots = PairedColumns(self.n, self.rows, self.columns, self.order).memory(array_of)
         blocks = self.blocks
         scratch = max([*blocks.right_width, *(2 * QUAD * size for size in blocks.sizes)])
         arrays = {
-            **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"], "found": with_pivots.arrays["found"],
+            **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"],
             "with_pivots": np.array([with_pivots.content.ctypes.data]), "kept": with_pivots,
             "lu": np.zeros(int(blocks.starts[-1])), "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(scratch),
             **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},

@@ -18,8 +18,6 @@ from stiffmbs.compile.machine.layout import EVENT_SEARCH
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 
-READY, BEGUN, DEPTH = range(3)
-"""Marks: whether values at the start of the step are known, that start's time, and how far an event function must go beyond zero."""
 MARGIN = 0.1
 """Part of the range of a function's bounds that is added to those between the ends."""
 LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
@@ -29,6 +27,8 @@ FITS, NOISE = 0.02, 1e-9
 state that rounding takes of values and rates."""
 SHALLOW = 1e-5
 """Part of that noise which no event function is taken to go beyond zero by: rounding alone changes the sign of a contact that is just closed."""
+BARELY = 1e-6
+"""Part of a zone that an argument must go into it for the zone to be visited: less is rounding of a law's argument, and no feature."""
 WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
@@ -71,6 +71,16 @@ def zone(w, k, value):
         else:
             high = middle
     return low - first + turns * (end - first)
+
+
+@compiled
+def _edge(w, k, number):
+    """The edge between the zones `number` and `number` + 1 of function k; the first or last one beyond those there are."""
+    first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
+    if w.period[k] > 0.0:
+        turns = number // count
+        return w.edges[first + number - turns * count] + turns * w.period[k]
+    return w.edges[first + min(max(number, 0), count - 1)]
 
 
 @compiled
@@ -269,10 +279,16 @@ def _visits(w, k, value, low, high):
     if here != one and w.left_high[k] < 0.0:
         w.left_low[k], w.left_high[k] = low, high
     if k < w.n_event_functions:
-        return here != one and abs(value) > w.mark[DEPTH]
+        return here != one and abs(value) > w.depth
     if abs(one - other) > 1:
         return here != one
-    return here < min(one, other) or here > max(one, other)
+    if here > max(one, other):
+        passed = max(one, other)
+        return value - _edge(w, k, passed) > max(w.depth, BARELY * (_edge(w, k, passed + 1) - _edge(w, k, passed)))
+    if here < min(one, other):
+        passed = min(one, other) - 1
+        return _edge(w, k, passed) - value > max(w.depth, BARELY * (_edge(w, k, passed) - _edge(w, k, passed - 1)))
+    return False
 
 
 @compiled
@@ -364,7 +380,7 @@ def first_event(w, s, begun, h):
     noise = 0.0
     for i in range(w.n_state):
         noise = max(noise, NOISE * abs(w.row[i]))
-    w.mark[DEPTH] = SHALLOW * noise
+    w.depth = SHALLOW * noise
     while low < 1.0:
         end = min(low + part, 1.0)
         part = end - low

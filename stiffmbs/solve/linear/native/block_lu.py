@@ -18,13 +18,11 @@ from stiffmbs.compile.machine.layout import BLOCK_LU
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, set_quad, spread, sum_of
 from stiffmbs.solve.native.calls import call_address, int32
-from stiffmbs.solve.native.fixed_order import CONTENT, LAST_FLAG, OK
+from stiffmbs.solve.native.paired_columns import paired_view
 from stiffmbs.solve.native.paired_columns import setup as setup_with_pivots
 from stiffmbs.solve.native.paired_columns import solve as solve_with_pivots
+from stiffmbs.solve.native.statuses import CONTENT, OK
 
-PIVOTED, WAITS, TRIED, REFUSED = range(3, 7)
-"""Counts behind those of the columns in pairs: whether the factors at hand are those with pivots, how many more are, how many factorisations
-the last trial serves for yet, and trials that the factors without pivots have failed."""
 LARGEST_RESIDUAL = 1e-9
 """Part of the sizes of a row's terms that a trial may leave.  Fixed orders leave 1e-13 to 1e-15."""
 CHANGED = 2.0
@@ -205,9 +203,9 @@ def _solved(s, of):
 @compiled
 def _near_tried(s):
     """Whether no pivot has changed much since the last trial."""
-    if s.found[TRIED] == 0:
+    if s.serves == 0:
         return False
-    s.found[TRIED] -= 1
+    s.serves -= 1
     far = 0
     for k in range(s.n):
         ratio = s.pivot[k] * s.tried[k]
@@ -268,34 +266,45 @@ def _trusted(s, f):
         refused += 0 if abs(s.product[i]) <= s.allowed[i] else 1
     for k in range(f.n):
         s.tried[k] = 1.0 / s.pivot[k]
-    s.found[TRIED] = SERVES if refused == 0 else 0
+    s.serves = SERVES if refused == 0 else 0
     return refused == 0
+
+
+@compiled
+def _forget(s):
+    """Begin a run as if there had been none before."""
+    s.waits = 0
+    s.serves = 0
+    s.refused = 0
+    s.ready = 1
+    paired_view(ints(s.with_pivots[CONTENT])).ready = 0
 
 
 def setup(solver, matrix):
     """SUNLinSolSetup: factors without pivots where they can be trusted, else with pivots."""
-    table = ints(solver[CONTENT])
-    s = block_view(table)
-    s.found[PIVOTED] = 0
-    if s.found[WAITS] > 0:
-        s.found[WAITS] -= 1
+    s = block_view(ints(solver[CONTENT]))
+    if not s.ready:
+        _forget(s)
+    s.pivoted = 0
+    if s.waits > 0:
+        s.waits -= 1
     else:
         f = factors_view(s.factors)
         _eliminated(s, f)
         if _trusted(s, f):
             return int32(OK)
-        s.found[REFUSED] += 1
-        s.found[WAITS] = WAITS_FOR
-    s.found[PIVOTED] = 1
+        s.refused += 1
+        s.waits = WAITS_FOR
+    s.pivoted = 1
     outcome = setup_with_pivots(s.with_pivots, matrix)
-    table[LAST_FLAG] = ints(s.with_pivots[CONTENT])[LAST_FLAG]
+    s.last_flag = paired_view(ints(s.with_pivots[CONTENT])).last_flag
     return int32(outcome)
 
 
 def solve(solver, matrix, x, b, tolerance):
     """SUNLinSolSolve: x = A^-1 b."""
     s = block_view(ints(solver[CONTENT]))
-    if s.found[PIVOTED] == 1:
+    if s.pivoted:
         return int32(solve_with_pivots(s.with_pivots, matrix, x, b, tolerance))
     into = floats(call_address(s.array_of, x))
     _solved(s, floats(call_address(s.array_of, b)))
