@@ -17,6 +17,7 @@ from .response import response
 from .run import run
 from .schema import schema
 from .stress import stress
+from .study import study
 
 
 @click.group(cls=Process, context_settings={"help_option_names": ["-h", "--help"]})
@@ -25,5 +26,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, equilibrium, modes, response, convert, schema, bench, cache, draw, report, stress):
+for command in (run, check, equilibrium, modes, response, study, convert, schema, bench, cache, draw, report, stress):
     main.add_command(command)

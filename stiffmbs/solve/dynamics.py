@@ -123,6 +123,19 @@ class Dynamics:
         if "eliminated" in self.__dict__:
             self.eliminated.forget()
 
+    def forget_inputs(self) -> None:
+        """Have the features of inputs sought anew, as formulas of time were changed in place."""
+        self._features = np.inf, -np.inf, InputFeatures()
+        self._input_end = np.nan, np.nan, None
+
+    def return_to_start(self) -> None:
+        """Put the state to the system's start, as described, without multipliers and relaxation: as it is when new."""
+        state, system = self.state, self.system
+        state.q[:], state.u[:] = system.q, system.u
+        for vector in (state.a, state.lam, state.mu):
+            vector[:] = 0.0
+        state.relax(state.mu, state.lam)
+
     @cached_property
     def eliminated(self) -> Eliminated:
         """The quicker way to accelerations that explicit steps take where it serves."""
