@@ -78,7 +78,7 @@ BLOCK_LU: Layout = {
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
     "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
-    "n_lu": INT, "lu": FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
+    "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
     "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS, "pivot": FLOATS, "tried": FLOATS,
     "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,

@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import BLOCK_LU, Layout, packed
+from ...compile.machine.layout import BLOCK_LU, Layout
+from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.block_updates import updates
 from ..linear.blocks import QUAD, Blocks, filled
@@ -89,7 +90,7 @@ class BlockLU(FixedOrder):
         arrays = {
             **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"],
             "with_pivots": np.array([with_pivots.content.ctypes.data]), "kept": with_pivots,
-            "lu": np.zeros(int(blocks.starts[-1])), "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(scratch),
+            "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(scratch),
             **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
         }  # fmt: skip
-        return Memory(packed(BLOCK_LU, arrays), arrays, with_pivots.factors)
+        return Memory(packed_with_memory(BLOCK_LU, arrays), arrays, with_pivots.factors)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.equations import Equations
+from ...compile.machine.native.memory import MOST_INDICES
 from ..linear.elimination_order import EliminationOrder, elimination_order
 from .block_lu import BlockLU
 from .fixed_order import FixedOrder
@@ -27,6 +28,8 @@ PAIRED = (0.25, 3.0, 0.75, 1.0)
 """The same where columns are taken in pairs: their loops cost as much as some ten updates."""
 BLOCKS = (0.05, 50.0, 0.04, 5.0, 11.0)
 """ns for an update in blocks of bodies and joints, for a node; in a solution for an entry of full blocks, an unknown, and a node."""
+WITH_ZEROS = 8
+"""Numbers that the blocks hold at the most, relative to the entries of a triangle of full ones."""
 SUPERLU = (0.5, 0.75, 600.0, 8.0)
 """The same of SuperLU_MT, which works in dense blocks where there are any, and starts anew with every factorisation."""
 WORTH_A_BAND = 50
@@ -56,7 +59,9 @@ def fixed_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float
 
 
 def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
-    """The same by dense blocks of so many nodes."""
+    """The same by dense blocks of so many nodes; they are numbered by 32 bits."""
+    if WITH_ZEROS * order.fill > MOST_INDICES:
+        return np.inf
     update, node, entry, unknown, of_node = BLOCKS
     return update * order.updates + node * n_nodes + SOLUTIONS * (entry * order.fill + unknown * n + of_node * n_nodes)
 

@@ -16,13 +16,16 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.layout import BLOCK_LU
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
+from stiffmbs.compile.machine.native.factors import FULL
+from stiffmbs.compile.machine.native.memory import FLOAT, holds
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, set_quad, spread, sum_of
 from stiffmbs.solve.native.calls import call_address, int32
 from stiffmbs.solve.native.paired_columns import paired_view
 from stiffmbs.solve.native.paired_columns import setup as setup_with_pivots
 from stiffmbs.solve.native.paired_columns import solve as solve_with_pivots
-from stiffmbs.solve.native.statuses import CONTENT, OK
+from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK
 
+LU = list(BLOCK_LU).index("lu")
 LARGEST_RESIDUAL = 1e-9
 """Part of the sizes of a row's terms that a trial may leave.  Fixed orders leave 1e-13 to 1e-15."""
 CHANGED = 2.0
@@ -282,9 +285,15 @@ def _forget(s):
 
 def setup(solver, matrix):
     """SUNLinSolSetup: factors without pivots where they can be trusted, else with pivots."""
-    s = block_view(ints(solver[CONTENT]))
-    if not s.ready:
-        _forget(s)
+    table = ints(solver[CONTENT])
+    begun = block_view(table)
+    if not begun.ready:
+        _forget(begun)
+        if not holds(table, LU, begun.n_lu, FLOAT):
+            begun.ready = 0
+            begun.last_flag = FULL
+            return int32(FAILED)
+    s = block_view(table)  # the memory may have moved
     s.pivoted = 0
     if s.waits > 0:
         s.waits -= 1
