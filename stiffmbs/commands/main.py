@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from .animate import animate
 from .bench import bench
 from .cache import cache
 from .check import check
@@ -11,6 +12,7 @@ from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
 from .modes import modes
+from .plot import plot
 from .process import Process
 from .report import report
 from .response import response
@@ -26,5 +28,7 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, equilibrium, modes, response, study, convert, schema, bench, cache, draw, report, stress):
+for command in (
+    run, check, equilibrium, modes, response, study, convert, schema, bench, cache, draw, animate, plot, report, stress,
+):  # fmt: skip
     main.add_command(command)

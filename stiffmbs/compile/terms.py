@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 TERM_SETS: dict[str, tuple[str, ...]] = {
-    "position": ("C", "C_q", "counted"),
+    "position": ("C", "C_q", "continuous_angle"),
     "motion": ("C", "V", "C_q", "J", "f", "Z"),
     "tangent": ("C_q", "J", "V_q", "G_lam", "G_mu", "f_q", "f_u", "f_lam", "Z", "Z_q"),
-    "acceleration": ("J", "gamma", "f", "f_lam", "counting"),
+    "acceleration": ("J", "gamma", "f", "f_lam", "angle_rate"),
     "output": ("reaction", "potential", "power"),
     "event_function": ("event_function", "limit", "argument"),
     "all_levels": ("C", "V", "J", "gamma", "f", "Z"),
@@ -28,7 +28,7 @@ TERM_AXES: dict[str, str] = {
     "C": "c", "V": "c", "gamma": "c", "f": "u", "reaction": "r", "potential": "e", "power": "e", "event_function": "s", "limit": "s",
     "argument": "s",
     "C_q": "cq", "J": "cu", "V_q": "cq", "G_lam": "uq", "G_mu": "qq", "f_q": "uq", "f_u": "uu", "f_lam": "ul",
-    "A_q": "cq", "gamma_u": "cu", "Z": "qu", "Z_q": "qq", "counted": "q", "counting": "q",
+    "A_q": "cq", "gamma_u": "cu", "Z": "qu", "Z_q": "qq", "continuous_angle": "q", "angle_rate": "q",
 }  # fmt: skip
 """What a term's row and column count: c own equations, u velocities, q coordinates, l equations of the joints that are
 referred to, r parts of a reaction, s event functions, e elements."""

@@ -134,7 +134,7 @@ class ModelData(Described):
 
     @abstractmethod
     def initial_marker(self, marker: MarkerReference) -> Any:
-        """A marker with numbers, in ground axes, as the bodies are drawn."""
+        """A marker with numbers, in ground axes, at the initial pose."""
 
     @abstractmethod
     def carried(self, marker: MarkerReference) -> tuple[str, Any]:
@@ -209,13 +209,13 @@ def check_element(
             raise ValueError(
                 f"{where}.{field}: found '{joint}', which refers to a joint itself, expected one between markers"
             )
-    for field, reason in element.refused(joints):
+    for field, reason in element.validation_errors(joints):
         raise ValueError(f"{where}.{field}: {reason}")
     for field, formula in element.parts(Formula):
         for body in formula.bodies():
             if body not in bodies and body != GROUND:
                 raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {listed(bodies)}")
-        for reason in names.refused(formula):
+        for reason in names.validation_errors(formula):
             raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
     if len(placed) > 1 and len(set(placed)) == 1:

@@ -156,7 +156,7 @@ def presolved(
 ) -> tuple[Subsystem, ...]:
     """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
 
-    For implicit steps their mechanics, or those of the whole, then leave out coordinates that others determine.
+    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The mechanics of one system at a state: assembly, projections, accelerations, and what is reported."""
+"""The dynamics of one system at a state: assembly, projections, accelerations, and what is reported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
-from .storage import blocks, release, room
+from .storage import allocated, blocks, release
 
 T = TypeVar("T")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS = together(
@@ -88,7 +88,7 @@ class Dynamics:
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
         self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
         self._kept: dict[str, tuple[object, object]] = {}
-        counting = system.term("acceleration", "counting")
+        counting = system.term("acceleration", "angle_rate")
         self._counting = counting.source.astype(np.int64), counting.row.astype(np.int64)
         self._features = np.inf, -np.inf, InputFeatures()
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
@@ -102,9 +102,9 @@ class Dynamics:
                 "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
-                "n_counting": len(counting.row),
-                "counting_source": self._counting[0],
-                "counting_row": self._counting[1],
+                "n_angle_rates": len(counting.row),
+                "angle_rate_source": self._counting[0],
+                "angle_rate_row": self._counting[1],
             },
         )
         self._cells = cells(self.table, DYNAMICS)
@@ -192,7 +192,7 @@ class Dynamics:
         system, count = self.system, len(t)
         n_output = system.n_values("output")
         widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 3)
-        rows = [room(count, width) for width in widths]
+        rows = [allocated(count, width) for width in widths]
         done = 0
         for block in blocks(count):
             rows[0][block], rows[1][block] = q[block], u[block]

@@ -55,11 +55,11 @@ def accelerated(eliminates, eliminated, s, m, t, target):
 
 
 @compiled
-def count_turns(s, m, factor, target):
+def add_angle_rates(s, m, factor, target):
     """target += factor * the rates of the counters of turns, after accelerations at the state at hand."""
     values = floats(s.values[ACCELERATION])
-    for k in range(m.n_counting):
-        target[m.counting_row[k]] += factor * values[m.counting_source[k]]
+    for k in range(m.n_angle_rates):
+        target[m.angle_rate_row[k]] += factor * values[m.angle_rate_source[k]]
 
 
 @compiled
@@ -71,7 +71,7 @@ def rates(x, s, m, stage, t):
     add_rates(s, s.u, 1.0, k)
     x.accelerations += 1
     status = accelerated(x.eliminates, x.eliminated, s, m, t, shifted(k, s.n_q))
-    count_turns(s, m, 1.0, k)
+    add_angle_rates(s, m, 1.0, k)
     return status
 
 
