@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.machine.native.memory import MOST_INDICES
 from ..linear.elimination_order import EliminationOrder, elimination_order
 from .block_lu import BlockLU
 from .fixed_order import FixedOrder
@@ -60,7 +59,7 @@ def fixed_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float
 
 def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
     """The same by dense blocks of so many nodes; they are numbered by 32 bits."""
-    if WITH_ZEROS * order.fill > MOST_INDICES:
+    if WITH_ZEROS * order.fill > np.iinfo(np.int32).max:
         return np.inf
     update, node, entry, unknown, of_node = BLOCKS
     return update * order.updates + node * n_nodes + SOLUTIONS * (entry * order.fill + unknown * n + of_node * n_nodes)
