@@ -89,7 +89,7 @@ def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], 
         In ground axes.
     bodies : tuple of str
     scale : ndarray, shape (n_u,)
-        Lengths for displacements, 1 for rotations.
+        The mechanism's size for displacements, 1 for rotations.
     """
     if not state.degrees_of_freedom:
         return []
@@ -148,7 +148,7 @@ def _mode(
     both: tuple[complex, complex], shape: np.ndarray, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray
 ) -> Mode:
     motion = Motion.OSCILLATING if both[0].imag else Motion.APERIODIC if all(both) else Motion.RIGID
-    sizes = shape / scale * scale.max()
+    sizes = shape / scale * scale[0]  # the first of a body is a displacement
     shape = shape / sizes[np.argmax(np.abs(sizes))]
     energy = (shape.conj() * (mass @ shape)).real.reshape(len(bodies), -1).sum(axis=1)
     shares = dict(zip(bodies, (energy / energy.sum()).tolist(), strict=True))

@@ -15,12 +15,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, diags_array
+from scipy.sparse import block_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ..errors import SolverError
 from .dynamics import Dynamics
-from .failures import FAILURES
+from .force_balance import Balance, balance_at
+from .steady_motion import SteadyMotion, at_rest
 
 MOST_MOVES = 2000
 TRANSLATION, ROTATION = 0.25, 0.5
@@ -34,17 +35,15 @@ the step, and from which on it is taken back."""
 MOST_CORRECTIONS = 8
 SLOW = 0.5
 """Part that has to be left after one of the last moves for another one."""
-BALANCED, ROUNDING = 1e-10, 8
-"""Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A pose at rest in which forces balance.
+    """A pose at rest, or in a steady motion, in which forces balance.
 
     Attributes
     ----------
-    q, lam : ndarrays
+    q, u, acceleration, lam : ndarrays
     moves : int
         That led there.
     imbalance : float
@@ -52,35 +51,15 @@ class Equilibrium:
     """
 
     q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
     lam: np.ndarray
     moves: int
     imbalance: float
 
 
-@dataclass(frozen=True)
-class _Balance:
-    """What is known at a pose: multipliers, what is left of the forces, the largest of them, their rounding, derivatives."""
-
-    left: np.ndarray
-    lam: np.ndarray
-    largest: float
-    rounding: np.ndarray
-    stiffness: csc_array
-    jacobian: csc_array
-
-    @property
-    def imbalance(self) -> float:
-        """Relative to the largest force."""
-        return float(np.max(np.abs(self.left), initial=0.0) / (self.largest or 1.0))
-
-    @property
-    def balanced(self) -> bool:
-        """Whether no more is left than rounding and a little of the largest force."""
-        return bool(np.all(np.abs(self.left) <= np.maximum(BALANCED * self.largest, self.rounding)))
-
-
-def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
-    """The equilibrium that a system comes to from its pose if it moves slowly; the state is at rest there afterwards.
+def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None = None) -> Equilibrium:
+    """The equilibrium that a system comes to from its pose if it moves slowly; the state is there afterwards.
 
     Parameters
     ----------
@@ -88,6 +67,8 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
         At an assembled pose.
     t : float
         At which forces and drives are taken, s.
+    motion : SteadyMotion, optional
+        In which it is sought; at rest without one.
 
     Raises
     ------
@@ -95,40 +76,41 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
         Where none is found; names the body with the largest imbalance.
     """
     state = dynamics.state
-    state.u[:] = 0.0
-    shift, known, moves = 1.0, _balance(dynamics, t), 0
+    motion = motion or at_rest(dynamics.system.of_body.dimensions)
+    shift, known, moves = 1.0, balance_at(dynamics, t, motion), 0
     while moves < MOST_MOVES and shift < STIFFEST:
         if known.balanced:
-            known, more = _polished(dynamics, t, known)
-            return Equilibrium(state.q.copy(), known.lam, moves + more, known.imbalance)
+            known, more = _polished(dynamics, t, motion, known)
+            return as_equilibrium(dynamics, t, motion, known, moves + more)
         before = state.q.copy()
-        step = _step(dynamics, t, shift, known)
+        step = _step(dynamics, t, motion, shift, known)
         moves += step.moves
         shift = max(SLOWEST, step.factor * shift)
         if step.known is None:
             state.q[:] = before
+            motion.put(dynamics, t)
         else:
             known = step.known
-    raise SolverError(_unbalanced(dynamics, known))
+    raise SolverError(unbalanced(dynamics, known))
 
 
 @dataclass(frozen=True)
 class _Step:
     """What came of an implicit step: the balance there, or None where it was none; what the root of s is multiplied by."""
 
-    known: _Balance | None
+    known: Balance | None
     factor: float
     moves: int
 
 
-def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
+def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, known: Balance) -> _Step:
     """An implicit step from the present pose; the pose is wherever it led."""
     system, state = dynamics.system, dynamics.state
     limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
     start, first = state.q.copy(), 0.0
     for count in range(1, MOST_CORRECTIONS + 1):
         whole = system.move(start, state.q)
-        move = _move(dynamics, shift**2, known, whole)
+        move = newton_move(dynamics, shift**2, known, whole)
         if count == 1 and not known.left @ np.nan_to_num(move) >= 0:  # towards an unstable equilibrium
             break
         longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
@@ -139,7 +121,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
         state.q[:] = system.of_body.moved(state.q, move)
         if dynamics.assemble(t) < 0:
             break
-        known, first = _balance(dynamics, t), first or longest
+        known, first = balance_at(dynamics, t, motion), first or longest
         if known.balanced:
             return _Step(known, 1.0, count)
         if count > 1 and longest <= CLOSE * longest_of_all:
@@ -149,42 +131,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
     return _Step(None, RISES, count)
 
 
-def _balance(dynamics: Dynamics, t: float) -> _Balance:
-    """Multipliers that balance forces best (in the metric of the masses), and what they leave."""
-    state, system = dynamics.state, dynamics.system
-    state.u[:] = 0.0
-    state.count_anew(t)
-    status, acceleration = dynamics.accelerate(t)
-    if status < 0:
-        raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
-    state.evaluate("motion", t)
-    largest = max(
-        np.max(np.abs(state.vector("motion", "f")), initial=0.0), np.max(np.abs(_entries(dynamics)), initial=0.0)
-    )
-    stiffness, jacobian = _derivatives(dynamics, t)
-    farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
-    rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
-    lam = state.lam[: system.n_c].copy()
-    return _Balance(system.mass * acceleration, lam, float(largest), rounding, stiffness, jacobian)
-
-
-def _entries(dynamics: Dynamics) -> np.ndarray:
-    """The single contributions to applied forces: they may cancel in the sum."""
-    term = dynamics.system.term("motion", "f")
-    entries: np.ndarray = dynamics.state.values["motion"][term.source]
-    return entries
-
-
-def _derivatives(dynamics: Dynamics, t: float) -> tuple[csc_array, csc_array]:
-    """-f_q + d(J^T lam)/dq and J of the equations that are not redundant, by velocities."""
-    system = dynamics.system
-    dynamics.state.evaluate("tangent", t)
-    rates = _sparse(dynamics, "tangent", "Z") + _identity(dynamics)
-    stiffness = (_sparse(dynamics, "tangent", "G_lam") - _sparse(dynamics, "tangent", "f_q")) @ rates
-    return stiffness, _sparse(dynamics, "tangent", "J")[np.flatnonzero(system.active)]
-
-
-def _move(dynamics: Dynamics, shift: float, known: _Balance, whole: np.ndarray) -> np.ndarray:
+def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
     """Newton's move in a step that has come so far as a whole."""
     mass, jacobian = dynamics.system.mass, known.jacobian
     matrix = block_array([[diags_array(shift * mass) + known.stiffness, jacobian.T], [jacobian, None]], format="csc")
@@ -196,16 +143,16 @@ def _move(dynamics: Dynamics, shift: float, known: _Balance, whole: np.ndarray) 
     return found
 
 
-def _polished(dynamics: Dynamics, t: float, known: _Balance) -> tuple[_Balance, int]:
+def _polished(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance) -> tuple[Balance, int]:
     """Newton's moves from a balanced pose as long as less and less is left, and their number."""
     system, state = dynamics.system, dynamics.state
     for count in range(MOST_CORRECTIONS):
         before = state.q.copy()
-        move = _move(dynamics, SLOWEST**2, known, np.zeros(system.n_u))
+        move = newton_move(dynamics, SLOWEST**2, known, np.zeros(system.n_u))
         if not np.all(np.isfinite(move)):
             return known, count
         state.q[:] = system.of_body.moved(before, move)
-        found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
+        found = balance_at(dynamics, t, motion) if dynamics.assemble(t) >= 0 else None
         if found is None or not np.max(np.abs(found.left)) < SLOW * np.max(np.abs(known.left)):
             state.q[:] = before
             return known, count
@@ -213,21 +160,15 @@ def _polished(dynamics: Dynamics, t: float, known: _Balance) -> tuple[_Balance, 
     return known, MOST_CORRECTIONS
 
 
-def _identity(dynamics: Dynamics) -> csc_array:
-    """q' of the coordinates whose rate is a velocity."""
-    system = dynamics.system
-    q, u = system.of_body.straight(len(system.bodies))
-    return csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
+def as_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance, moves: int) -> Equilibrium:
+    """The present pose, which is balanced, with the motion's velocities."""
+    motion.put(dynamics, t)
+    q, u = dynamics.state.q.copy(), dynamics.state.u.copy()
+    return Equilibrium(q, u, motion.acceleration(dynamics), known.lam, moves, known.imbalance)
 
 
-def _sparse(dynamics: Dynamics, term_set: str, name: str) -> csc_array:
-    system = dynamics.system
-    term = system.term(term_set, name)
-    shape = {"Z": (system.n_q, system.n_u), "J": (system.n_c, system.n_u)}.get(name, (system.n_u, system.n_q))
-    return csc_array((dynamics.state.values[term_set][term.source], (term.row, term.column)), shape=shape)
-
-
-def _unbalanced(dynamics: Dynamics, known: _Balance) -> str:
+def unbalanced(dynamics: Dynamics, known: Balance) -> str:
+    """Why no equilibrium was found, with the body that has the largest imbalance."""
     system = dynamics.system
     worst = int(np.argmax(np.abs(known.left)))
     name = system.name_of(worst, system.of_body.reactions)
