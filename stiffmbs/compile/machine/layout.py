@@ -130,7 +130,7 @@ EXPLICIT: Layout = {
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
-    "n_event_functions": INT, "n_events": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
+    "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
@@ -149,7 +149,7 @@ NATIVE_IDA: Layout = {
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
     "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
-    "output_correction": INTS, "iteration": INTS, "watch": INTS, "probe": FLOATS,
+    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
 }  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
@@ -208,7 +208,7 @@ EVENT_SEARCH: Layout = {
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 }  # fmt: skip
-"""What the search for events within a step works on (`stiffmbs.solve.native.within_step`): the event functions with their
+"""What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
 edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes.
 
 Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond
