@@ -21,8 +21,10 @@ from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.field import Formula
 from stiffmbs.describe.marker import MarkerReference
 from stiffmbs.describe.python_function import PythonFunction
+from stiffmbs.describe.roads.road import Road
 from stiffmbs.describe.spatial.orientation import OrientationField
 from stiffmbs.describe.table import Table
+from stiffmbs.describe.tyres.coefficients import TyreProperties
 
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
@@ -147,6 +149,8 @@ TAKEN: Mapping[type, str] = {
     Formula: "given.Law",
     PythonFunction: "given.Function",
     Table: "given.Curve",
+    Road: "given.Road",
+    TyreProperties: "given.TyreProperties",
 }
 PLAIN = {bool: "bool", int: "int", str: "str", type(None): "None"}
 

@@ -13,7 +13,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..describe.element import Element
+from ..describe.element import Component, Element
 from .kind import Kind
 from .machine import cache as store
 from .terms import TERM_SETS
@@ -140,8 +140,8 @@ def _derived(kind: Kind) -> KindRecord:
 def _entry(kind: Kind, *part: str) -> str | None:
     """The cache's name for everything that the record, or a part of its own, follows from; None where the element's source
     cannot be read."""
-    classes = [kind.element, *(shape[1] for _, shape in kind.fields if shape[0] == "joint")]
-    bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element)]
+    classes = [kind.element, *(shape[1] for _, shape in kind.fields if shape[0] in ("joint", "component"))]
+    bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element | Component)]
     try:
         texts = _files(bases) if all(map(_is_shipped, bases)) else _equations(kind)
     except (OSError, TypeError):

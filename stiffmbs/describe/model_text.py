@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..errors import InputError
-from .element import Element, JointName
+from .element import JointName
 from .fields import Described
 from .files.scene_text import scene_text
 from .formula.dimension import Known
-from .geometry.shape import Shape
 from .marker import MarkerReference
 from .model_data import ModelData
 from .table import Table
@@ -47,7 +46,7 @@ def _written(value: Any) -> Any:
             rows = [[_quantity(*entry) for entry in zip(row, value.dimensions, strict=True)] for row in value.table]
             return {**_fields(value), "table": rows}
         case Described():
-            kind = {"type": value.type} if isinstance(value, Element | Shape) else {}
+            kind = {"type": getattr(value, "type", "")} if "type" in type(value).model_fields else {}
             return {**kind, **_fields(value)}
         case JointName():
             return str(value)
