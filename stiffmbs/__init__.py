@@ -25,6 +25,7 @@ from .describe.python_function import PythonFunction
 from .describe.scene import Scene, read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings
+from .describe.states.state import State
 from .describe.table import Table
 from .describe.units import si
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
@@ -43,7 +44,7 @@ _LATER = {
 
 __all__ = [
     "AssemblyError", "Body", "Force", "InputError", "Joint", "Marker", "Model", "PythonFunction", "RunSettings", "Scene",
-    "SolverError", "StiffmbsError", "Table", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
+    "SolverError", "State", "StiffmbsError", "Table", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
     *_LATER, *_ELEMENTS,
 ]  # fmt: skip
 

@@ -20,12 +20,16 @@ from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
 from ..describe.python_function import PythonFunction
+from ..describe.states.name import StateName
+from ..describe.states.state import StateValue
 from ..describe.table import Table
 from ..errors import InputError
 from .callbacks import callback_of
 from .table_values import spline_data
 
 Shape = tuple[Any, ...]
+STATE = "state"
+"""Before the slot of a state in a formula's shape."""
 OWN = "own_"
 """Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
 
@@ -45,6 +49,9 @@ class Compilable(Protocol):
 
     def elements(self) -> Iterator[tuple[str, Element]]:
         """Every joint, force, counter of turns and weight with its name."""
+
+    def state_values(self) -> Mapping[str, StateValue]:
+        """The states of the user's own."""
 
     def carried(self, marker: Any) -> tuple[str, Any]:
         """The body that carries a marker, and where it sits on it."""
@@ -67,6 +74,8 @@ class Kind:
         Bodies that one element acts on.
     n_joints : int
         Joints that it refers to.
+    n_states : int
+        States of the user's own that it reads or determines.
     fields : tuple of (str, Shape)
         Its fields by name; a shape says of what form a field is, never its numbers.
     """
@@ -75,6 +84,7 @@ class Kind:
     dimensions: int
     n_bodies: int
     n_joints: int
+    n_states: int
     fields: tuple[tuple[str, Shape], ...]
 
 
@@ -92,18 +102,27 @@ class ElementData:
         Which of the numbers stands for a table, by its offset in `flat`, and the table's spline data.
     joints : list of str
         Joints whose multipliers the equations use.
+    states : list of str
+        By slot.
     """
 
     bodies: list[str] = field(default_factory=list)
     numbers: list[float] = field(default_factory=list)
     tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
     joints: list[str] = field(default_factory=list)
+    states: list[str] = field(default_factory=list)
 
     def slot(self, body: str) -> int:
         """The slot of a body, a new one where it is new."""
         if body not in self.bodies:
             self.bodies.append(body)
         return self.bodies.index(body)
+
+    def state_slot(self, state: str) -> int:
+        """The slot of a state, a new one where it is new."""
+        if state not in self.states:
+            self.states.append(state)
+        return self.states.index(state)
 
     def flat(self) -> np.ndarray:
         """Numbers and tables in one row, each table's number being its offset from the start of the row."""
@@ -121,7 +140,7 @@ def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
     """An element's kind, and what is its own."""
     data = ElementData()
     fields = _fields(element, model, data)
-    return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), fields), data
+    return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), len(data.states), fields), data
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
@@ -138,6 +157,8 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             fields = _fields(joint, model, data)
             data.joints.append(value.joint)
             return ("joint", type(joint), fields, len(data.joints) - 1, value.coordinate_of(joint))
+        case StateName():
+            return ("state", data.state_slot(value))
         case None | bool() | str():
             return ("choice", value)
         case int() | float():
@@ -171,7 +192,7 @@ def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:
 class _FormulaShape(ast.NodeTransformer):
     """Takes numbers, bodies, measures and tables out of a formula.
 
-    Bodies become ``b0.x``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
+    Bodies become ``b0.x``, states ``state0``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
     constant one number ``p0``; whole exponents stay, as they decide about the derivatives.  What a formula repeats word
     for word is the same once more, numbers included: the road's phase in a sine and in a cosine is then computed once.
     """
@@ -230,6 +251,8 @@ class _FormulaShape(ast.NodeTransformer):
         return ast.Call(ast.Name(f"table{len(self.tables) - 1}"), arguments, [])
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
+        if node.id in self.formula.states:
+            return ast.Name(f"{STATE}{self.data.state_slot(node.id)}")
         return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
@@ -245,7 +268,7 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
     if not isinstance(node, ast.expr):
         return None
     for part in ast.walk(node):
-        if is_measure(part) or (isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables)):
+        if is_measure(part) or (isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)):
             return None
         if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
             return None

@@ -21,6 +21,8 @@ from .own_elements import check_class
 from .requests.check import ByChannel, by_channel, check_output
 from .requests.order import dimensions, with_named
 from .requests.output_field import RequestField
+from .states.section import check_states
+from .states.state import State
 from .settings import RunSettings, Settings, takes_settings
 
 if TYPE_CHECKING:
@@ -53,6 +55,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         self.gravity = gravity
         self.markers: dict[str, Any] = {}
         self.bodies: dict[str, Body] = {}
+        self.states: dict[str, State] = {}
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
         self.requests: dict[str, Any] = {}
@@ -64,16 +67,16 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
     def add(self, name: str, part: Body) -> BodyHandle: ...
 
     @overload
-    def add(self, name: str, part: Joint | Force) -> None: ...
+    def add(self, name: str, part: Joint | Force | State) -> None: ...
 
     def add(self, name: str, part: Any) -> BodyHandle | None:
-        """Add a body, a joint or a force.
+        """Add a body, a joint, a force or a state.
 
         Parameters
         ----------
         name : str
             Letters, digits and ``_``; no other part has it.
-        part : Body, Joint or Force
+        part : Body, Joint, Force or State
 
         Returns
         -------
@@ -146,7 +149,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         return self.handle_type(name, self) if name in self.bodies else None
 
     def _sections(self) -> tuple[dict[str, Any], ...]:
-        return self.bodies, self.joints, self.forces, self.requests
+        return self.bodies, self.states, self.joints, self.forces, self.requests
 
     def _found(self, name: str) -> dict[str, Any]:
         """The section that holds a part."""
@@ -159,6 +162,8 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         """The section that a part belongs to."""
         if isinstance(part, self.body_type):
             return self.bodies
+        if isinstance(part, State):
+            return self.states
         if not isinstance(part, Joint | Force):
             raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
         check_class(type(part))
@@ -173,6 +178,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         try:
             for other, element in (*self.joints.items(), *self.forces.items()):
                 self._check_element(other, element)
+            self._check_states()
             self.data_type.model_construct(**self._content()).check_requests()
         except ValueError as error:
             section.clear()
@@ -255,14 +261,19 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         try:
             if isinstance(part, Element):
                 self._check_element(name, part)
+            if isinstance(part, State):
+                self._check_states({name: part})
         except ValueError as error:
             raise InputError(str(error)) from None
 
     def _check_element(self, name: str, part: Element) -> None:
-        check_element(name, part, self.bodies, self.joints, self.markers, NAMES[self._dimensions()])
+        check_element(name, part, self.bodies, self.joints, self.markers, NAMES[self._dimensions()], self.states)
+
+    def _check_states(self, added: Mapping[str, State] | None = None) -> None:
+        check_states({**self.states, **(added or {})}, self.bodies, self.markers, NAMES[self._dimensions()])
 
     def _content(self) -> dict[str, Any]:
-        sections = ("name", "gravity", "markers", "bodies", "joints", "forces", "requests")
+        sections = ("name", "gravity", "markers", "bodies", "states", "joints", "forces", "requests")
         return {section: getattr(self, section) for section in sections}
 
     def data(self) -> Data:

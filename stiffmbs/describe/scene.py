@@ -38,7 +38,7 @@ from .settings import RunSettings
 from .table import Table
 from .units.units import Quantity, in_text
 
-SECTIONS = ("variables", "bodies", "joints", "forces")
+SECTIONS = ("variables", "states", "bodies", "joints", "forces")
 
 
 class Scene(ModelData):
@@ -203,7 +203,7 @@ def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
-        variables = read_variables(raw.get("variables"), parameters, tables)
+        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"))
         context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables}
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:

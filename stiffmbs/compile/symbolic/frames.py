@@ -8,6 +8,8 @@ from typing import Any
 
 import sympy as sp
 
+from ...errors import InputError
+
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
 from .read import read
@@ -22,6 +24,7 @@ OF_ELEMENTS = (
     "type",
     "frames",
     "angles",
+    "states",
     "breakpoints",
     "derivatives",
     "_turns",
@@ -45,6 +48,8 @@ class SymbolicElement:
         Time.
     frames : list of BodyFrame or of SpatialBodyFrame
         The bodies, in the order of `Element.bodies`.
+    states : list of Symbol
+        States of the user's own, by slot.
     angles : list of expressions
         Those that count whole turns, in the order of their counters.
     breakpoints : list of expressions
@@ -55,8 +60,11 @@ class SymbolicElement:
 
     t = sp.Symbol("t", real=True)
 
-    def __init__(self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives) -> None:
+    def __init__(
+        self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives, states: list[sp.Symbol]
+    ) -> None:
         self.frames = frames
+        self.states = states
         self.angles: list[sp.Expr] = []
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
@@ -97,6 +105,8 @@ class SymbolicElement:
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
         x = self.read(x)
+        if self.depends(x, self.states):
+            raise InputError("found a state in an expression whose rate is needed, expected coordinates and time alone")
         partial = self.derivatives.partial
         moving = (
             rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
@@ -168,7 +178,13 @@ class SymbolicElement:
 
     @cached_property
     def _by_coordinate(self) -> list[list[Way]]:
-        return [way for frame in self.frames for way in frame.by_coordinate]
+        of_states: list[list[Way]] = [[(symbol, sp.Integer(1))] for symbol in self.states]
+        return [*(way for frame in self.frames for way in frame.by_coordinate), *of_states]
+
+    @property
+    def n_coordinates(self) -> int:
+        """Of the bodies and the states; counters of turns stand behind them."""
+        return len(self._by_coordinate)
 
     @cached_property
     def _by_velocity(self) -> list[list[Way]]:
@@ -203,8 +219,9 @@ class SymbolicElement:
         return self.angles[-1]
 
     def in_state(self, expression: sp.Expr) -> bool:
-        """Whether an expression depends on coordinates or velocities."""
-        return self.depends(expression, [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities])
+        """Whether an expression depends on coordinates, velocities or states."""
+        of_bodies = (symbol for frame in self.frames for symbol in frame.pose)
+        return self.depends(expression, [*of_bodies, *self.velocities, *self.states])
 
     def depends(self, expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
         """Whether any of some symbols occurs in an expression, or in what its symbols stand for."""
@@ -234,7 +251,7 @@ class ReferredJoint(SymbolicElement):
     def __init__(
         self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
     ) -> None:
-        super().__init__(of.frames, fields, of.derivatives)
+        super().__init__(of.frames, fields, of.derivatives, of.states)
         self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
         count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]

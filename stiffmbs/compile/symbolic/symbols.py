@@ -13,7 +13,7 @@ import sympy as sp
 from ...describe.formula.field import TIME
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.text import evaluate
-from ..kind import OWN, Kind, Shape
+from ..kind import OWN, STATE, Kind, Shape
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
@@ -77,7 +77,7 @@ class Symbols:
         of_bodies = (s for f in e.frames for s in (*f.q, *f.u, *f.a, *f.turn, *f.pose, *f.velocities))
         of_joints = (symbol for lam in self.joint_lam for symbol in lam)
         counters = map(counter, range(len(e.angles)))
-        return frozenset((e.t, *self.numbers, *of_bodies, *of_joints, *counters)) | e.derivatives.defined()
+        return frozenset((e.t, *self.numbers, *of_bodies, *e.states, *of_joints, *counters)) | e.derivatives.defined()
 
     def note_event_function(self, breakpoint: sp.Expr) -> None:
         """Note what changes its sign at a breakpoint, if that is in the state."""
@@ -111,7 +111,8 @@ def symbols_of(kind: Kind) -> Symbols:
         if kind.dimensions == 2
         else [spatial_frames.SpatialBodyFrame(slot, derivatives) for slot in slots]
     )
-    symbols = Symbols(SymbolicElement(frames, {}, derivatives))
+    states = [sp.Symbol(f"{STATE}{slot}", real=True) for slot in range(kind.n_states)]
+    symbols = Symbols(SymbolicElement(frames, {}, derivatives, states))
     builder = _Builder(kind.dimensions, symbols)
     symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
     return symbols
@@ -134,6 +135,8 @@ class _Builder:
                 return self.fresh(name)
             case ("choice", value):
                 return value
+            case ("state", slot):
+                return self.symbols.element.states[slot]
             case ("marker", slot):
                 return self.marker(name, slot)
             case ("several", shapes):
@@ -184,6 +187,8 @@ class _Builder:
                     return self.frames[int(owner[1:])].coordinate(coordinate)
                 if word == TIME:
                     return SymbolicElement.t
+                if word.startswith(STATE):
+                    return self.symbols.element.states[int(word[len(STATE) :])]
                 if word.startswith("measure"):
                     return measured[int(word[7:])]
                 return (numbers if word[0] == "p" else variables)[int(word[1:])]

@@ -16,8 +16,10 @@ from ..units.units import CONSTANTS, UNITS, Quantity
 from .quoted import written
 
 
-def read_variables(found: Any, parameters: Mapping[str, Quantity], tables: Collection[str]) -> dict[str, ast.expr]:
-    """The trees of a scene's variables, by name.
+def read_variables(
+    found: Any, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None
+) -> dict[str, ast.expr]:
+    """The trees of a scene's variables, by name; `states` is the scene's section of that name.
 
     Raises
     ------
@@ -40,6 +42,7 @@ def read_variables(found: Any, parameters: Mapping[str, Quantity], tables: Colle
             raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
         formulas[name] = formula
     try:
-        return resolved(formulas, {*parameters, *CONSTANTS, TIME})
+        known = states if isinstance(states, dict) else {}
+        return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})
     except FormulaError as error:
         raise InputError(f"variables.{error}") from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from numbers import Real
 from typing import Annotated, Any
@@ -23,6 +23,7 @@ from .full_names import text_in_full, with_full_names
 from .functions import IN_FORMULAS, check_functions
 from .measured import dimension_within
 from .names import MEASURES
+from .state_names import with_states
 from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
 
@@ -53,6 +54,8 @@ class Formula:
         The scene's parameters among `values`, with their dimensions.
     expanded : str
         The text with the scene's variables in their places; empty where the scene has none.
+    states : tuple of str
+        The states of the model that it uses, by their full names.
     """
 
     text: str
@@ -64,6 +67,7 @@ class Formula:
     dimension: Known = UNKNOWN
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
     expanded: str = ""
+    states: tuple[str, ...] = ()
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
@@ -165,6 +169,14 @@ def formula_text(found: Any, expected: str = "a formula") -> str:
     return found
 
 
+def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
+    """The names in a formula that are neither its own nor constants, units or time."""
+    for node in reading_order(parse(text)):
+        match node:
+            case ast.Name(name) if name != TIME and not any(name in known for known in (own, UNITS, CONSTANTS)):
+                yield name
+
+
 @dataclass(frozen=True)
 class FormulaOf:
     """Marks a field as a formula: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
@@ -200,7 +212,10 @@ class FormulaOf:
             return table
         context = info.context or {}
         parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
-        formula = self._made(found, parameters, tables, variables, names_of(info))
+        names = names_of(info)
+        if info.context is None and self.coordinates:  # built in Python, where the model that it will belong to is not known
+            names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
+        formula = self._made(found, parameters, tables, variables, names)
         self._check(formula)
         return formula
 
@@ -213,26 +228,31 @@ class FormulaOf:
         names: Names,
     ) -> Formula:
         found = formula_text(found, "a formula or a table" if self.table else "a formula")
-        named = with_full_names(parse(found), names, MEASURES)
+        named = with_states(with_full_names(parse(found), names, MEASURES), names, self.variables, MEASURES)
         text = text_in_full(found, named, names)
         tree = with_variables(named, variables, self.variables)
         check_functions(
             tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
         )
-        used = dict(self.quantities(text, tree, parameters))
+        used = dict(self.quantities(text, tree, parameters, names.states))
         if names.values:
             named, tree = (with_variables(each, names.values, self.variables) for each in (named, tree))
             text = text_in_full(found, named, names)
-            used = dict(self.quantities(text, tree, parameters))
+            used = dict(self.quantities(text, tree, parameters, names.states))
         expanded = as_written(tree) if variables else ""
         values = {name: quantity.value for name, quantity in used.items()}
         called = called_tables(tree, tables)
-        dimension = self.dimension_of(tree, used, called)
+        dimension = self.dimension_of(tree, used, called, names.states)
+        states = (node.id for node in reading_order(tree) if isinstance(node, ast.Name) and node.id in names.states)
         own = {name: quantity for name, quantity in used.items() if name in parameters}
-        return Formula(text, tree, self.variables, values, self.velocities, called, dimension, own, expanded)
+        return Formula(
+            text, tree, self.variables, values, self.velocities, called, dimension, own, expanded, tuple(dict.fromkeys(states))
+        )  # fmt: skip
 
-    def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
-        """The parameters, units and constants in a tree.
+    def quantities(
+        self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Container[str] = ()
+    ) -> Iterator[tuple[str, Quantity]]:
+        """The parameters, units and constants in a tree, in which other names may be states.
 
         Raises
         ------
@@ -245,7 +265,7 @@ class FormulaOf:
                     if name not in UNITS:
                         raise FormulaError(f"found '{name}' after a number in '{quoted(text)}', expected a unit")
                     yield f"{UNIT}.{name}", UNITS[name]
-                case ast.Name(name) if name != TIME and name not in self.variables:
+                case ast.Name(name) if name != TIME and name not in self.variables and name not in states:
                     yield name, self._quantity(name, text, tree, known)
 
     def _quantity(self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Quantity:
@@ -282,6 +302,7 @@ class FormulaOf:
             raise FormulaError(f"found t in '{formula.text}', expected a formula without it")
         used = [f"{body}.{coordinate}" for body, coordinate in formula.coordinates()]
         used += [f"{name}(...)" for name, _ in formula.measures()]
+        used += formula.states
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
         check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)

@@ -16,9 +16,11 @@ from ..fields import Described, sentence
 from ..files.quoted import written
 from ..formula.full_names import with_full_names
 from ..formula.names import MEASURES
+from ..formula.state_names import with_states
 from ..formula.text import parse
 from ..formula.variables import meant_within
 from ..marker import MarkerReference
+from ..states.state import dimension_of_state
 from ..units.units import in_text
 from .instances import NAMED, Instance, Instances
 from .mirrored import Mirror
@@ -57,9 +59,16 @@ def with_parts(
     for path, _ in left:
         raise InputError(f"--set {path}: found no such place in the scene")
     bodies = [*_keys(raw.get("bodies")), *(name for one in instances.found for name in one.names("bodies"))]
-    names = Names(frozenset(bodies))
+    own = raw.get("states")
+    states = {} if not isinstance(own, dict) else {
+        name: dimension_of_state(entry, context["parameters"]) for name, entry in own.items() if isinstance(name, str)
+    }  # fmt: skip
+    for one in instances.found:
+        entries = (one.sections.get("states") or {}).items()
+        states |= {f"{one.name}.{name}": dimension_of_state(entry, one.parameters) for name, entry in entries}
+    names = Names(frozenset(bodies), states=states)
     variables = {
-        name: with_full_names(tree, names, MEASURES) for name, tree in (context.get("variables") or {}).items()
+        name: with_states(with_full_names(tree, names, MEASURES), names, (), MEASURES) for name, tree in (context.get("variables") or {}).items()
     }
     context = {**context, "names": names, "variables": variables}
     placed = _Placed(raw, scene, context)
@@ -110,7 +119,7 @@ class _Placed:
             for name, value in instance.parameters.items()
             if self.context["parameters"].get(name) != value
         }
-        names = Names(self.context["names"].bodies, local, own)
+        names = Names(self.context["names"].bodies, local, own, self.context["names"].states)
         found = self._read(instance, names)
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
         in_ground = self._pose(on).then(frame)
@@ -122,6 +131,10 @@ class _Placed:
                 where = f"{instance.where}.{section}.{name}"
                 moved = mirror.mirrored(element, where) if mirror else element
                 self._put(section, instance, name, _on_mount(moved, instance.name, on, frame))
+        if mirror and found.states:
+            raise InputError(f"{instance.where}.states: found states in a mirrored part, expected a part without")
+        for name, state in found.states.items():
+            self._put("states", instance, name, state)
         for name, request in found.requests.items():
             self._put("requests", instance, name, request)
 

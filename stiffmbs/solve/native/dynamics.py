@@ -94,7 +94,7 @@ def to_position_constraints(s, m, t, tolerance, most):
     for move in range(most):
         values = evaluate(s, POSITION, t)
         gap = largest_open(s, values)
-        if gap <= max(tolerance, ROUNDING * largest_of(s.q, s.n_q)):
+        if gap <= max(tolerance, ROUNDING * largest_of(s.q, s.n_pose)):
             return move
         if not isfinite(gap):
             return NOT_FINITE

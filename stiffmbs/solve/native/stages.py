@@ -55,11 +55,11 @@ def accelerated(eliminates, eliminated, s, m, t, target):
 
 
 @compiled
-def count_turns(s, m, factor, target):
-    """target += factor * the rates of the counters of turns, after accelerations at the state at hand."""
+def add_rates_behind(s, m, factor, target):
+    """target += factor * the rates of counters of turns and states, after accelerations at the state at hand."""
     values = floats(s.values[ACCELERATION])
-    for k in range(m.n_counting):
-        target[m.counting_row[k]] += factor * values[m.counting_source[k]]
+    for k in range(m.n_behind):
+        target[m.behind_row[k]] += factor * values[m.behind_source[k]]
 
 
 @compiled
@@ -71,7 +71,7 @@ def rates(x, s, m, stage, t):
     add_rates(s, s.u, 1.0, k)
     x.accelerations[0] += 1
     status = accelerated(x.eliminates, x.eliminated, s, m, t, shifted(k, s.n_q))
-    count_turns(s, m, 1.0, k)
+    add_rates_behind(s, m, 1.0, k)
     return status
 
 
