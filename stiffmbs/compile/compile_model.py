@@ -123,7 +123,12 @@ class _Places:
     """Where bodies, equations, counters of turns and states stand in a system; counters are given out one after the other."""
 
     def __init__(
-        self, of_body: BodyKind, bodies: tuple[str, ...], rows: Mapping[str, int], n_counters: int, states: tuple[str, ...]
+        self,
+        of_body: BodyKind,
+        bodies: tuple[str, ...],
+        rows: Mapping[str, int],
+        n_counters: int,
+        states: tuple[str, ...],
     ) -> None:
         n_q, n_u = of_body.n_q, of_body.n_u
         self.rows = rows

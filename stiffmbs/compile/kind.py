@@ -268,7 +268,9 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
     if not isinstance(node, ast.expr):
         return None
     for part in ast.walk(node):
-        if is_measure(part) or (isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)):
+        if is_measure(part) or (
+            isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)
+        ):
             return None
         if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
             return None

@@ -10,7 +10,22 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
     "output": ("reaction", "potential", "power", "signal"),
     "event_function": ("event_function", "limit", "argument"),
     "all_levels": ("C", "V", "J", "gamma", "f", "Z", "rate"),
-    "all_levels_tangent": ("C_q", "J", "V_q", "G_lam", "A_q", "gamma_u", "f_q", "f_u", "f_lam", "Z", "Z_q", "rate_q", "rate_u", "rate_lam"),
+    "all_levels_tangent": (
+        "C_q",
+        "J",
+        "V_q",
+        "G_lam",
+        "A_q",
+        "gamma_u",
+        "f_q",
+        "f_u",
+        "f_lam",
+        "Z",
+        "Z_q",
+        "rate_q",
+        "rate_u",
+        "rate_lam",
+    ),
 }
 """What a solver asks for at one time, so that common subexpressions are computed once.
 

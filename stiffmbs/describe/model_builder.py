@@ -21,9 +21,9 @@ from .own_elements import check_class
 from .requests.check import ByChannel, by_channel, check_output
 from .requests.order import dimensions, with_named
 from .requests.output_field import RequestField
+from .settings import RunSettings, Settings, takes_settings
 from .states.section import check_states
 from .states.state import State
-from .settings import RunSettings, Settings, takes_settings
 
 if TYPE_CHECKING:
     from ..jobs.check import Report
@@ -178,7 +178,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         try:
             for other, element in (*self.joints.items(), *self.forces.items()):
                 self._check_element(other, element)
-            self._check_states()
+            self._check_states(self.states, self.states)
             self.data_type.model_construct(**self._content()).check_requests()
         except ValueError as error:
             section.clear()
@@ -262,15 +262,15 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
             if isinstance(part, Element):
                 self._check_element(name, part)
             if isinstance(part, State):
-                self._check_states({name: part})
+                self._check_states({name: part}, known=None)
         except ValueError as error:
             raise InputError(str(error)) from None
 
     def _check_element(self, name: str, part: Element) -> None:
         check_element(name, part, self.bodies, self.joints, self.markers, NAMES[self._dimensions()], self.states)
 
-    def _check_states(self, added: Mapping[str, State] | None = None) -> None:
-        check_states({**self.states, **(added or {})}, self.bodies, self.markers, NAMES[self._dimensions()])
+    def _check_states(self, states: Mapping[str, State], known: Mapping[str, State] | None) -> None:
+        check_states(states, self.bodies, self.markers, NAMES[self._dimensions()], known)
 
     def _content(self) -> dict[str, Any]:
         sections = ("name", "gravity", "markers", "bodies", "states", "joints", "forces", "requests")

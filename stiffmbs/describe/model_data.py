@@ -24,8 +24,8 @@ from .requests.order import dimensions
 from .requests.output import Output
 from .states.equation import Reported, StateEquation
 from .states.name import StateName
-from .states.state import StateValue
 from .states.section import AnyState, check_states, check_states_of
+from .states.state import StateValue
 
 if TYPE_CHECKING:
     from .requests.angle_counter import AngleCounter
@@ -109,7 +109,7 @@ class ModelData(Described):
                     f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
                 )
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.states
-        check_states(self.states, self.bodies, self.markers, NAMES[self.dimensions])
+        check_states(self.states, self.bodies, self.markers, NAMES[self.dimensions], self.states)
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
         }
@@ -200,7 +200,13 @@ class ModelData(Described):
 def contents(model: Any) -> str:
     """What a model, a scene or what is built in Python holds, in a few words."""
     parts = []
-    for section, one in (("bodies", "body"), ("states", "state"), ("joints", "joint"), ("forces", "force"), ("requests", "request")):
+    for section, one in (
+        ("bodies", "body"),
+        ("states", "state"),
+        ("joints", "joint"),
+        ("forces", "force"),
+        ("requests", "request"),
+    ):
         count = len(getattr(model, section))
         parts += [f"{count} {one if count == 1 else section}"] if count or section == "bodies" else []
     return f"'{model.name}': {', '.join(parts)}"

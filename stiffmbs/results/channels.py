@@ -9,8 +9,8 @@ from ..compile.system import System
 from ..describe.model_data import ModelData
 from ..solve.dynamics import OutputRows
 from .body_axes import in_own_axes
-from .states import state_channels
 from .energy import kinetic_energy, potential_energy
+from .states import state_channels
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:

@@ -185,9 +185,7 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
         row = e.n_coordinates - len(e.states) + e.states.index(e.state)
         rates = {"rate": value, "rate_q": e.by_coordinates(value), "rate_u": e.by_velocities(value)}
         rates["rate_lam"] = e.by(value, joint_lam) if joint_lam else sp.zeros(0, 0)
-        entries |= {
-            name: [replace(entry, row=row) for entry in _entries(matrix)] for name, matrix in rates.items()
-        }
+        entries |= {name: [replace(entry, row=row) for entry in _entries(matrix)] for name, matrix in rates.items()}
     return Derived(0, 0, symbols, entries, [])
 
 

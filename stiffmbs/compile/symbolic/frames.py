@@ -9,7 +9,6 @@ from typing import Any
 import sympy as sp
 
 from ...errors import InputError
-
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
 from .read import read

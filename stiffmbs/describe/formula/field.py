@@ -213,7 +213,9 @@ class FormulaOf:
         context = info.context or {}
         parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
         names = names_of(info)
-        if info.context is None and self.coordinates:  # built in Python, where the model that it will belong to is not known
+        if (
+            info.context is None and self.coordinates
+        ):  # built in Python, where the model that it will belong to is not known
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
         formula = self._made(found, parameters, tables, variables, names)
         self._check(formula)

@@ -68,7 +68,8 @@ def with_parts(
         states |= {f"{one.name}.{name}": dimension_of_state(entry, one.parameters) for name, entry in entries}
     names = Names(frozenset(bodies), states=states)
     variables = {
-        name: with_states(with_full_names(tree, names, MEASURES), names, (), MEASURES) for name, tree in (context.get("variables") or {}).items()
+        name: with_states(with_full_names(tree, names, MEASURES), names, (), MEASURES)
+        for name, tree in (context.get("variables") or {}).items()
     }
     context = {**context, "names": names, "variables": variables}
     placed = _Placed(raw, scene, context)

@@ -13,8 +13,8 @@ from pydantic_core import core_schema
 from ..body import check_names
 from ..formula.field import TIME, FormulaOf, called_tables, formula_text, reading_order
 from ..formula.full_names import text_in_full, with_full_names
-from ..formula.state_names import with_states
 from ..formula.functions import FUNCTIONS, check_functions
+from ..formula.state_names import with_states
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference

@@ -16,9 +16,18 @@ AnyState = State
 
 
 def check_states(
-    states: Mapping[str, Any], bodies: Mapping[str, Any], on_ground: Mapping[str, Any], names: FormulaNames
+    states: Mapping[str, Any],
+    bodies: Mapping[str, Any],
+    on_ground: Mapping[str, Any],
+    names: FormulaNames,
+    known: Collection[str] | None,
 ) -> None:
     """Refuse states whose names have a meaning already, and formulas of what the model does not have.
+
+    Parameters
+    ----------
+    known : collection of str or None
+        All states of the model; None while others may still be added.
 
     Raises
     ------
@@ -35,7 +44,8 @@ def check_states(
             for body in formula.bodies():
                 if body not in bodies and body != GROUND:
                     raise ValueError(f"{where}: found the unknown body '{body}', expected {listed(bodies)}")
-            check_states_of(where, formula, states)
+            if known is not None:
+                check_states_of(where, formula, known)
             for reason in names.refused(formula):
                 raise ValueError(f"{where}: {reason}")
 
