@@ -38,7 +38,8 @@ _ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(),
 _LATER = {
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
-    "transfer": ".jobs.transfer", "verify": ".verification.verify",
+    "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
+    "verify": ".verification.verify",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
 

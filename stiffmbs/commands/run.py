@@ -20,6 +20,8 @@ from .scene import (
     refuse_own_input,
     solve_scene,
     solving_options,
+    start_of,
+    state_options,
 )  # fmt: skip
 
 if TYPE_CHECKING:
@@ -37,11 +39,15 @@ if TYPE_CHECKING:
 )
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
+@state_options
 @solving_options
 @click.option(
     "--verify", is_flag=True, help="Solve again, tighter and in another way: error bars, and what is in doubt."
 )
-def run(scene: str, output: Path | None, figure: Path | None, as_json: bool, verify: bool, **options: Any) -> None:
+def run(
+    scene: str, output: Path | None, figure: Path | None, as_json: bool, verify: bool, state: str | None, at: float | None,
+    **options: Any,
+) -> None:  # fmt: skip
     """Solve SCENE and show the range of every joint force.
 
     Exit status: 0 done, 1 stopped early (results up to there are kept) or a file that was asked for could not be
@@ -54,8 +60,9 @@ def run(scene: str, output: Path | None, figure: Path | None, as_json: bool, ver
         if figure is not None:
             _drawing().check_figure(figure)
             refuse_own_input("--figure", scene, figure)
-        loaded = load_scene(scene, changes_of(options))
-        solution = solve_scene(scene, loaded, verify)
+        changes = changes_of(options)
+        loaded = load_scene(scene, changes)
+        solution = solve_scene(scene, loaded, verify, **start_of(loaded, state, at, changes))
     except StiffmbsError as error:
         refuse(scene, error, as_json)
     results, written = _write(scene, output, as_json, solution)

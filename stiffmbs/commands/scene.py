@@ -65,8 +65,40 @@ def changes_of(options: dict[str, Any]) -> list[tuple[str, str]]:
     return options["changes"] + [(path, value) for path, value in chosen if value is not None]
 
 
-def solve_scene(path: str, scene: Scene, verified: bool) -> Solution:
-    """Solve a scene with a progress bar.
+def state_options(command: Command) -> Command:
+    """The options ``--from`` and ``--at`` of a command that may start from a saved state; see `start_of`."""
+    options = (
+        click.option(
+            "--from", "state", metavar="FILE", help="Start from the state in FILE, results of run -o or equilibrium -o."
+        ),
+        click.option("--at", type=float, help="The instant of the row in that FILE, s; its last row by default."),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def start_of(scene: Scene, state: str | None, at: float | None, changes: list[tuple[str, str]]) -> dict[str, Any]:
+    """What `state_options` ask for, as keywords of a job; the time at the start is the state's unless ``--set`` has it.
+
+    Raises
+    ------
+    InputError
+        When there is no such state.
+    """
+    if state is None:
+        if at is not None:
+            raise InputError(f"--at {at:g}: found no file to take a row of, expected --from FILE too")
+        return {}
+    from ..results.saved_state import read_state
+
+    found = read_state(state, at)
+    told = any(path == "run.start" for path, _ in changes)
+    return {"start_from": found, "start": scene.run.start if told else found.t}
+
+
+def solve_scene(path: str, scene: Scene, verified: bool, **start: Any) -> Solution:
+    """Solve a scene with a progress bar, from where `start_of` tells.
 
     Raises
     ------
@@ -79,9 +111,9 @@ def solve_scene(path: str, scene: Scene, verified: bool) -> Solution:
         from ..verification.verify import verify as solve
     else:
         from ..jobs.run import run as solve
-    start = scene.run.start
-    with in_file(path), ProgressBar(start, start + scene.run.duration) as progress:
-        return solve(scene, watch=progress)
+    first = start.get("start", scene.run.start)
+    with in_file(path), ProgressBar(first, first + scene.run.duration) as progress:
+        return solve(scene, watch=progress, **start)
 
 
 @contextmanager

@@ -27,6 +27,9 @@ from .states.state import State
 
 if TYPE_CHECKING:
     from ..jobs.check import Report
+    from ..jobs.equilibrium import EquilibriumFound
+    from ..jobs.modes import Modes
+    from ..jobs.start_from import StartFrom
     from ..results.solution import Solution
 
 Data = TypeVar("Data", bound=ModelData)
@@ -303,24 +306,48 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         self,
         settings: RunSettings | None = None,
         watch: Callable[[float], None] | None = None,
+        start_from: StartFrom | None = None,
         **changes: Unpack[Settings],
     ) -> Solution:
         """Solve the model; parameters, result and errors are those of `stiffmbs.run`."""
         from ..jobs.run import run
 
-        return run(self, settings, watch, **changes)
+        return run(self, settings, watch, start_from, **changes)
 
     @takes_settings
     def verify(
         self,
         settings: RunSettings | None = None,
         watch: Callable[[float], None] | None = None,
+        start_from: StartFrom | None = None,
         **changes: Unpack[Settings],
     ) -> Solution:
         """Solve the model, and again to see what its results are worth; parameters, result and errors are those of `stiffmbs.verify`."""
         from ..verification.verify import verify
 
-        return verify(self, settings, watch, **changes)
+        return verify(self, settings, watch, start_from, **changes)
+
+    @takes_settings
+    def equilibrium(
+        self, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Unpack[Settings]
+    ) -> EquilibriumFound:
+        """The pose at rest in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
+        from ..jobs.equilibrium import equilibrium
+
+        return equilibrium(self, settings, start_from, **changes)
+
+    @takes_settings
+    def modes(
+        self,
+        settings: RunSettings | None = None,
+        at: float | None = None,
+        start_from: StartFrom | None = None,
+        **changes: Unpack[Settings],
+    ) -> Modes:
+        """Natural frequencies, damping and shapes; parameters, result and errors are those of `stiffmbs.modes`."""
+        from ..jobs.modes import modes
+
+        return modes(self, settings, at, start_from, **changes)
 
     @takes_settings
     def check(self, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:

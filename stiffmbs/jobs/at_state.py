@@ -14,6 +14,7 @@ from ..solve.dynamics import Dynamics
 from ..solve.failures import FAILURES
 from ..structure.redundancy import Redundancy
 from .run import Runnable, prepare
+from .start_from import StartFrom
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,13 @@ class AtState:
     acceleration: np.ndarray
 
 
-def at_state(model: Runnable, settings: RunSettings | None = None, at: float | None = None, **changes: Any) -> AtState:
+def at_state(
+    model: Runnable,
+    settings: RunSettings | None = None,
+    at: float | None = None,
+    start_from: StartFrom | None = None,
+    **changes: Any,
+) -> AtState:
     """A model at its start, or at an instant of its motion.
 
     Parameters
@@ -47,6 +54,8 @@ def at_state(model: Runnable, settings: RunSettings | None = None, at: float | N
     settings : RunSettings, optional
     at : float, optional
         The instant, s; the start of the run by default.
+    start_from : Solution, str, Path or SavedState, optional
+        As for `stiffmbs.run`.
     **changes
         Fields of the settings to change.
 
@@ -57,12 +66,12 @@ def at_state(model: Runnable, settings: RunSettings | None = None, at: float | N
     SolverError
         Where no motion leads to that instant.
     """
-    job = prepare(model, settings, **changes)
+    job = prepare(model, settings, start_from, **changes)
     t = job.grid.start
     state = job.dynamics.state
     state.q[:], state.u[:] = job.start.q, job.start.u
     if at is not None and at != t:
-        job = prepare(model, settings, **{**changes, "duration": at - t, "points": 2})
+        job = prepare(model, settings, start_from, **{**changes, "duration": at - t, "points": 2})
         trajectory = job.integrate()
         if not np.isclose(trajectory.t[-1], at):
             raise SolverError(f"no state was found at t = {at:g} s: {trajectory.message}")

@@ -7,12 +7,18 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from ..describe.requests.order import units
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings, Settings, takes_settings
-from ..results.channels import channels_of
-from ..solve.initial import InitialValues
-from .run import Runnable, data_of, prepare
-from .settled import settled
+from ..errors import SolverError
+from ..results.channels import channels_of, turns_of
+from ..results.energy_balance import energy_balance
+from ..results.solution import Solution
+from ..solve.failures import FAILURES
+from ..solve.trajectory import History, Outcome
+from .run import Job, Runnable, data_of, prepare
+from .settled import Settled, settled
+from .start_from import StartFrom
 
 
 @dataclass(frozen=True)
@@ -36,8 +42,8 @@ class EquilibriumFound:
     free : tuple of str
         Bodies that take part in motions that nothing holds; the first one each, with its coordinate.
     notes : tuple of str
-    start : InitialValues
-        For a run from there.
+    solution : Solution
+        The same as results of one instant: ``stiffmbs.run(model, start_from=found.solution)`` starts there.
     """
 
     name: str
@@ -48,7 +54,7 @@ class EquilibriumFound:
     moved: dict[str, tuple[float, float]]
     free: tuple[str, ...]
     notes: tuple[str, ...]
-    start: InitialValues
+    solution: Solution
 
     def as_dict(self, scene: str) -> dict[str, Any]:
         """The content of ``stiffmbs equilibrium --json``.
@@ -59,14 +65,19 @@ class EquilibriumFound:
             The file, or what else the scene is called.
         """
         return {
-            "scene": scene, "status": "done", "message": f"at rest in equilibrium after {self.moves} moves",
+            "scene": scene, "status": "done", "message": self.solution.message,
             "imbalance": self.imbalance, "moved": self.moved, "channels": self.channels,
             "t": self.t, "free": list(self.free), "notes": list(self.notes),
         }  # fmt: skip
 
 
 @takes_settings
-def equilibrium(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> EquilibriumFound:
+def equilibrium(
+    model: Runnable,
+    settings: RunSettings | None = None,
+    start_from: StartFrom | None = None,
+    **changes: Unpack[Settings],
+) -> EquilibriumFound:
     """The pose at rest in which all forces balance, sought from the described one.
 
     Parameters
@@ -75,6 +86,8 @@ def equilibrium(model: Runnable, settings: RunSettings | None = None, **changes:
         A model, a scene, or a scene's file.
     settings : RunSettings, optional
         Its start is the instant at which forces and drives are taken.
+    start_from : Solution, str, Path or SavedState, optional
+        A state whose pose it is sought from in place of the described one; as for `stiffmbs.run`.
     **changes
         Fields of the settings to change.
 
@@ -92,15 +105,34 @@ def equilibrium(model: Runnable, settings: RunSettings | None = None, **changes:
     data = data_of(model)
     if isinstance(data, Scene):
         data = data.model_copy(update={"start": "described"})
-    job = prepare(data, settings, **changes)
+    job = prepare(data, settings, start_from, **changes)
     found = settled(job.dynamics, job.start, job.grid.start)
-    rows = job.dynamics.report(np.array([job.grid.start]), found.start.q[None], found.start.u[None], project=False)
-    channels = channels_of(job.data, job.dynamics.system, rows)
-    kept = {name: float(values[0]) for name, values in channels.items()}
-    system = job.dynamics.system
+    system, solution = job.dynamics.system, _solution(job, found)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
     moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))
+    kept = {name: float(values[0]) for name, values in solution.items()}
     return EquilibriumFound(
-        job.data.name, job.grid.start, kept, found.moves, found.imbalance, moved, found.free, found.notes, found.start
+        job.data.name, job.grid.start, kept, found.moves, found.imbalance, moved, found.free, found.notes, solution
     )
+
+
+def _solution(job: Job, found: Settled) -> Solution:
+    """The equilibrium as results of one instant."""
+    t, system = np.array([job.grid.start]), job.dynamics.system
+    rows = job.dynamics.report(t, found.start.q[None], found.start.u[None], project=False)
+    if not len(rows.t):
+        raise SolverError(f"no reactions were found in the equilibrium: {FAILURES[rows.status]}")
+    channels = channels_of(job.data, system, rows)
+    energies = channels["energy.kinetic"], channels["energy.potential"]
+    return Solution(
+        name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=_message(found.moves),
+        notes=found.notes, solver={"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance},
+        history=History(np.empty(0), np.empty(0, dtype=int)),
+        balance=energy_balance(system, rows.t, *energies, rows.values, np.empty(0)), not_unique=job.redundancy.not_unique,
+        requested=units(job.data.outputs()), turns=turns_of(system, rows.q),
+    )  # fmt: skip
+
+
+def _message(moves: int) -> str:
+    return f"at rest in equilibrium after {moves} moves"

@@ -14,6 +14,7 @@ from ..linear_analysis.state_space import StateMatrix, state_matrix
 from ..linear_analysis.tangent_space import linearised
 from .at_state import AtState, at_state
 from .run import Runnable
+from .start_from import StartFrom
 
 AT_REST = 1e-6
 """Acceleration relative to that of gravity (to 1 m/s^2 without), below which a state counts as an equilibrium."""
@@ -62,7 +63,11 @@ class Modes:
 
 @takes_settings
 def modes(
-    model: Runnable, settings: RunSettings | None = None, at: float | None = None, **changes: Unpack[Settings]
+    model: Runnable,
+    settings: RunSettings | None = None,
+    at: float | None = None,
+    start_from: StartFrom | None = None,
+    **changes: Unpack[Settings],
 ) -> Modes:
     """Natural frequencies, damping and shapes of a model, linearised about a state on its constraints.
 
@@ -74,6 +79,8 @@ def modes(
         How to come to the state; the scene's own by default.
     at : float, optional
         The instant of the run whose state is taken, s; its start by default.
+    start_from : Solution, str, Path or SavedState, optional
+        As for `stiffmbs.run`.
     **changes
         Fields of the settings to change.
 
@@ -89,7 +96,7 @@ def modes(
     SolverError
         Where no motion leads to that instant, or a free motion has no mass.
     """
-    found = at_state(model, settings, at, **changes)
+    found = at_state(model, settings, at, start_from, **changes)
     system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
     linear = linearised(found.dynamics, found.t, found.acceleration)

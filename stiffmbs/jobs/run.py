@@ -19,19 +19,21 @@ from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.far_away import refuse_far_away
 from ..diagnostics.growth import senseless
 from ..diagnostics.lost_turns import lost_turns_sentence
+from ..diagnostics.singular_passage import singular_passage_sentence
 from ..errors import AssemblyError, InputError
 from ..presolve.presolve import parts_of
-from ..results.channels import channels_of
+from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.energy_balance_notes import balance_notes
 from ..results.missing_rows import reported
+from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..results.undefined_values import no_number_sentences
 from ..solve import SOLVERS, traits_of
 from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
 from ..solve.failures import FAILURES
-from ..solve.initial import InitialValues, initial_values
+from ..solve.initial import InitialValues, consistent_values, initial_values
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
 from ..solve.storage import blocks, release
 from ..solve.subsystems import Subsystem, leave_out_coordinates, solve_subsystems, subsystem_of
@@ -43,6 +45,7 @@ from .load_scene import load_scene
 from .presolve_report import presolve_sentences
 from .python_faults import told_faults, up_to_a_fault
 from .settings_notes import settings_notes
+from .start_from import StartFrom, started_from, starting_at, state_to_start_from
 from .taken_again import Computed, seen_through
 
 
@@ -54,6 +57,7 @@ class Examined:
     settings: RunSettings
     grid: Grid
     redundancy: Redundancy
+    start_from: SavedState | None = None
 
     def dynamics(self) -> Dynamics:
         """Of the system without its redundant equations."""
@@ -108,22 +112,36 @@ def data_of(model: Runnable) -> ModelData:
     raise InputError(f"found {model!r}, expected a Model, a Scene, or the name of a scene's file")
 
 
-def prepare(model: Runnable, settings: RunSettings | None = None, **changes: Any) -> Job:
+def prepare(
+    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
+) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
-    found = examined(model, settings, **changes)
+    found = examined(model, settings, start_from, **changes)
     if found.redundancy.rank_results:
         from ..structure.messages.redundancy import refuse_inconsistencies
 
         refuse_inconsistencies(found.redundancy)
     dynamics = found.dynamics()
     with told_faults(dynamics.system):
-        start = initial_values(dynamics, found.grid.start)
-        if isinstance(found.data, Scene) and found.data.start == "equilibrium":
-            from .settled import settled
-
-            start = settled(dynamics, start, found.grid.start).start
+        start = _start(found, dynamics)
         subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
     return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems)
+
+
+def _start(found: Examined, dynamics: Dynamics) -> InitialValues:
+    """The saved state that is given, else the equilibrium or the described state, whichever the scene asks for."""
+    t, state = found.grid.start, found.start_from
+    if state is not None:
+        start = consistent_values(dynamics, t)
+        return replace(
+            start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
+        )
+    start = initial_values(dynamics, t)
+    if isinstance(found.data, Scene) and found.data.start == "equilibrium":
+        from .settled import settled
+
+        return settled(dynamics, start, t).start
+    return start
 
 
 def presolved(
@@ -152,19 +170,23 @@ def presolved(
     return subsystems
 
 
-def examined(model: Runnable, settings: RunSettings | None = None, **changes: Any) -> Examined:
+def examined(
+    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
+) -> Examined:
     """Compile a model and look for redundant equations; parameters and errors as for `run`."""
     data = data_of(model)
+    state = state_to_start_from(start_from)
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
+    chosen = starting_at(chosen, state, settings, changes)
     for name in chosen.drop_first:
         if name not in data.joints:
             raise InputError(f"drop_first: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
     grid = output_grid(chosen)
     refuse_far_away(data)
-    system = compile_model(data)
+    system = started_from(compile_model(data), data, state)
     with told_faults(system):
-        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order))
+        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), state)
 
 
 @takes_settings
@@ -172,6 +194,7 @@ def run(
     model: Runnable,
     settings: RunSettings | None = None,
     watch: ProgressCallback | None = None,
+    start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
 ) -> Solution:
     """Solve a model.
@@ -184,6 +207,9 @@ def run(
         How; the scene's own by default.
     watch : callable, optional
         Called with the time reached, s.
+    start_from : Solution, str, Path or SavedState, optional
+        A state to start from in place of the described one, at its time unless `start` is given: the last of a solution
+        or of a file of results, or ``solution.state(at=2.0)``.
     **changes
         Fields of the settings to change: ``duration=2.0, rtol=1e-8``.
 
@@ -195,11 +221,11 @@ def run(
     Raises
     ------
     InputError
-        When the model or a setting is wrong.
+        When the model or a setting is wrong, or the state that of other bodies.
     AssemblyError
         When no consistent start is found.
     """
-    return solved(prepare(model, settings, **changes), watch)
+    return solved(prepare(model, settings, start_from, **changes), watch)
 
 
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
@@ -220,13 +246,18 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
     known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
-    wrong = (*wrong, *lost_turns_sentence(job.dynamics, rows), *no_number_sentences(rows.t[solved_there], known))
+    wrong = (
+        *wrong,
+        *singular_passage_sentence(job.dynamics, rows),
+        *lost_turns_sentence(job.dynamics, rows),
+        *no_number_sentences(rows.t[solved_there], known),
+    )
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
         message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
         history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
-        presolve=tuple(presolve_sentences(job.dynamics.system, job.subsystems, job.dynamics)),
+        presolve=tuple(presolve_sentences(job.dynamics.system, job.subsystems, job.dynamics)), turns=turns_of(system, rows.q),
     )  # fmt: skip
 
 

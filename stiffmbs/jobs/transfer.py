@@ -21,6 +21,7 @@ from ..solve.dynamics import Dynamics
 from .at_state import AtState, at_state
 from .inputs import Parameterised, force_on
 from .run import Runnable, prepare
+from .start_from import StartFrom
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of places and angles."""
@@ -47,6 +48,7 @@ def transfer(
     outputs: Sequence[str],
     settings: RunSettings | None = None,
     at: float | None = None,
+    start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
 ) -> Transfer:
     """Linearise a model about a state, from inputs to channels.
@@ -60,7 +62,7 @@ def transfer(
         the model as a function of the input, zero at the state: the height of a road, a steering angle.
     outputs : sequence of str
         Channels and requests.
-    settings, at, **changes
+    settings, at, start_from, **changes
         As for `stiffmbs.jobs.modes.modes`.
 
     Raises
@@ -70,7 +72,7 @@ def transfer(
     SolverError, AssemblyError
         As for `stiffmbs.jobs.modes.modes`.
     """
-    found = at_state(model, settings, at, **changes)
+    found = at_state(model, settings, at, start_from, **changes)
     system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
     linear = linearised(found.dynamics, found.t, found.acceleration)

@@ -29,6 +29,11 @@ def from_own_axes(system: System, q: np.ndarray) -> np.ndarray:
     return _turned_back(q, system.principal_axes) if system.principal_axes.size else q
 
 
+def rates_from_own_axes(system: System, u: np.ndarray) -> np.ndarray:
+    """Velocities as the solver has them, from those of bodies as they are described."""
+    return _seen_from(u, CONJUGATE * system.principal_axes) if system.principal_axes.size else u
+
+
 def _turned_back(q: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Every quaternion p replaced by p a."""
     bodies = q.reshape(len(q), -1, 7).copy()

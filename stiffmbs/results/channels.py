@@ -7,6 +7,7 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.model_data import ModelData
+from ..presolve.subsystems import counters_of
 from ..solve.dynamics import OutputRows
 from .body_axes import in_own_axes
 from .energy import kinetic_energy, potential_energy
@@ -34,6 +35,16 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     from .requests import requested
 
     return channels | requested(model, rows.t, channels, _counters(model, system, rows.q))
+
+
+def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
+    """What is counted of angles over whole turns, rad, by element and number: ``spring/0``.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, n_q)
+    """
+    return {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()}
 
 
 def _counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:

@@ -19,6 +19,7 @@ from ..errors import InputError
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
+from .saved_state import TURNS
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -42,6 +43,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
     return {
         ABOUT: np.array(json.dumps(about, default=_plain)),
         **{HISTORY + part.name: getattr(solution.history, part.name) for part in fields(History)},
+        **{TURNS + name: values for name, values in solution.turns.items()},
         **{BALANCE + part.name: np.asarray(getattr(solution.balance, part.name)) for part in fields(Balance)},
     }
 
@@ -83,4 +85,5 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
         history=History(*(arrays[HISTORY + part.name] for part in fields(History))),
         balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),
         figure=Figure(**about["figure"]) if about["figure"] else None,
+        turns={name.removeprefix(TURNS): array for name, array in arrays.items() if name.startswith(TURNS)},
     )  # fmt: skip

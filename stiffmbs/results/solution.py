@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure as Sheet
 
+    from .saved_state import SavedState
+
 
 @dataclass(frozen=True, repr=False)
 class Solution(Mapping[str, np.ndarray]):
@@ -60,6 +62,8 @@ class Solution(Mapping[str, np.ndarray]):
         Of energy and work.
     figure : Figure, optional
         The plot that shows what the scene is about, where it has one.
+    turns : mapping of str to ndarray
+        What is counted of angles over whole turns in space, rad, by element and number: ``spring/0``.
     """
 
     name: str
@@ -77,6 +81,7 @@ class Solution(Mapping[str, np.ndarray]):
     errors: Mapping[str, ErrorBar] = field(default_factory=dict)
     verification: tuple[str, ...] = ()
     figure: Figure | None = None
+    turns: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def success(self) -> bool:
@@ -170,6 +175,23 @@ class Solution(Mapping[str, np.ndarray]):
 
         check_output(Path(path), "save")
         write(Path(path), self)
+
+    def state(self, at: float | None = None) -> SavedState:
+        """The state of all bodies at one instant, for ``stiffmbs.run(model, start_from=...)``.
+
+        Parameters
+        ----------
+        at : float, optional
+            One of the output instants, s; the last by default.
+
+        Raises
+        ------
+        InputError
+            When there is no such instant.
+        """
+        from .saved_state import state_of
+
+        return state_of(self, at)
 
     @classmethod
     def load(cls, path: str | Path) -> Solution:

@@ -119,6 +119,7 @@ def _balance(dynamics: Dynamics, t: float) -> _Balance:
     """Multipliers that balance forces best (in the metric of the masses), and what they leave."""
     state, system = dynamics.state, dynamics.system
     state.u[:] = 0.0
+    state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise SolverError(f"no equilibrium was found: {FAILURES[status]}")

@@ -82,9 +82,14 @@ def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
         When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
         friction and reactions find no balance.
     """
+    take_nearest_turns(dynamics, t)
+    return consistent_values(dynamics, t)
+
+
+def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
+    """The same with angles in the turns in which they are counted, as in a state of a run; errors as there."""
     system, state = dynamics.system, dynamics.state
     q0, u0 = system.q.copy(), system.u.copy()
-    take_nearest_turns(dynamics, t)
     status = dynamics.assemble(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, NO_CONVERGENCE if status == SINGULAR else status, t))

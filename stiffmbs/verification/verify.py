@@ -28,6 +28,7 @@ import numpy as np
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..diagnostics.laws import has_laws
 from ..jobs.run import Job, Runnable, prepare, solved
+from ..jobs.start_from import StartFrom
 from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution
@@ -55,6 +56,7 @@ def verify(
     model: Runnable,
     settings: RunSettings | None = None,
     watch: ProgressCallback | None = None,
+    start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
 ) -> Solution:
     """Solve a model, and solve it again to see what its results are worth; parameters and errors as for `run`.
@@ -66,7 +68,7 @@ def verify(
         further `notes` where the results are in doubt.
     """
     begun = time.perf_counter()
-    job = prepare(model, settings, **changes)
+    job = prepare(model, settings, start_from, **changes)
     first = solved(job, watch)
     if len(first.time) < 2:
         return replace(first, verification=("not verified: nothing was solved",))

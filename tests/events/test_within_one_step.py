@@ -138,3 +138,22 @@ forces:
         solution = stiffmbs.run(scene, duration=0.06, points=2, rtol=1e-9, **how)
         assert solution["b.x"][-1] < 0 and solution["b.vx"][-1] > 5
         assert solution.solver["events"] == 1
+
+
+def test_an_argument_that_rests_on_a_point_of_its_table_is_no_event():
+    """Interpolants differ from a coordinate that rests by roundings, which lie on both sides of the point."""
+    scene = stiffmbs.read_scene("""
+        gravity: [0, -9.81]
+        bodies:
+          sled: {mass: 1, inertia: 1, position: [0.8117493111092512, 0.3]}
+          ball: {mass: 1, inertia: 1, position: [0, 2], velocity: [1, 0]}
+        joints:
+          held: {type: equation, zero: sled.x - 0.8117493111092512}
+          rest: {type: equation, zero: "sled.y - 0.3 + p(sled.x) - p(0.8117493111092512)"}
+        forces:
+          spring: {type: spring_damper, i: sled, j: ball, stiffness: 40, free_length: 1}
+        tables:
+          p: {table: [[-1.688250688890749, 0], [-0.4382506888907488, 1], [0.8117493111092512, 0.2], [1.311749311109251, 0.9], [3.311749311109251, 0]]}
+    """)
+    solution = stiffmbs.run(scene, duration=1.0, points=11, rtol=1e-7, presolve=False)
+    assert solution.success and solution.solver["events"] < 20

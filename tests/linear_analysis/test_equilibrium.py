@@ -52,6 +52,22 @@ def test_pendulums_hang_down(name, channel, value):
     assert found.channels[channel] == pytest.approx(hanging if value is None else value, abs=1e-9)
 
 
+def test_a_torsion_spring_in_space_unwinds_by_turns():
+    """k (20 rad - a) = m g r cos a after nearly two turns; in the plane the angle is a coordinate."""
+    from scipy.optimize import brentq
+
+    text = """
+dimensions: 3
+gravity: [0, -9.81, 0]
+bodies: {bar: {mass: 2, inertia: [0.02, 0.03, 0.04], position: [0.3, 0, 0]}}
+joints: {axle: {type: revolute, i: {body: bar, point: [-0.3, 0, 0]}, j: ground}}
+forces: {spring: {type: torsion_spring, i: bar, j: ground, stiffness: 0.5, free_angle: 20}}
+"""
+    found = equilibrium(stiffmbs.read_scene(text))
+    angle = brentq(lambda a: 0.5 * (20 - a) - 2 * 9.81 * 0.3 * np.cos(a), 11, 12)
+    assert found.channels["spring.tz"] == pytest.approx(0.5 * (20 - angle), abs=1e-9)
+
+
 STRUT = """
 bodies:
   bar: {mass: 1, inertia: 0.1, position: [0, 0.5], angle: 90 deg, markers: {top: {point: [0.5, 0]}}}

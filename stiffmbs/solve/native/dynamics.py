@@ -33,6 +33,9 @@ ROUNDING = 9e-16
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
 """Change of the multipliers, relative to the largest of them and of the applied forces, at which they are in balance with the friction that they press."""
+AMPLIFIED, MOVED = 1e6, 1e-6
+"""Times a violation, and part of the largest coordinate, that a projection of an output may move a coordinate: beyond that the
+pose is singular to rounding, which then decides where the projection leads."""
 ROUNDED_OFF = 1e-9
 """Change that is taken for balance all the same when no iteration brings it further down."""
 
@@ -183,15 +186,28 @@ def accelerate(t, acceleration, dynamics):
 
 
 @compiled
-def _output_point(s, m, t, project, tolerance, largest):
-    """Bring the state back to the constraints where asked, then accelerations, multipliers and output terms."""
+def _led_astray(s, q, gap):
+    """Whether a projection has moved a coordinate from q by far more than the violation asks for."""
+    moved = 0.0
+    for k in range(s.n_q):
+        moved = max(moved, abs(s.q[k] - q[k]))
+    return moved > AMPLIFIED * gap and moved > MOVED * largest_of(s.q, s.n_q)
+
+
+@compiled
+def _output_point(s, m, t, q, project, tolerance, largest):
+    """Bring the state, from coordinates q, back to the constraints where asked, then accelerations, multipliers and output terms."""
     largest[2] = 0.0
     take_unit_length(s)
+    for k in range(s.n_q):
+        q[k] = s.q[k]
     if project:
         largest[2] = _largest_gap(s, evaluate(s, POSITION, t))
         status = to_position_constraints(s, m, t, tolerance, MOST_MOVES)
         if status < 0:
             return status
+        if _led_astray(s, q, largest[2]):
+            return SINGULAR
         status = to_velocity_constraints(s, m, t)
         if status < 0:
             return status
@@ -216,17 +232,18 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
     m = dynamics_view(dynamics)
     s = state_view(m.state)
     for row in range(count):
+        at_row = shifted(q, row * s.n_q)
         for k in range(s.n_q):
-            s.q[k] = q[row * s.n_q + k]
+            s.q[k] = at_row[k]
         for k in range(s.n_u):
             s.u[k] = u[row * s.n_u + k]
-        m.status[0] = _output_point(s, m, times[row], project, tolerance, shifted(largest, 3 * row))
+        m.status[0] = _output_point(s, m, times[row], at_row, project, tolerance, shifted(largest, 3 * row))
         if m.status[0] < 0:
             return row
         solution = factors_view(m.acceleration_factors).b
         values = floats(s.values[OUTPUT])
         for k in range(s.n_q):
-            q[row * s.n_q + k] = s.q[k]
+            at_row[k] = s.q[k]
         for k in range(s.n_u):
             u[row * s.n_u + k] = s.u[k]
             acceleration[row * s.n_u + k] = solution[k]

@@ -29,6 +29,8 @@ FITS, NOISE = 0.02, 1e-9
 state that rounding takes of values and rates."""
 SHALLOW = 1e-5
 """Part of that noise which no event function is taken to go beyond zero by: rounding alone changes the sign of a contact that is just closed."""
+BARELY = 1e-6
+"""Part of a zone that an argument must go into it for the zone to be visited: less is rounding of a law's argument, and no feature."""
 WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
@@ -71,6 +73,16 @@ def zone(w, k, value):
         else:
             high = middle
     return low - first + turns * (end - first)
+
+
+@compiled
+def _edge(w, k, number):
+    """The edge between the zones `number` and `number` + 1 of function k; the first or last one beyond those there are."""
+    first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
+    if w.period[k] > 0.0:
+        turns = number // count
+        return w.edges[first + number - turns * count] + turns * w.period[k]
+    return w.edges[first + min(max(number, 0), count - 1)]
 
 
 @compiled
@@ -272,7 +284,17 @@ def _visits(w, k, value, low, high):
         return here != one and abs(value) > w.mark[DEPTH]
     if abs(one - other) > 1:
         return here != one
-    return here < min(one, other) or here > max(one, other)
+    if here > max(one, other):
+        passed = max(one, other)
+        return value - _edge(w, k, passed) > max(
+            w.mark[DEPTH], BARELY * (_edge(w, k, passed + 1) - _edge(w, k, passed))
+        )
+    if here < min(one, other):
+        passed = min(one, other) - 1
+        return _edge(w, k, passed) - value > max(
+            w.mark[DEPTH], BARELY * (_edge(w, k, passed) - _edge(w, k, passed - 1))
+        )
+    return False
 
 
 @compiled

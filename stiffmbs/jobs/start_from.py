@@ -1,0 +1,135 @@
+"""Runs that start from a saved state in place of the described one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..compile.bodies import BODY_KINDS
+from ..compile.system import System
+from ..describe.model_data import ModelData
+from ..describe.parts.names import owner_of
+from ..describe.settings import RunSettings
+from ..errors import InputError
+from ..presolve.subsystems import counters_of
+from ..results.body_axes import from_own_axes, rates_from_own_axes
+from ..results.saved_state import SavedState, read_state
+from ..results.solution import Solution
+from ..solve.settings import changed
+
+StartFrom: TypeAlias = SavedState | Solution | str | Path
+"""A saved state: one row of a solution or of a file of results, the last unless told otherwise."""
+MOST_NAMES = 5
+
+
+def state_to_start_from(given: StartFrom | None) -> SavedState | None:
+    """The state that is meant; None where none is given.
+
+    Raises
+    ------
+    InputError
+        When it is nothing that holds a state.
+    """
+    match given:
+        case None | SavedState():
+            return given
+        case Solution():
+            return given.state()
+        case str() | Path():
+            return read_state(given)
+    raise InputError(f"start_from: found {given!r}, expected a file of results, a Solution, or a state of one")
+
+
+def starting_at(chosen: RunSettings, state: SavedState | None, given: RunSettings | None, changes: Any) -> RunSettings:
+    """The settings of a run that starts at the time of its state, unless the caller asks for another start."""
+    told = "start" in changes or (given is not None and "start" in given.model_fields_set)
+    return chosen if state is None or told else changed(chosen, {"start": state.t})
+
+
+def started_from(system: System, model: ModelData, state: SavedState | None) -> System:
+    """A system whose start is a saved state; as it is where there is none.
+
+    Parameters
+    ----------
+    system : System
+        Of the model.
+    model : ModelData
+    state : SavedState, optional
+
+    Raises
+    ------
+    InputError
+        When the state is that of other bodies.
+    """
+    if state is None:
+        return system
+    _refuse_others(system, state)
+    of_body, channels = system.of_body, state.channels
+    q, u = (
+        np.array([channels[f"{body}.{label}"] for body in system.bodies for label in labels])
+        for labels in (of_body.positions, of_body.velocities)
+    )
+    if not np.all(np.isfinite([*q, *u])):
+        raise InputError(
+            f"{state.source}: found no numbers for all bodies at t = {state.t:g} s, expected an earlier row"
+        )
+    if of_body.dimensions == 3:
+        turned = q.reshape(-1, of_body.n_q)[:, of_body.linear :]
+        lengths = np.linalg.norm(turned, axis=1, keepdims=True)
+        if not np.all(lengths > 0):
+            raise InputError(f"{state.source}: found a quaternion of length 0, expected 1")
+        turned /= lengths
+    q, u = from_own_axes(system, q[None])[0], rates_from_own_axes(system, u[None])[0]
+    return replace(
+        system, q=np.concatenate([q, _turns(system, model, state)]), u=u, open_rates=np.zeros(system.n_u, dtype=bool)
+    )
+
+
+def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
+    """The counters of turns; those of requests that the state does not know begin anew."""
+    of_requests = {name for name, _ in model.angle_counters()}
+    first = system.n_q - system.n_counters
+    turns = np.zeros(system.n_counters)
+    for (name, k), place in counters_of(system).items():
+        known = state.turns.get(f"{name}/{k}")
+        if known is None and name not in of_requests:
+            raise InputError(
+                f"{state.source}: found no count of the turns of '{name}', expected a file .npz of the same mechanism"
+            )
+        turns[place - first] = known or 0.0
+    return turns
+
+
+def _refuse_others(system: System, state: SavedState) -> None:
+    of_body, channels = system.of_body, state.channels
+    labels = (*of_body.positions, *of_body.velocities)
+    owners = dict.fromkeys(owner_of(name) for name in channels if name.endswith(f".{of_body.velocities[0]}"))
+    saved = [owner for owner in owners if all(f"{owner}.{label}" in channels for label in labels)]
+    if not saved:
+        other = BODY_KINDS[5 - of_body.dimensions]
+        of_other = any(all(f"{owner}.{label}" in channels for label in other.positions) for owner in owners)
+        found = f"bodies of {_where(other.dimensions)}" if of_other else "no states of bodies"
+        raise InputError(
+            f"{state.source}: found {found}, expected those of a scene {_where(of_body.dimensions, 'in ')}"
+        )
+    missing, more = ([name for name in one if name not in other] for one, other in ((system.bodies, saved), (saved, system.bodies)))  # fmt: skip
+    if missing:
+        raise InputError(
+            f"{state.source}: found no state of body {_listed(missing)}, expected the bodies of the scene; it has {_listed(saved)}"
+        )
+    if more:
+        raise InputError(
+            f"{state.source}: found body {_listed(more)}, which the scene does not have, expected its bodies {_listed(system.bodies)}"
+        )
+
+
+def _where(dimensions: int, before: str = "") -> str:
+    return f"{before}the plane" if dimensions == 2 else f"{before}space"
+
+
+def _listed(names: Any) -> str:
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(f"'{name}'" for name in names[:MOST_NAMES]) + more

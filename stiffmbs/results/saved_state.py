@@ -1,0 +1,135 @@
+"""The state of all bodies at one instant of saved results: where a run can start from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from ..describe.files.quoted import quoted
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+SAME = 1e-9
+"""Part of the time between two rows by which an instant may differ from that of a row."""
+TURNS = "run/turns/"
+"""Before the names of counts of turns in .npz files."""
+
+
+@dataclass(frozen=True)
+class SavedState:
+    """Poses and velocities of all bodies at one instant.
+
+    Attributes
+    ----------
+    source : str
+        What messages call it: a file, or the name of a solution.
+    t : float
+        s.
+    channels : mapping of str to float
+        Every channel at that instant.
+    turns : mapping of str to float
+        What is counted of angles over whole turns in space, rad, by element and number: ``spring/0``.
+    """
+
+    source: str
+    t: float
+    channels: Mapping[str, float]
+    turns: Mapping[str, float] = field(default_factory=dict)
+
+
+def read_state(path: str | Path, at: float | None = None) -> SavedState:
+    """One row of a file that ``stiffmbs run -o`` or ``stiffmbs equilibrium -o`` wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        Ends in .npz, .csv or .nc.
+    at : float, optional
+        The instant of the row, s; the last row by default.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, holds no channels over time, or has no row at that instant.
+    """
+    file = Path(path)
+    source = quoted(str(file))
+    if file.suffix not in READERS:
+        raise InputError(f"{source}: found the ending '{file.suffix}', expected one of {', '.join(READERS)}")
+    try:
+        found = READERS[file.suffix](file)
+        if "time" not in found or not found["time"].size:
+            raise InputError(f"{source}: found no channels over time, expected a file that stiffmbs run -o wrote")
+        return _row(source, found["time"], found, at)
+    except OSError as error:
+        reason = error.strerror or "found no file of results"
+        raise InputError(f"{source}: {reason}, expected a file that stiffmbs run -o wrote") from None
+    except (BadZipFile, ValueError, EOFError, KeyError, TypeError, IndexError):
+        raise InputError(f"{source}: found no table of channels, expected a file that stiffmbs run -o wrote") from None
+
+
+def state_of(solution: Solution, at: float | None) -> SavedState:
+    """See `Solution.state`."""
+    turns = {TURNS + name: values for name, values in solution.turns.items()}
+    name = f"the results of '{solution.name}'" if solution.name else "the results"
+    return _row(name, solution.time, {**solution.channels, **turns}, at)
+
+
+def _row(source: str, time: np.ndarray, arrays: Mapping[str, np.ndarray], at: float | None) -> SavedState:
+    k = len(time) - 1 if at is None else _number_of_row(source, time, at)
+    over_time = {
+        name: float(values[k])
+        for name, values in arrays.items()
+        if ("/" not in name or name.startswith(TURNS)) and values.shape == time.shape and values.dtype.kind == "f"
+    }
+    turns = {name.removeprefix(TURNS): value for name, value in over_time.items() if name.startswith(TURNS)}
+    channels = {name: value for name, value in over_time.items() if not name.startswith(TURNS)}
+    return SavedState(source, float(time[k]), channels, turns)
+
+
+def _number_of_row(source: str, time: np.ndarray, at: float) -> int:
+    k = int(np.argmin(np.abs(time - at)))
+    apart = np.diff(time)
+    if not abs(time[k] - at) <= SAME * max(float(np.max(apart, initial=0.0)), abs(at)):
+        near = time[max(0, k - 1) : k + 2]
+        raise InputError(
+            f"{source}: found no row at t = {at:.9g} s, expected an instant that was saved: there are {len(time)} from "
+            f"{time[0]:.9g} to {time[-1]:.9g} s, the nearest {', '.join(f'{t:.9g}' for t in near)}"
+        )
+    return k
+
+
+def _npz(path: Path) -> dict[str, Any]:
+    with np.load(path, allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files if "/" not in name or name.startswith(TURNS)}
+
+
+def _csv(path: Path) -> dict[str, Any]:
+    with path.open(encoding="utf-8") as file:
+        heads = [head.partition(" (")[0] for head in file.readline().rstrip("\n").split(",")]
+        table = np.loadtxt(file, delimiter=",", ndmin=2)
+    return _named(heads, table.T)
+
+
+def _netcdf(path: Path) -> dict[str, Any]:
+    from scipy.io import netcdf_file
+
+    with netcdf_file(path, mmap=False) as file:
+        names = (
+            getattr(variable, "channel", name.encode()).decode("utf-8") for name, variable in file.variables.items()
+        )
+        return _named(names, [np.array(variable[...], dtype=float) for variable in file.variables.values()])
+
+
+def _named(names: Iterable[str], columns: Iterable[np.ndarray]) -> dict[str, Any]:
+    return dict(zip(names, columns, strict=True))
+
+
+READERS: dict[str, Callable[[Path], dict[str, Any]]] = {".npz": _npz, ".csv": _csv, ".nc": _netcdf}
