@@ -39,15 +39,19 @@ def _first_bodies(system: System) -> np.ndarray:
     return np.where(label < len(system.bodies), label, 0)
 
 
-def behind_bodies(system: System) -> dict[tuple[str, int], int]:
-    """The coordinates that count turns, by element and number among its own, and those that are states, by name."""
-    counters = {
+def counters_of(system: System) -> dict[tuple[str, int], int]:
+    """The coordinates that count turns, by element and number among its own."""
+    return {
         (name, k): int(at)
         for group in system.groups
         for name, places in zip(group.names, group.counters, strict=True)
         for k, at in enumerate(places)
     }
-    return counters | {(name, A_STATE): system.first_state + k for k, name in enumerate(system.states)}
+
+
+def behind_bodies(system: System) -> dict[tuple[str, int], int]:
+    """The same with the coordinates that are states, by name."""
+    return counters_of(system) | {(name, A_STATE): system.first_state + k for k, name in enumerate(system.states)}
 
 
 def _parts(system: System, group: Group) -> np.ndarray:

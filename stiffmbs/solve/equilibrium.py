@@ -6,17 +6,20 @@ Each move d solves, at rest and with the multipliers of the current pose,
 
 With s = 0 it is Newton's; s > 0 is an implicit step of a motion in a thick fluid (pseudo-transient continuation: Kelley and
 Keyes, SIAM J. Numer. Anal. 35, 1998), which leads to stable equilibria alone.  s falls where forces change along the move
-as the linear equations predict, and rises where they do not, as where a wheel meets the road.
+as the linear equations predict, and rises where they do not, as where a wheel meets the road.  States of the user's own
+are unknowns beside d: their rates have to vanish, and sqrt(s) stands for one over the length of the implicit step.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 
+from ..compile.terms import TERM_AXES
 from ..errors import SolverError
 from .dynamics import Dynamics
 from .failures import FAILURES
@@ -53,15 +56,50 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
+class RatesOfStates:
+    """How fast states of the user's own change, and the sizes of what their rates are made of."""
+
+    rates: np.ndarray
+    sizes: np.ndarray
+
+
+@dataclass(frozen=True)
 class _Balance:
     """What is known at a pose: the multipliers, what is left of the forces, and the largest of them."""
 
     left: np.ndarray
     lam: np.ndarray
     largest: float
+    states: RatesOfStates
 
-    def norm(self, mass: np.ndarray) -> float:
-        return float(np.sqrt(np.sum(self.left**2 / mass)))
+    def is_found(self) -> bool:
+        """Whether forces balance and states stay as they are."""
+        forces = np.max(np.abs(self.left), initial=0.0) <= BALANCED * self.largest
+        return bool(forces and np.all(np.abs(self.states.rates) <= BALANCED * self.states.sizes))
+
+    def norm(self, mass: np.ndarray, left: np.ndarray | None = None, rates: np.ndarray | None = None) -> float:
+        """Of what is left of the forces, or of other forces and rates as measured beside these."""
+        left, rates = self.left if left is None else left, self.states.rates if rates is None else rates
+        forces = float(np.sqrt(np.sum(left**2 / mass)))
+        if not len(rates):
+            return forces
+        of_one = self.largest / np.sqrt(mass.mean()) or 1.0
+        return float(
+            np.hypot(forces / of_one, np.linalg.norm(rates / np.where(self.states.sizes, self.states.sizes, 1.0)))
+        )
+
+
+def rates_of_states(dynamics: Dynamics, t: float) -> RatesOfStates:
+    """At the state at hand, of which accelerations are known."""
+    system, state = dynamics.system, dynamics.state
+    if not system.states:
+        return RatesOfStates(np.empty(0), np.empty(0))
+    own = slice(system.first_state, None)
+    rates = dynamics.position_rates(state.q, state.u)[own]
+    state.evaluate("tangent", t)
+    sizes = system.per_coordinate(system.size, 1.0)
+    sizes[own] = system.state_scales
+    return RatesOfStates(rates, np.abs(state.matrix("tangent", "rate_q")[own]) @ np.maximum(sizes, np.abs(state.q)))
 
 
 def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
@@ -84,7 +122,7 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
     limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
     shift, known = 1.0, _balance(dynamics, t)
     for count in range(MOST_MOVES):
-        if np.max(np.abs(known.left), initial=0.0) <= BALANCED * known.largest:
+        if known.is_found():
             return Equilibrium(
                 state.q.copy(),
                 known.lam,
@@ -92,17 +130,18 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
                 float(np.max(np.abs(known.left), initial=0.0) / (known.largest or 1.0)),
             )
         before = state.q.copy()
-        move = _move(dynamics, t, shift**2, known)
+        move, change = _move(dynamics, t, shift, known)
         longest = float(np.max(np.abs(move) / limits, initial=0.0))
-        if known.left @ move < 0 and shift < STIFFEST:  # towards an unstable equilibrium
+        if not system.states and known.left @ move < 0 and shift < STIFFEST:  # towards an unstable equilibrium
             shift *= RISES
             continue
         if longest > 1.0:
             shift = max(2.0 * shift, shift * float(np.sqrt(longest)))
             continue
         state.q[:] = system.of_body.moved(before, move)
+        state.q[system.first_state :] += change
         found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
-        off = _misjudged(system.mass, known, found, shift**2, move)
+        off = _misjudged(system.mass, known, found, shift, move, change)
         if found is None or off > REFUSED:
             state.q[:] = before
             if shift > STIFFEST:
@@ -127,7 +166,9 @@ def _balance(dynamics: Dynamics, t: float) -> _Balance:
     largest = max(
         np.max(np.abs(state.vector("motion", "f")), initial=0.0), np.max(np.abs(_entries(dynamics)), initial=0.0)
     )
-    return _Balance(system.mass * acceleration, state.lam[: system.n_c].copy(), float(largest))
+    return _Balance(
+        system.mass * acceleration, state.lam[: system.n_c].copy(), float(largest), rates_of_states(dynamics, t)
+    )
 
 
 def _entries(dynamics: Dynamics) -> np.ndarray:
@@ -137,22 +178,36 @@ def _entries(dynamics: Dynamics) -> np.ndarray:
     return entries
 
 
-def _move(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> np.ndarray:
+def _move(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> tuple[np.ndarray, np.ndarray]:
+    """The next move of the bodies, and the change of the states."""
     system, state = dynamics.system, dynamics.state
     state.lam[: system.n_c] = known.lam
     state.evaluate("tangent", t)
     rows = np.flatnonzero(system.active)
     rates = _sparse(dynamics, "tangent", "Z") + _identity(dynamics)
-    stiffness = (_sparse(dynamics, "tangent", "G_lam") - _sparse(dynamics, "tangent", "f_q")) @ rates
+    of_poses = _sparse(dynamics, "tangent", "f_q")
+    stiffness = (_sparse(dynamics, "tangent", "G_lam") - of_poses) @ rates
+    by_state = slice(system.first_state, None)
+    forces_by_states = -of_poses[:, by_state]
+    of_rates = _sparse(dynamics, "tangent", "rate_q")[by_state]
+    by_reactions = -_sparse(dynamics, "tangent", "rate_lam")[by_state][:, rows]
+    rates_by_states = diags_array(np.full(len(system.states), shift)) - of_rates[:, by_state]
     jacobian = _sparse(dynamics, "tangent", "J")[rows]
     state.evaluate("motion", t)
-    matrix = block_array([[diags_array(shift * system.mass) + stiffness, jacobian.T], [jacobian, None]], format="csc")
-    right = np.concatenate([known.left, np.zeros(len(rows))])
+    forces: list[Any] = [diags_array(shift**2 * system.mass) + stiffness]
+    blocks = [[*forces, jacobian.T], [jacobian, None]]
+    if system.states:
+        blocks = [
+            [*forces, forces_by_states, jacobian.T],
+            [-of_rates @ rates, rates_by_states, by_reactions],
+            [jacobian, None, None],
+        ]
+    right = np.concatenate([known.left, known.states.rates, np.zeros(len(rows))])
     try:
-        found: np.ndarray = splu(matrix).solve(right)[: system.n_u]
+        found: np.ndarray = splu(block_array(blocks, format="csc")).solve(right)
     except RuntimeError:  # exactly singular: a larger shift ends it
-        return np.full(system.n_u, np.inf)
-    return found
+        return np.full(system.n_u, np.inf), np.zeros(len(system.states))
+    return found[: system.n_u], found[system.n_u : system.n_u + len(system.states)]
 
 
 def _identity(dynamics: Dynamics) -> csc_array:
@@ -165,20 +220,30 @@ def _identity(dynamics: Dynamics) -> csc_array:
 def _sparse(dynamics: Dynamics, term_set: str, name: str) -> csc_array:
     system = dynamics.system
     term = system.term(term_set, name)
-    shape = {"Z": (system.n_q, system.n_u), "J": (system.n_c, system.n_u)}.get(name, (system.n_u, system.n_q))
+    axes = TERM_AXES[name]
+    shape = system.extent(axes[0]), system.extent(axes[1])
     return csc_array((dynamics.state.values[term_set][term.source], (term.row, term.column)), shape=shape)
 
 
-def _misjudged(mass: np.ndarray, known: _Balance, found: _Balance | None, shift: float, move: np.ndarray) -> float:
-    """How far the forces left after a move are from the predicted s M d, relative to those before."""
+def _misjudged(
+    mass: np.ndarray, known: _Balance, found: _Balance | None, shift: float, move: np.ndarray, change: np.ndarray
+) -> float:
+    """How far the forces left after a move are from the predicted s M d, relative to those before; the same of rates."""
     if found is None:
         return np.inf
-    off = np.sqrt(np.sum((found.left - shift * mass * move) ** 2 / mass))
+    off = known.norm(mass, found.left - shift**2 * mass * move, found.states.rates - shift * change)
     return float(off / known.norm(mass))
 
 
 def _unbalanced(dynamics: Dynamics, known: _Balance) -> str:
     system = dynamics.system
+    forces = np.max(np.abs(known.left), initial=0.0) <= BALANCED * known.largest
+    if forces and system.states:
+        worst = int(np.argmax(np.abs(known.states.rates) / np.maximum(known.states.sizes, np.finfo(float).tiny)))
+        return (
+            f"no equilibrium was found: the state {system.states[worst]} goes on changing ({known.states.rates[worst]:.3g} per "
+            "second), expected rates of states that can vanish"
+        )
     worst = int(np.argmax(np.abs(known.left)))
     name = system.name_of(worst, system.of_body.reactions)
     return (

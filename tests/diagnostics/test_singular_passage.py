@@ -1,6 +1,7 @@
 """A slider on a turning guide, whose line passes the guide's hinge: the nearer it does, the less is known of what follows."""
 
 import pytest
+
 import stiffmbs
 
 NOTE = "passes a singular pose near t = 0."

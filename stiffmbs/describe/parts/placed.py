@@ -20,6 +20,7 @@ from ..formula.state_names import with_states
 from ..formula.text import parse
 from ..formula.variables import meant_within
 from ..marker import MarkerReference
+from ..states.section import refuse_other_meanings
 from ..states.state import dimension_of_state
 from ..units.units import in_text
 from .instances import NAMED, Instance, Instances
@@ -60,10 +61,15 @@ def with_parts(
         raise InputError(f"--set {path}: found no such place in the scene")
     bodies = [*_keys(raw.get("bodies")), *(name for one in instances.found for name in one.names("bodies"))]
     own = raw.get("states")
+    known = {name: context.get(name) or {} for name in ("parameters", "tables", "variables")}
+    refuse_other_meanings("states", _keys(own), known)
     states = {} if not isinstance(own, dict) else {
         name: dimension_of_state(entry, context["parameters"]) for name, entry in own.items() if isinstance(name, str)
     }  # fmt: skip
     for one in instances.found:
+        refuse_other_meanings(
+            f"{one.where}.states", one.sections.get("states") or {}, {**known, "parameters": one.parameters}
+        )
         entries = (one.sections.get("states") or {}).items()
         states |= {f"{one.name}.{name}": dimension_of_state(entry, one.parameters) for name, entry in entries}
     names = Names(frozenset(bodies), states=states)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
+from ...errors import InputError
 from ..check_marker import check_marker, listed
 from ..formula.field import Formula
 from ..formula.names import FormulaNames
@@ -13,6 +14,27 @@ from ..units.units import CONSTANTS, UNITS
 from .state import State
 
 AnyState = State
+
+
+def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str, Collection[str]]) -> None:
+    """Refuse states whose names stand for something else in a scene's formulas.
+
+    Parameters
+    ----------
+    where : str
+        In the scene, for messages.
+    states : iterable of str
+    known : mapping of str to collection of str
+        What else formulas name, by section.
+
+    Raises
+    ------
+    InputError
+    """
+    for name in states:
+        for section, names in known.items():
+            if name in names:
+                raise InputError(f"{where}.{name}: found a name that {section}.{name} has too, expected another")
 
 
 def check_states(
