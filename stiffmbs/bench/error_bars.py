@@ -31,7 +31,7 @@ REFERENCES = (1e-12, 1e-13)
 """Relative tolerances: of what tells how well the truth is known, and of what a run is held against."""
 KNOWN = 10.0
 """An error counts where it is so many times as large as that of the reference."""
-ROUNDING = 1e-11
+LEAST_ERROR = 1e-11
 """Part of a channel's scale below which an error is none."""
 PATIENCE = 20.0
 """Time, s, for all runs that one is compared with: what is found must not hang on how busy the machine is."""
@@ -119,7 +119,7 @@ def compared(found: Solution, truth: Solution, less_true: Solution, sizes: Mappi
     at, beside_at = (np.searchsorted(run.time, found.time - 1e-9 * found.time[-1]) for run in (truth, less_true))
     for name, bar in found.errors.items():
         best, beside = truth[name][at], less_true[name][beside_at]
-        least = ROUNDING * sizes[name]
+        least = LEAST_ERROR * sizes[name]
         over_time.append((bar.over_time, _apart(found[name], best), _apart(best, beside) + least))
         for sign, half, between in _ends(bar):
             value, top, top_beside = (np.max(sign * values) for values in (found[name], best, beside))

@@ -42,6 +42,11 @@ class Coordinates:
         return self.independent_of == np.arange(len(self.independent_of))
 
     @cached_property
+    def count(self) -> int:
+        """Number of independent coordinates."""
+        return int(self.independent.sum())
+
+    @cached_property
     def independent_u(self) -> np.ndarray:
         """Which velocities are independent, shape (n_u,)."""
         return self.u_independent_of == np.arange(len(self.u_independent_of))

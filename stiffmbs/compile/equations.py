@@ -76,19 +76,28 @@ class Equations:
 
     def states(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """All coordinates and velocities from those that `independent` lists, one state in each row."""
-        count = int(self.coordinates.independent.sum())
+        count = self.coordinates.count
         q, u = rows[:, :count], rows[:, count:]
-        if self.coordinates.independent.all():
+        if count == self.system.n_q:
             return q, u
         return self._offset + self._led("q", q), self._led("u", u)
 
     def _led(self, name: str, rows: np.ndarray) -> np.ndarray:
         """How all coordinates or velocities move with the independent ones."""
-        independent_of, ratio = self.coordinates.relation(name)
+        place, ratio = self._leads[name]
         if not rows.shape[1]:  # nothing moves
-            return np.zeros((len(rows), len(independent_of)))
-        place = np.cumsum(independent_of == np.arange(len(independent_of))) - 1
-        return ratio * rows[:, np.where(independent_of == FIXED, 0, place[independent_of])]
+            return np.zeros((len(rows), len(place)))
+        return ratio * rows[:, place]
+
+    @cached_property
+    def _leads(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """The place among the independent ones of what each coordinate and velocity moves with, and the ratio."""
+        found = {}
+        for name in ("q", "u"):
+            independent_of, ratio = self.coordinates.relation(name)
+            place = np.cumsum(independent_of == np.arange(len(independent_of))) - 1
+            found[name] = np.where(independent_of == FIXED, 0, place[independent_of]), ratio
+        return found
 
     def _carried(self, name: str, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where entries that belong to rows, columns or operands of a kind stand among the unknowns, and their factors."""

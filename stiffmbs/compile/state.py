@@ -109,7 +109,7 @@ class State:
 
     def relax(self, mu: np.ndarray, lam: np.ndarray) -> None:
         """Set the relaxation of each constraint row, used by the formulations that have one."""
-        self._relaxations[:] = *mu, *lam
+        self._relaxations[: len(mu)], self._relaxations[len(mu) :] = mu, lam
         for term_set, values in self.values.items():
             first = self.system.constants(term_set)["E_mu"]
             values[first : first + len(self._relaxations)] = self._relaxations

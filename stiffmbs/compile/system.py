@@ -126,8 +126,9 @@ class System:
         return self._per_body(self.of_body.n_u, linear, angular)
 
     def _per_body(self, width: int, linear: float, angular: float) -> np.ndarray:
-        straight = self.of_body.linear
-        return np.tile([linear] * straight + [angular] * (width - straight), len(self.bodies))
+        numbers = np.full((len(self.bodies), width), float(angular))
+        numbers[:, : self.of_body.linear] = linear
+        return numbers.reshape(-1)
 
     def move(self, q: np.ndarray, there: np.ndarray) -> np.ndarray:
         """What takes the bodies from one pose to another, as velocities times time, shape (n_u,)."""

@@ -30,7 +30,7 @@ from .states.state import StateValue
 if TYPE_CHECKING:
     from .requests.angle_counter import AngleCounter
 
-ROUNDING = 1e-13
+SAME_POINT = 1e-13
 """Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""
 RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
@@ -187,7 +187,7 @@ class ModelData(Described):
     def at_one_place(self, i: MarkerReference, j: MarkerReference) -> bool:
         """Whether two markers are at one point at the start, to rounding: the line through them has no direction."""
         a, b = self.point(i), self.point(j)
-        return math.dist(a, b) <= ROUNDING * max(self.size(), *map(abs, (*a, *b)))
+        return math.dist(a, b) <= SAME_POINT * max(self.size(), *map(abs, (*a, *b)))
 
     def place(self, marker: Any) -> Any:
         """Where a marker sits on its body, in the body's own axes."""

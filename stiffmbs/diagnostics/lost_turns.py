@@ -10,7 +10,7 @@ from ..solve.dynamics import Dynamics, OutputRows
 
 APART = 1.0
 """Angle between an orientation and the integral of its rate, rad, from which on the turn is not certain: half a turn changes it."""
-MOST = 2000
+MOST_INSTANTS = 2000
 """Instants that are looked at."""
 
 
@@ -29,7 +29,7 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     solved = np.flatnonzero(~np.isnan(rows.position_violation))
     if not system.n_counters or not len(solved):
         return
-    instants = solved[np.linspace(0, len(solved) - 1, min(len(solved), MOST)).astype(int)]
+    instants = solved[np.linspace(0, len(solved) - 1, min(len(solved), MOST_INSTANTS)).astype(int)]
     apart = np.empty((len(instants), len(counted.row)))
     for of_row, t, q in zip(apart, rows.t[instants], rows.q[instants], strict=True):
         state.q[:] = q

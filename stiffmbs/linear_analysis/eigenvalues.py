@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eig, svd
 
-ROUNDING = 10 * np.finfo(float).eps
+ZERO_SINGULAR = 10 * np.finfo(float).eps
 """Singular value, relative to rows of length 1 and times their number, that counts as zero."""
 
 
@@ -59,9 +59,9 @@ def _deflated(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[np.ndarr
     if not np.any(matrix):
         return np.zeros(0), np.zeros((n, 0)), [np.eye(n)] if n else []
     sizes = np.linalg.norm(matrix, axis=1)
-    noise = ROUNDING * n * sizes.max()
+    noise = ZERO_SINGULAR * n * sizes.max()
     _, singular, basis = svd(matrix * np.where(sizes > noise, 1 / np.maximum(sizes, noise), 0.0)[:, None])
-    rank = int(np.sum(singular > ROUNDING * n))
+    rank = int(np.sum(singular > ZERO_SINGULAR * n))
     if rank == n:
         values, vectors = eig(matrix)
         return values, vectors, []

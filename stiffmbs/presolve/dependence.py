@@ -12,7 +12,7 @@ from ..compile.kind import Kind
 from ..compile.record import record_of
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
-from .relations import SAME
+from .relations import NEGLIGIBLE
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def dependence(system: System, values: np.ndarray) -> Dependence:
     """
     term = system.term("position", "C_q")
     rounding = np.zeros(system.n_c)
-    np.fmax.at(rounding, term.row, SAME * np.abs(values[term.source]))
+    np.fmax.at(rounding, term.row, NEGLIGIBLE * np.abs(values[term.source]))
     joints = [(g, group) for g, group in enumerate(system.groups) if group.record.variation]
     found = [_of_group(system, g, group, values, rounding) for g, group in joints]
     first = np.cumsum([0, *(len(part.row) for part in found)])

@@ -20,7 +20,7 @@ from ..compile.coordinates import FIXED, Coordinates
 from ..compile.state import State
 from ..compile.system import System
 from .dependence import Dependence, dependence
-from .relations import INDEPENDENT, SAME, Relations
+from .relations import INDEPENDENT, NEGLIGIBLE, Relations
 
 
 def independent_coordinates(system: System, state: State, t: float) -> Coordinates:
@@ -77,7 +77,7 @@ def _constant_rows(
     included[C_q.row[counts & (C_q.varies(moves) | ~np.isin(C_q.column, straight))]] = False
     largest = np.zeros(system.n_c)
     np.fmax.at(largest, C_q.row, np.abs(C_q.value))
-    kept = counts & included[C_q.row] & (np.abs(C_q.value) > SAME * largest[C_q.row])
+    kept = counts & included[C_q.row] & (np.abs(C_q.value) > NEGLIGIBLE * largest[C_q.row])
     rows: dict[int, list[tuple[int, float]]] = {}
     for row, column, value in zip(
         C_q.row[kept].tolist(), C_q.column[kept].tolist(), C_q.value[kept].tolist(), strict=True

@@ -10,7 +10,7 @@ import numpy as np
 from ..compile.coordinates import FIXED, Coordinates, all_independent
 from ..compile.system import System
 
-SAME = 1e-13
+NEGLIGIBLE = 1e-13
 """Difference, relative to a row's largest derivative, that is rounding; a smaller coefficient is none."""
 INDEPENDENT = 1e-6
 """Least singular value, relative to the largest, of rows that hold as many coordinates as they are."""
@@ -82,7 +82,7 @@ class Relations:
         """Let leaders follow that which moves most in a direction; those that do not move there stand still."""
         chief = int(np.argmax(np.abs(direction)))
         for independent_of, part in zip(independents, direction.tolist(), strict=True):
-            if abs(part) <= SAME:
+            if abs(part) <= NEGLIGIBLE:
                 self._follow(independent_of, FIXED, 0.0)
             elif independent_of != independents[chief]:
                 self._follow(independent_of, independents[chief], part / direction[chief])
@@ -104,7 +104,7 @@ class Relations:
             independent_of = int(self.independent_of[column])
             if independent_of != FIXED:
                 coefficients[independent_of] = coefficients.get(independent_of, 0.0) + value * self.ratio[column]
-        negligible = SAME * max(abs(value) for _, value in entries)
+        negligible = NEGLIGIBLE * max(abs(value) for _, value in entries)
         return {independent_of: value for independent_of, value in coefficients.items() if abs(value) > negligible}
 
     def _follow(self, follower: int, independent_of: int, ratio: float) -> None:

@@ -28,7 +28,7 @@ CERTAIN = 3.0
 """Times the end corrections of the quadrature by which the balance of an interval must be open."""
 OF_TOLERANCE = 10.0
 """Energies below so many times the work of the largest force along an error of the tolerance are not looked at."""
-ROUNDING = 1e-10
+OF_POTENTIAL = 1e-10
 """The same for parts of the largest potential energy."""
 
 
@@ -82,7 +82,7 @@ def _negligible(system: System, rows: OutputRows, settings: RunSettings) -> floa
         force = np.nanmax(np.abs(rows.values[:, system.term("output", "reaction").source]), initial=0.0)
         weight = np.nanmax(np.abs(system.mass[None, :] * rows.acceleration[:1]), initial=0.0)
         stored = np.nanmax(np.abs(rows.values[:, system.term("output", "potential").source]), initial=0.0)
-    return float(OF_TOLERANCE * settings.rtol * system.size * max(force, weight) + ROUNDING * stored)
+    return float(OF_TOLERANCE * settings.rtol * system.size * max(force, weight) + OF_POTENTIAL * stored)
 
 
 def _changed(

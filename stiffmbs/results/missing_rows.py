@@ -11,7 +11,7 @@ from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.failures import FAILURES
 from ..solve.trajectory import Trajectory
 
-MOST = 100
+MOST_MISSING = 100
 """Gaps after which the results end."""
 
 
@@ -25,7 +25,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool) -> tuple
     parts: list[OutputRows] = [dynamics.report(t, q, u, project)]
     notes: list[str] = []
     done = len(parts[0].t)
-    while 0 < done < len(t) - 1 and len(notes) < MOST:
+    while 0 < done < len(t) - 1 and len(notes) < MOST_MISSING:
         status = parts[-1].status
         if not len(dynamics.report(t[done + 1 : done + 2], q[done + 1 : done + 2], u[done + 1 : done + 2], project).t):
             break

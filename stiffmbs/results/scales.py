@@ -17,7 +17,7 @@ FIXED = 1e-8
 """Motions smaller than this, in sizes of the mechanism and rad, are no motions."""
 CROSSED = 1e-3
 """The same for torques beside forces, and for rotations beside motions, at the size of the mechanism."""
-ROUNDING = 1e-14
+REQUEST_ROUNDING = 1e-14
 """Part of the largest number of all channels below which a request, whose unit nobody knows, is nothing but rounding."""
 MEASURED = {
     "position": "x y z", "angle": "angle", "orientation": "q0 q1 q2 q3", "velocity": "vx vy vz",
@@ -79,7 +79,7 @@ def scales(
         origin = values[0] if kind in PLACES or name == "energy.potential" else 0.0
         key = (_owner(name), kind)
         own[key] = max(own.get(key, 0.0), float(np.nanmax(np.abs(values - origin))))
-    nothing = ROUNDING * max(own.values(), default=0.0)
+    nothing = REQUEST_ROUNDING * max(own.values(), default=0.0)
     own = {key: value if key[1] or value > nothing else 0.0 for key, value in own.items()}
     largest: dict[str, float] = {}
     for (_, kind), value in own.items():

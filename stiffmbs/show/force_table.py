@@ -14,7 +14,7 @@ from .digits import with_bar
 if TYPE_CHECKING:
     from rich.table import Table
 
-ROUNDING = 1e-11
+SHOWN_AS_ZERO = 1e-11
 """Part of the largest force below which a force is shown as zero: what solutions in space leave of forces that vanish."""
 NOT_UNIQUE = "*"
 """Stands behind the range of a reaction that has no unique value."""
@@ -30,7 +30,7 @@ def force_table(solution: Solution) -> Table:
     in_space = any(name.endswith(".tz") for name in own)
     components = SPACE.reactions if in_space else PLANE.reactions
     elements = dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{components[-1]}"))
-    noise = ROUNDING * max(
+    noise = SHOWN_AS_ZERO * max(
         (_largest(ranges[f"{element}.{component}"]) for element in elements for component in components), default=0.0
     )
 

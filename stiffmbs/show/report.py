@@ -25,7 +25,7 @@ from ..results.solution import Solution, channel_ranges
 from .counters import solver_words
 from .digits import with_bar
 from .figure import drawn
-from .force_table import ROUNDING
+from .force_table import SHOWN_AS_ZERO
 from .step_history import step_history
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
     rows = []
     sizes = scales(solution.channels, 1.0, solution.requested)
     for name, cell in channel_ranges(solution).items():
-        bar, noise = solution.errors.get(name, UNKNOWN), ROUNDING * sizes[name]
+        bar, noise = solution.errors.get(name, UNKNOWN), SHOWN_AS_ZERO * sizes[name]
         verified = name in solution.errors
         rows.append(
             {

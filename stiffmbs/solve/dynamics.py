@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import InputFeatures, input_features
-from ..compile.machine.layout import DYNAMICS, packed
+from ..compile.machine.layout import DYNAMICS, cells, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
@@ -87,7 +87,6 @@ class Dynamics:
         self._positions = SaddlePoint(POSITION_STEP, self.state)
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
         self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
-        self._status = np.zeros(1, dtype=np.int64)
         self._kept: dict[str, tuple[object, object]] = {}
         behind = [system.term("acceleration", name) for name in ("counting", "rate")]
         source, row = (np.concatenate([getattr(term, part) for term in behind]) for part in ("source", "row"))
@@ -104,12 +103,12 @@ class Dynamics:
                 "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
-                "status": self._status,
                 "n_behind": len(row),
                 "behind_source": self._behind[0],
                 "behind_row": self._behind[1],
             },
         )
+        self._cells = cells(self.table, DYNAMICS)
 
     def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
         """What a solver has set up for this state and such settings; made where there is none, one for each name."""
@@ -195,4 +194,6 @@ class Dynamics:
                 break
         q, u, acceleration, lam, values, largest = (array[:done] for array in rows)
         position, velocity, drift = largest.T
-        return OutputRows(t[:done], q, u, acceleration, lam, values, position, velocity, drift, int(self._status[0]))
+        return OutputRows(
+            t[:done], q, u, acceleration, lam, values, position, velocity, drift, int(self._cells["status"])
+        )

@@ -38,9 +38,9 @@ from .solve_again import Deadline
 
 SAMPLES, TIMED = 20_000, 20
 """Instants at the most, and those of which the time for one is measured."""
-PART = 0.25
+OF_TIME_LEFT = 0.25
 """Part of the time left that looking may take."""
-OPEN = 1e-3
+OPEN_BALANCE = 1e-3
 """Part of the largest velocity, weighted with masses, by which the momentum balance of an interval must be open."""
 ELSEWHERE = 1e-2
 """The same for the velocities at the end of a stretch that is solved again."""
@@ -48,13 +48,13 @@ SHARE = 1e-3
 """Part of the largest change of a reaction that a law's own must have for the law to be what was stepped over."""
 MUCH = 0.05
 """The same for a difference that no error of a tolerance makes in one step."""
-SAME = 1e-2
+SAME_ENERGY = 1e-2
 """Part of the largest kinetic energy by which two runs may differ that saw the same; impacts magnify every difference."""
 STRETCHES = 4
 """Stretches that are solved again at the most."""
 SHORTER = 50
 """Steps in an interval whose balance is open, when its stretch is solved again; a quarter of an interval should do."""
-ENOUGH = 4
+FEWEST_STEPS = 4
 TIGHTER, TIGHTEST = 1e-2, 1e-13
 """Of the tolerance with which a stretch is solved without short steps; the tightest that rounding allows."""
 
@@ -87,7 +87,7 @@ class SteppedOver:
     @property
     def max_step(self) -> float:
         """Steps that see it, s."""
-        return float(f"{self.width / ENOUGH:.1g}")
+        return float(f"{self.width / FEWEST_STEPS:.1g}")
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
         s.
     """
     begun = time.perf_counter()
-    times = _instants(job, first, PART * allowed)
+    times = _instants(job, first, OF_TIME_LEFT * allowed)
     grid = Grid(job.grid.start, float(times[-1]), times)
     try:
         trajectory = replace(job, grid=grid).integrate(Deadline(grid.start, grid.end, allowed))
@@ -150,7 +150,7 @@ def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
     """Whether a run at more instants has the kinetic energies of the run itself, as it has unless output decides what steps see."""
     at = np.minimum(np.searchsorted(t, first.time), len(t) - 1)
     own = first["energy.kinetic"]
-    return bool(np.nanmax(np.abs(own - kinetic[at])) <= SAME * np.nanmax(own, initial=0.0))
+    return bool(np.nanmax(np.abs(own - kinetic[at])) <= SAME_ENERGY * np.nanmax(own, initial=0.0))
 
 
 def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
@@ -175,7 +175,7 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
     end, looked = time.perf_counter() + allowed, np.zeros(len(missing), dtype=bool)
     for _ in range(STRETCHES):
         worst = int(np.argmax(np.where(looked, 0.0, missing), axis=0)) if len(missing) else 0
-        if not len(missing) or looked[worst] or not missing[worst] > OPEN * speed:
+        if not len(missing) or looked[worst] or not missing[worst] > OPEN_BALANCE * speed:
             return
         left = end - time.perf_counter()
         if left <= 0:

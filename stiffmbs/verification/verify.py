@@ -47,7 +47,7 @@ MOST_EFFORT, PATIENCE = 3.0, 1.0
 """Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
 OTHER_OF_FIXED = 1e-10
 """Relative tolerance of the other solver where the first has fixed steps."""
-ROUNDING = 1e-13
+CHANNEL_ROUNDING = 1e-13
 """Part of a channel's scale that rounding takes."""
 
 
@@ -255,7 +255,9 @@ class _Verification:
 
     def _bar(self, name: str, runs: list[Again]) -> ErrorBar:
         fine = self._between.fine(name) if self._between else None
-        return error_bar(self._first[name], [run.reported(name) for run in runs], fine, ROUNDING * self._sizes[name])
+        return error_bar(
+            self._first[name], [run.reported(name) for run in runs], fine, CHANNEL_ROUNDING * self._sizes[name]
+        )
 
     def _told(self) -> list[str]:
         """What was compared with, and what could not be."""

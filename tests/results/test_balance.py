@@ -62,7 +62,7 @@ def test_every_matrix_serves(kind):
 
     def rows(matrix, long_step):
         ida = chain.native(matrix=matrix)
-        ida.balance_within(long_step, 1e-6)
+        ida.correct_outputs(long_step, 1e-6)
         return chain.through(ida, times)[0]
 
     expected = rows(Dense(n, *pattern), 0.0)

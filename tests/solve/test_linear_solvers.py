@@ -5,6 +5,7 @@ import ctypes
 import numpy as np
 import pytest
 
+from stiffmbs.compile.machine.layout import PAIRED_COLUMNS, cells
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.paired_columns import PairedColumns
 from stiffmbs.solve.linear.elimination_order import EliminationOrder
@@ -73,4 +74,4 @@ def test_most_columns_of_blocks_are_paired():
     n = len(pattern)
     solver.solved(np.where(pattern > 0, 0.1, 0.0) + np.eye(n), np.ones(n))
     entries = solver.factors["l_start"][n] + solver.factors["u_start"][n] - 2 * n
-    assert solver.arrays["found"][2] < 0.6 * entries
+    assert cells(solver.memory.content, PAIRED_COLUMNS)["n_items"] < 0.6 * entries

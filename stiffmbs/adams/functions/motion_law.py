@@ -12,7 +12,7 @@ from .translate import Translation
 from .trees import number, times, total
 
 ORDERS = ("position", "velocity")
-SAME = 1e-9
+SAME_START = 1e-9
 """How far an initial displacement may be from the drawn one to be the same, m or rad."""
 
 
@@ -87,7 +87,7 @@ class Law:
             The displacement as the parts are drawn, m or rad.
         """
         order = self._motion.order
-        if order == 0 or (order == 1 and (self._start is None or abs(self._start - drawn) <= SAME)):
+        if order == 0 or (order == 1 and (self._start is None or abs(self._start - drawn) <= SAME_START)):
             return {ORDERS[order]: self._formula()}
         start = drawn if self._start is None else self._start
         terms = [number(start)] if start else []

@@ -26,7 +26,7 @@ ELEMENTS = {
 """The statements that functions of forces stand for."""
 EULER_PARAMETERS = 27
 """The first argument of ORIENT that asks for a quaternion, scalar first."""
-ROUNDING = {
+ROUNDING_FUNCTIONS = {
     "MOD": "mod",
     "INT": "trunc",
     "AINT": "trunc",
@@ -52,8 +52,8 @@ class OutputTranslation(Translation):
         if name in FORCES:
             i, j, axes = (*(identifier(arguments, k, function) for k in range(len(arguments))), 0, 0)[:3]
             return over(self.between(name, i, j, axes, function), self._force_unit(name))
-        if name in ROUNDING:
-            return call(ROUNDING[name], *map(translate, arguments))
+        if name in ROUNDING_FUNCTIONS:
+            return call(ROUNDING_FUNCTIONS[name], *map(translate, arguments))
         return super().call(name, arguments, function, translate)
 
     def _measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:

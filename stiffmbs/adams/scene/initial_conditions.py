@@ -18,7 +18,7 @@ from ..statements.dataset import Dataset
 from ..statements.geometry import IDENTITY
 from .mechanism import Mechanism, Place
 
-SAME = 1e-6
+CONSISTENT = 1e-6
 """How far what a joint and its parts state may be apart, in m, rad, and per s."""
 Key = tuple[bool, int]
 Twist = tuple[np.ndarray, np.ndarray]
@@ -155,7 +155,7 @@ def _check_velocities(mechanism: Mechanism, joint: Joint, i: Place, j: Place, kn
 
 
 def _compare(joint: Joint, sort: str, name: str, stated: float, found: float) -> None:
-    if abs(stated - found) > SAME * max(1.0, abs(found)):
+    if abs(stated - found) > CONSISTENT * max(1.0, abs(found)):
         raise joint.fault(
             f"found the {sort.lower()} {name} {stated:.6g} at the start where the parts have {found:.6g} (in SI), "
             "expected the same in their PART statements"

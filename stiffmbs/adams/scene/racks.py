@@ -18,7 +18,7 @@ from .mechanism import Mechanism, Place
 
 ACROSS = 1e-3
 """Of half the pitch diameter: how near a rack's line is to cross the pinion's axis."""
-SAME = 1e-9
+ON_PITCH_LINE = 1e-9
 """Of the pitch diameter: how near to the pitch line a rack's own line is taken for it."""
 SKEWED = 0.1
 """Cosine of the angle between the pinion's axis and the rack from which on marker I is not turned as the pinion is."""
@@ -48,7 +48,9 @@ def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
         touched = line + ((i.drawn.point - line) @ along) * along
         contact = mechanism.moved(seat, f"{seat.name}_teeth_{joint.ident}", touched - seat.drawn.point)
         return meshed(joint, (hinge.ident, guide.ident), contact, mechanism) | {"i": i.reference, "j": j.reference}
-    line_marker = mechanism.moved(j, f"{j.name}_pitch", off * outward) if abs(off) > SAME * abs(joint.diameter) else j
+    line_marker = (
+        mechanism.moved(j, f"{j.name}_pitch", off * outward) if abs(off) > ON_PITCH_LINE * abs(joint.diameter) else j
+    )
     I, J = i.reference, line_marker.reference
     turning = f"(wx({I}, ground, {J}) * dy({J}, {I}, {J}) - wy({I}, ground, {J}) * dx({J}, {I}, {J}))"
     return {

@@ -24,7 +24,7 @@ from .ranges import (  # fmt: skip
     total,
 )
 
-ROUNDING = 1e-15
+ROUNDING_AT_MIDDLE = 1e-15
 """Of a value at the middle of a stretch."""
 Outer = Callable[[int], Range]
 """The range of the k-th Taylor coefficient of a function of one variable, over the range of that."""
@@ -152,7 +152,7 @@ class Enclosure:
         """The same with the values at the middles of the stretches known, and half of their lengths (mean value form)."""
         low, high = self.value
         reach = half * np.abs(self.slope).max(axis=0)
-        rounding = ROUNDING * np.abs(middle)
+        rounding = ROUNDING_AT_MIDDLE * np.abs(middle)
         narrower = np.array([np.fmax(low, middle - reach - rounding), np.fmin(high, middle + reach + rounding)])
         return Enclosure((narrower, *self.coefficients[1:]), self.order)
 

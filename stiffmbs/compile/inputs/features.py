@@ -62,6 +62,8 @@ class InputFeatures:
 
     def within(self, start: float, end: float) -> InputFeatures:
         """Those between two times."""
+        if not len(self.starts) and not len(self.breakpoints):
+            return self
         inside = (self.starts < end) & (self.ends > start)
         breakpoints = self.breakpoints[(self.breakpoints > start) & (self.breakpoints < end)]
         return InputFeatures(breakpoints, self.starts[inside], self.longest[inside], self.note)

@@ -8,11 +8,11 @@ import numpy as np
 
 from .of_time import Input
 
-PART = 3e-3
+OF_CHANGE = 3e-3
 """Error of the cubic, relative to the input's change around the piece."""
 LEAST_PART = 1e-4
 """That change counts at least as so much of the input's change in the whole run."""
-ROUNDING = 1e-10
+ALWAYS_ALLOWED = 1e-10
 """Error of the cubic, relative to the input's values, that is always allowed."""
 SHORTEST = 1e-11
 """Length of a piece, relative to the times themselves, that is cut no further."""
@@ -133,7 +133,9 @@ class InputPieces:
         if not self._rounding:
             largest = np.abs(found.value[np.isfinite(found.value)]).max(initial=0.0)
             self._rounding = max(ROUNDING_OF_PARTS * largest, np.finfo(float).tiny)
-        allowed = np.maximum(PART * np.maximum(pieces.change, LEAST_PART * self.change), ROUNDING * self.size)
+        allowed = np.maximum(
+            OF_CHANGE * np.maximum(pieces.change, LEAST_PART * self.change), ALWAYS_ALLOWED * self.size
+        )
         allowed = np.maximum(allowed, self._rounding)
         lengths = np.where(_width(found[0]) <= 2 * allowed, np.inf, 0.0)
         for k in (1, 2, 3):

@@ -10,7 +10,7 @@ from ...describe.table import Table
 from ..table_values import curve, parts_of
 from .enclosure import Enclosure
 from .ranges import EVERYWHERE, Range, between_turns, hull
-from .zeros import MOST, TooMany
+from .zeros import MOST_STRETCHES, TooMany
 
 
 class TableRanges:
@@ -48,9 +48,9 @@ class TableRanges:
         if not self.period:
             return self.breakpoints[(self.breakpoints >= low) & (self.breakpoints <= high)]
         first, last = np.floor((low - self._x[0]) / self.period), np.ceil((high - self._x[0]) / self.period)
-        if not (last - first) * len(self.breakpoints) <= MOST:
+        if not (last - first) * len(self.breakpoints) <= MOST_STRETCHES:
             raise TooMany(
-                f"a periodic table has more than {MOST:.0e} breakpoints between {low:g} and {high:g}, expected fewer"
+                f"a periodic table has more than {MOST_STRETCHES:.0e} breakpoints between {low:g} and {high:g}, expected fewer"
             )
         turns = np.arange(first, last + 1)
         found = np.unique((self.breakpoints + turns[:, None] * self.period).ravel())

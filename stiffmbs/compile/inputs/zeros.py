@@ -12,11 +12,11 @@ AT_ONCE = 64
 """Stretches that the search begins with."""
 SHORTEST = 1e-12
 """Length of a stretch, relative to the times themselves, in which no more than one passage is looked for."""
-MOST = 1_000_000
+MOST_STRETCHES = 1_000_000
 """Stretches at which the search is given up."""
 MANY = 256
 """Stretches from which on those are dropped in which the formula stands at a level but for rounding."""
-ROUNDING, LAST_DIGIT = 1e-14, 3e-16
+SAMPLE_ROUNDING, RANGE_ROUNDING = 1e-14, 3e-16
 """Of a formula where samples tell it, and where its ranges do, relative to its values."""
 
 Values = Callable[[np.ndarray], np.ndarray]
@@ -78,8 +78,10 @@ def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels:
         if np.count_nonzero(open_ones) > MANY:
             open_ones[open_ones] = ~_stands(values, low[open_ones], high[open_ones], levels, size)
         low, middle, high = low[open_ones], middle[open_ones], high[open_ones]
-        if len(low) > MOST:
-            raise TooMany(f"found more than {MOST:.0e} breakpoints between {start:g} and {end:g} s, expected fewer")
+        if len(low) > MOST_STRETCHES:
+            raise TooMany(
+                f"found more than {MOST_STRETCHES:.0e} breakpoints between {start:g} and {end:g} s, expected fewer"
+            )
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
 
 
@@ -104,8 +106,8 @@ def _around(
 
 def _stays(value: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
     """Stretches in which the formula is nowhere away from one level, but for rounding."""
-    k = np.clip(np.searchsorted(levels, value[0] - LAST_DIGIT * size), 0, len(levels) - 1)
-    return (np.abs(value - levels[k]) <= LAST_DIGIT * size).all(axis=0)
+    k = np.clip(np.searchsorted(levels, value[0] - RANGE_ROUNDING * size), 0, len(levels) - 1)
+    return (np.abs(value - levels[k]) <= RANGE_ROUNDING * size).all(axis=0)
 
 
 def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
@@ -115,7 +117,7 @@ def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarra
         at = values(low + part * (high - low))
         k = np.clip(np.searchsorted(levels, at), 1, len(levels) - 1) if len(levels) > 1 else 0
         miss = np.minimum(np.abs(at - levels[k]), np.abs(at - levels[np.maximum(k - 1, 0)]))
-        standing &= miss <= ROUNDING * size
+        standing &= miss <= SAMPLE_ROUNDING * size
     return standing
 
 

@@ -1,7 +1,8 @@
-"""How arrays reach compiled code: a table of addresses with one named column for each array.
+"""What Python and compiled code share: a table with one named column for each array, number or cell.
 
 A layout lists names and types once; `packed` makes the table on the Python side, and native code reads it through
-a view with the same names (`stiffmbs.compile.machine.native.access`).
+a view with the same names (`stiffmbs.compile.machine.native.access`).  A column holds the address of an array, a number
+that stays, or a cell: a number that both sides read and set, here through `cells`.
 """
 
 from __future__ import annotations
@@ -14,9 +15,12 @@ import numpy as np
 Layout = Mapping[str, str]
 
 INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
+FLOAT_CELL, INT_CELL = "float cell", "int cell"
+CELLS = {FLOAT_CELL: "float", INT_CELL: "int"}
+"""Kinds of cells in compiled code."""
 DTYPES = {INTS: np.int64, INDICES: np.int32, FLOATS: np.float64}
 """Of the arrays; indices are short where long lists of them are read anew with each evaluation."""
-OWN_INTS, OWN_INDICES, OWN_FLOATS = "own ints", "own indices", "own floats"
+OWN = OWN_INTS, OWN_INDICES, OWN_FLOATS = "own ints", "own indices", "own floats"
 POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_INDICES: INDICES, OWN_FLOATS: FLOATS}
 """Kinds of arrays in compiled code.  Compiled code itself asks for the memory of those of its own, as their size is known
 only on the way (`stiffmbs.compile.machine.native.memory`)."""
@@ -45,7 +49,7 @@ EQUATIONS: Layout = {
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
 FACTORS: Layout = {
-    "n": INT, "room": INT, "capacity": INT, "ready": INTS, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS,
+    "n": INT, "room": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS,
     "order": INTS, "l_start": INTS, "l_row": OWN_INTS, "l": OWN_FLOATS, "u_start": INTS, "u_row": OWN_INTS, "u": OWN_FLOATS,
     "pivot": INTS, "work": FLOATS, "b": FLOATS, "previous": FLOATS, "stack": INTS, "x": FLOATS,
 }  # fmt: skip
@@ -53,23 +57,26 @@ FACTORS: Layout = {
 entries that each factor is expected to have at the most, `capacity` the number for which there is memory."""
 
 FIXED_ORDER: Layout = {
-    "n": INT, "pivots": INT, "last_flag": INT, "array_of": INT, "factors": INTS, "found": INTS, "slot": INDICES, "weight": FLOATS,
+    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
+    "ready": INT_CELL, "n_lower": INT_CELL, "n_upper": INT_CELL,
     "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES, "mark": INTS, "x": FLOATS,
 }  # fmt: skip
 """A linear solver of IDA's along fixed pivots (`stiffmbs.solve.native.fixed_order`); it begins as the content of the
-solver of SUNDIALS whose place it takes: number of unknowns, pivots, last flag.  Its long lists are of 32-bit numbers: a long
+solver of SUNDIALS whose place it takes: number of unknowns, pivots, last flag.  `ready` says whether pivots are known;
+`n_lower` and `n_upper` count the entries beside the diagonal.  Its long lists are of 32-bit numbers: a long
 chain's solutions wait for memory."""
 
 PAIRED_COLUMNS: Layout = {
-    "n": INT, "pivots": INT, "last_flag": INT, "array_of": INT, "factors": INTS, "found": INTS, "slot": INDICES, "weight": FLOATS,
+    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
+    "ready": INT_CELL, "n_lower": INT_CELL, "n_items": INT_CELL,
     "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "place": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES,
     "item_start": INTS, "item_end": INTS, "side": INTS, "mark": INTS, "x": FLOATS,
 }  # fmt: skip
-"""The same with its columns in pairs (`stiffmbs.solve.native.paired_columns`)."""
+"""The same with its columns in pairs, `n_items` in all (`stiffmbs.solve.native.paired_columns`)."""
 
 DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
-    "accelerations": INTS, "acceleration_factors": INTS, "status": INTS,
+    "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
     "n_behind": INT, "behind_source": INTS, "behind_row": INTS,
 }  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
@@ -77,20 +84,21 @@ DYNAMICS: Layout = {
 
 
 IDA: Layout = {
-    "state": INTS, "equations": INTS, "history": FLOATS, "array_header": INT,
-    "n_event_functions": INT, "sides": FLOATS, "waits": INTS,
+    "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "sides": FLOATS, "waits": INTS,
+    "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
 }  # fmt: skip
-"""What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array."""
+"""What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array.  They
+note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
 
 
 ELIMINATED: Layout = {
-    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "ready": INTS,
+    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "ready": INT_CELL,
     "f_source": INDICES, "f_row": INDICES, "gamma_source": INDICES, "gamma_row": INDICES,
     "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "at_lam": INTS,
     "product_end": INDICES, "product_first": INDICES, "product_second": INDICES,
     "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
     "scale": FLOATS, "j_scale": FLOATS, "j": FLOATS,
-    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS, "kept": FLOATS, "most_kept": FLOATS,
+    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
 }  # fmt: skip
 """J M^-1 J^T and its factors by flat lists (`stiffmbs.solve.linear.eliminated`)."""
 
@@ -98,22 +106,22 @@ ELIMINATED: Layout = {
 SCHEME: Layout = {
     "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
     "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
-    "exponent": FLOATS, "memory": FLOATS, "stability": FLOATS,
+    "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 }  # fmt: skip
 """The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
 
-STEP_BOUND: Layout = {"n": INT, "place": INTS, "starts": FLOATS, "longest": FLOATS}
+STEP_BOUND: Layout = {"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS}
 """The longest steps that see what the inputs do (`stiffmbs.solve.events.step_bound`); n is 0 where nothing bounds a step."""
 
 EXPLICIT: Layout = {
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
-    "tolerance": FLOATS, "rtol": FLOATS, "atol": FLOATS, "longest": FLOATS, "shortest": FLOATS, "step_bound": INTS,
-    "t": FLOATS, "t_before": FLOATS, "span": FLOATS, "h": FLOATS, "last_error": FLOATS,
-    "n_event_functions": INT, "n_events": INT, "sides": FLOATS, "at_event": INTS, "uncertain": INTS, "watch": INTS,
+    "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
+    "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
+    "n_event_functions": INT, "n_events": INT, "sides": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
-    "dense_ready": INTS, "steps": INTS, "rejected": INTS, "accelerations": INTS, "stiff_steps": INTS,
-    "n_times": INT, "times": FLOATS, "next_time": INTS,
-    "room": INT, "rows": INTS, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
+    "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL,
+    "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
+    "room": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 }  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
 event functions' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends
@@ -125,50 +133,92 @@ NATIVE_IDA: Layout = {
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
-    "mark": FLOATS, "count": INTS, "history": FLOATS, "samples": FLOATS, "balance_mark": FLOATS, "balance": INTS,
-    "iteration": INTS, "watch": INTS, "probe": FLOATS,
+    "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
+    "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
+    "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
+    "output_correction": INTS, "iteration": INTS, "watch": INTS, "probe": FLOATS,
 }  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
-of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported."""
+of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
 
-BALANCE: Layout = {
-    "mark": FLOATS, "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
+Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
+last step, size of the one that it will try next; output points served, tiny steps in succession, whether the last event
+was found by the search within the step; steps in the history, steps since the last sample, place of the next one."""
+MOST_STEPS, HISTORY_WIDTH = 2048, 3
+"""Steps of any one call, and rows of the history: time of the end, order, size."""
+SAMPLES = 16
+"""Rows of the samples: the time and what is reported."""
+
+OUTPUT_CORRECTION: Layout = {
+    "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
+    "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
+    "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
     "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS,
 }  # fmt: skip
-"""Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors."""
+"""Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors.
+
+Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
+beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
+grows by in a second from there (below 0: not known), and states corrected since that was measured."""
 
 ITERATION: Layout = {
-    "n": INT, "mark": FLOATS, "count": INTS, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
+    "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
+    "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
+    "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL,
 }  # fmt: skip
-"""What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`)."""
+"""What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`).
+
+Cells: cj, that of the matrix, size of the first correction, the part of the rate by the change of cj, what the rest grows by
+in a time (below 0: not known), and the time since the matrix was made, by the sum of 1/cj, which a step is but for a factor
+of 1 to 2.3; corrections before this one, steps since the matrix was made, steps since a rate was measured, whether the
+matrix is to be made anew."""
 
 ERROR_NORM: Layout = {
-    "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT, "mark": FLOATS, "count": INTS, "iteration": FLOATS, "state": INTS, "equations": INTS, "solve": INT,
-    "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
+    "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
+    "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
+    "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL,
+    "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
 }  # fmt: skip
-"""What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`)."""
+"""What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`).
+
+Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
+failures were last looked for; steps and failures of the error test, the same when they were last looked at; the step up to
+which estimates are filtered; the order of the last step."""
 
 
 EVENT_SEARCH: Layout = {
     "n": INT, "n_event_functions": INT, "waits": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
-    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "mark": FLOATS,
+    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
+    "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 }  # fmt: skip
 """What the search for events within a step works on (`stiffmbs.solve.native.within_step`): the event functions with their
-edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes."""
+edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes.
+
+Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond
+zero."""
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
-    """The table for a layout: addresses of arrays, and numbers as they are.
+    """The table for a layout: addresses of arrays, numbers as they are, and cells, zero where no value is given.
 
     The arrays must be contiguous, of the layout's type, and live as long as the table is used.  Arrays of compiled
     code's own are empty at first (`stiffmbs.compile.machine.own_memory`).
     """
     table = np.zeros(len(layout), dtype=np.int64)
+    fill(table, layout, values)
+    return table
+
+
+def fill(table: np.ndarray, layout: Layout, values: Mapping[str, Any]) -> None:
+    """Fill a table; cells for which no value is given keep theirs."""
+    own = cells(table, layout)
     for column, (name, kind) in enumerate(layout.items()):
+        if kind in CELLS and name in values:
+            own[name] = values[name]
         if kind not in (INT, *DTYPES):
             continue
         value = values[name]
@@ -178,4 +228,12 @@ def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
             assert isinstance(value, np.ndarray) and value.flags.c_contiguous, name
             assert value.dtype == DTYPES[kind], name
             table[column] = value.__array_interface__["data"][0]
-    return table
+
+
+def cells(table: np.ndarray, layout: Layout) -> Any:
+    """The cells of a table by name: ``cells(table, layout)["steps"]`` is read and set where it stands in the table."""
+    columns = {name: column for column, name in enumerate(layout) if layout[name] in CELLS}
+    formats = ["f8" if layout[name] == FLOAT_CELL else "i8" for name in columns]
+    offsets = [8 * column for column in columns.values()]
+    structure = {"names": list(columns), "formats": formats, "offsets": offsets, "itemsize": 8 * len(layout)}
+    return table.view(np.dtype(structure))[0]  # type: ignore[call-overload]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .layout import DTYPES, INT, Layout, packed
+from .layout import OWN, Layout, packed
 
 RELEASE = ctypes.pythonapi.PyMem_RawFree
 """Frees what `stiffmbs.compile.machine.native.memory` has asked for."""
@@ -21,7 +21,7 @@ def packed_with_memory(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     Whoever uses the address of the table must keep the array that is returned.
     """
     words = packed(layout, values)
-    own = [column for column, kind in enumerate(layout.values()) if kind not in (INT, *DTYPES)]
+    own = [column for column, kind in enumerate(layout.values()) if kind in OWN]
     table = words.view()
     weakref.finalize(table, _free, words, own).atexit = False
     return table

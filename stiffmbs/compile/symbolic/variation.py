@@ -14,9 +14,9 @@ import sympy as sp
 
 from .symbols import Symbols
 
-MOST = 100
+MOST_SUMMANDS = 100
 """Summands to which a derivative is taken apart; a longer one stays whole."""
-LARGEST = 8
+ORDER_ONE = 8
 """Magnitude of a function of the pose, up to which it counts as of order one."""
 
 Factors = tuple[tuple[int, ...], ...]
@@ -79,7 +79,7 @@ class Variation:
     def _sum(self, x: sp.Expr) -> _Sum:
         if x not in self._known:
             found = self._apart(x)
-            self._known[x] = found if len(found) <= MOST else self._whole(x)
+            self._known[x] = found if len(found) <= MOST_SUMMANDS else self._whole(x)
         return self._known[x]
 
     def _apart(self, x: sp.Expr) -> _Sum:
@@ -100,14 +100,14 @@ class Variation:
         return {} if x == 0 else self._whole(x)
 
     def _whole(self, x: sp.Expr) -> _Sum:
-        bounded = x in self._bounded or isinstance(x, sp.sin | sp.cos) or (x.is_number and abs(x) <= LARGEST)
+        bounded = x in self._bounded or isinstance(x, sp.sin | sp.cos) or (x.is_number and abs(x) <= ORDER_ONE)
         return {(): (frozenset(self._e.columns_of(x)), bool(bounded))}
 
     def _multiplied(self, x: sp.Expr, parts: Iterable[sp.Expr]) -> _Sum:
         product: _Sum = {(): (frozenset(), True)}
         for part in parts:
             by = self._sum(part)
-            if len(product) * len(by) > MOST:
+            if len(product) * len(by) > MOST_SUMMANDS:
                 return self._whole(x)
             product = _added(
                 {tuple(sorted((*f, *g))): (columns | others, bounded and also)}

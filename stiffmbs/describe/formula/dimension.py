@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from ..units.units import DIMENSIONS, NUMBER, Dimension, Quantity, named_unit
 from .text import FormulaError, as_written
 
-SAME = 1e-9
+SAME_EXPONENT = 1e-9
 """What exponents may differ by: 1/3 + 2/3 is 1."""
 
 
@@ -59,7 +59,7 @@ Part = tuple[Known, ast.expr]
 
 def same(a: Dimension, b: Dimension) -> bool:
     """Whether two dimensions are one."""
-    return all(abs(x - y) <= SAME for x, y in zip(a, b, strict=True))
+    return all(abs(x - y) <= SAME_EXPONENT for x, y in zip(a, b, strict=True))
 
 
 def measured_in(dimension: str) -> Known:

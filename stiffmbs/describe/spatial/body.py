@@ -20,7 +20,7 @@ from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matr
 
 Row = tuple[si.Inertia, si.Inertia, si.Inertia]
 Inertia = Annotated[tuple[Row, Row, Row], WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})]
-ROUNDING = 1e-9
+MOMENT_ROUNDING = 1e-9
 """Part of the largest moment by which written moments may miss symmetry and the triangle inequality."""
 
 
@@ -101,7 +101,7 @@ class Body(Described):
         largest = max(abs(part) for row in inertia for part in row)
         for row, column in itertools.combinations(range(3), 2):
             one, other = inertia[row][column], inertia[column][row]
-            if abs(one - other) > ROUNDING * largest:
+            if abs(one - other) > MOMENT_ROUNDING * largest:
                 raise ValueError(
                     f"found {one:g} in row {row + 1}, column {column + 1} and {other:g} across the diagonal, "
                     "expected a symmetric tensor"
@@ -109,7 +109,7 @@ class Body(Described):
         small, middle, large = np.linalg.eigvalsh(np.array(inertia))
         if small <= 0:
             raise ValueError(f"found a principal moment of {small:g} kg m^2, expected all three greater than zero")
-        if small + middle < large * (1 - ROUNDING):
+        if small + middle < large * (1 - MOMENT_ROUNDING):
             raise ValueError(
                 f"found the principal moments {small:g}, {middle:g} and {large:g} kg m^2, expected none greater than "
                 "the sum of the other two"

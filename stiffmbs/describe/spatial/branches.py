@@ -17,7 +17,8 @@ from .marker import Marker
 FARTHEST = 60.0
 """deg; of frames this is also halfway to the next orientation (a third of a turn, x to y to z) that fulfils the same
 equations."""
-ROUNDING = 1e-6
+ANGLE_ROUNDING = 1e-6
+"""deg, that rounding takes of an angle between written axes."""
 HALF_TURNS = tuple(np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)))
 """None, and those about x, y and z."""
 
@@ -25,7 +26,7 @@ HALF_TURNS = tuple(np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, 
 def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps the axes z of two markers parallel or opposite cannot be assembled from the drawn poses."""
     angle = _between_axes(model, i, j)
-    if min(angle, 180 - angle) >= FARTHEST - ROUNDING:
+    if min(angle, 180 - angle) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found the z axes of its markers drawn {angle:.4g} degrees apart, expected less than {FARTHEST:g} or more "
             f"than {180 - FARTHEST:g} (the joint holds them parallel, in one sense or the other)"
@@ -35,7 +36,7 @@ def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 def initially_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a force about the axis z that two markers have in common has none where these are drawn."""
     angle = _between_axes(model, i, j)
-    if min(angle, 180 - angle) >= FARTHEST - ROUNDING:
+    if min(angle, 180 - angle) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found the z axes of its markers drawn {angle:.4g} degrees apart, expected one common axis to turn about "
             "(a joint has to keep them parallel)"
@@ -45,7 +46,7 @@ def initially_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[s
 def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps the axes z of two markers at right angles cannot be assembled from the drawn poses."""
     angle = _between_axes(model, i, j)
-    if abs(angle - 90) >= FARTHEST - ROUNDING:
+    if abs(angle - 90) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found the z axes of its markers drawn {angle:.4g} degrees apart, expected between {90 - FARTHEST:g} and "
             f"{90 + FARTHEST:g} (the joint holds them at right angles)"
@@ -55,7 +56,7 @@ def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 def initially_rotated(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps all axes of two markers parallel cannot be assembled from the drawn poses."""
     angle = _angle(_between_frames(model, i, j))
-    if angle >= FARTHEST - ROUNDING:
+    if angle >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found the axes of its markers drawn {angle:.4g} degrees apart, expected less than {FARTHEST:g} "
             "(the joint holds each parallel to its namesake)"
@@ -74,7 +75,7 @@ def initially_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) ->
         else (turned[1, 0] - turned[0, 1], turned[0, 0] + turned[1, 1])
     )
     twist = abs(math.degrees(math.atan2(across, along)))
-    if min(twist, 180 - twist) >= FARTHEST - ROUNDING:
+    if min(twist, 180 - twist) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found its shafts drawn {twist:.4g} degrees twisted against each other, expected less than {FARTHEST:g} or "
             f"more than {180 - FARTHEST:g} (the joint holds their x axes parallel where the shafts are in line)"
@@ -84,7 +85,7 @@ def initially_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) ->
 def initially_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Why a joint that keeps each axis of a marker parallel or opposite to its namesake cannot be assembled."""
     turned = _between_frames(model, i, j)
-    if min(_angle(turned @ half) for half in HALF_TURNS) >= FARTHEST - ROUNDING:
+    if min(_angle(turned @ half) for half in HALF_TURNS) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found the axes of its markers drawn {_angle(turned):.4g} degrees apart, expected less than {FARTHEST:g}, "
             "from no turn or from half a turn about one of the axes (the joint holds each along its namesake)"

@@ -64,7 +64,8 @@ def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:
     """That of the state at hand."""
     state, mass = dynamics.state, dynamics.system.mass
     state.evaluate("tangent", t)
-    return Stiffness(*(_largest_row_sum(dynamics, term, mass) for term in ("f_q", "f_u")))
+    with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
+        return Stiffness(*(_largest_row_sum(dynamics, term, mass) for term in ("f_q", "f_u")))
 
 
 def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
@@ -76,5 +77,4 @@ def _largest_row_sum(dynamics: Dynamics, name: str, mass: np.ndarray) -> float:
     """The largest sum of magnitudes in a row of M^-1 times a term of the tangent set."""
     term = dynamics.system.term("tangent", name)
     sums = np.bincount(term.row, np.abs(dynamics.state.values["tangent"][term.source]), minlength=len(mass))
-    with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
-        return float((sums / mass).max()) if len(mass) else 0.0
+    return float((sums / mass).max()) if len(mass) else 0.0

@@ -30,13 +30,13 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
         return
     state.evaluate("motion", t)
     factor = min(max(settings.rtol / 1e-8, TIGHTEST), LOOSEST)
-    scales = []
-    for name, weight in (("C_q", np.ones(system.n_q)), ("J", 1 / _heaviest(system))):
-        term = system.term("motion", name)
-        values = state.values["motion"][term.source]
-        scales.append(np.bincount(term.row, values**2 * weight[term.column], minlength=system.n_c))
+    lightness = dynamics.kept("relaxation", None, lambda: 1 / _heaviest(system))
+    positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
+    C_q, J = (state.values["motion"][term.source] for term in (positions, velocities))
+    of_positions = np.bincount(positions.row, C_q * C_q, minlength=system.n_c)
+    of_velocities = np.bincount(velocities.row, J * J * lightness[velocities.column], minlength=system.n_c)
     along = min(1.0, (SHORT / len(system.bodies)) ** 2)
-    state.relax(POSITION_CREEP * factor * scales[0], VELOCITY_CREEP * factor * along * scales[1])
+    state.relax(POSITION_CREEP * factor * of_positions, VELOCITY_CREEP * factor * along * of_velocities)
 
 
 def _heaviest(system: System) -> np.ndarray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.law_zones import edges_of
-from ...compile.machine.layout import EVENT_SEARCH, packed
+from ...compile.machine.layout import EVENT_SEARCH, cells, fill
 from ...compile.state import State
 
 NODES = 8
@@ -37,12 +37,11 @@ class EventSearch:
             system.n_event_functions,
             system.n_q + system.n_u,
         )
-        self.found, self._mark = np.zeros(n, dtype=np.int64), np.zeros(3)
+        self.found = np.zeros(n, dtype=np.int64)
+        self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
+        self._cells = cells(self.table, EVENT_SEARCH)
         if not n:
-            self.table = np.zeros(
-                len(EVENT_SEARCH), dtype=np.int64
-            )  # nothing to search for: none of its arrays is read
-            return
+            return  # nothing to search for: none of its arrays is read
         first_edge, edges, period = edges_of(system)
         place = np.arange(NODES) * np.pi / (NODES - 1)
         weight = (-1.0) ** np.arange(NODES)
@@ -53,11 +52,11 @@ class EventSearch:
             "n": n, "n_event_functions": n_event_functions, "waits": np.zeros(n_event_functions, dtype=np.int64) if waits is None else waits,
             "first_edge": first_edge, "edges": edges, "period": period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
-            "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles, "mark": self._mark,
+            "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
-        self.table = packed(EVENT_SEARCH, self._arrays)
+        fill(self.table, EVENT_SEARCH, self._arrays)
 
     def begin(self) -> None:
         """Forget the last step: the integrator starts anew."""
-        self._mark[:] = 0.0
+        self._cells["ready"] = 0
         self.found[:] = 0

@@ -16,7 +16,7 @@ from .discontinuity import jumping
 
 FEW_STEPS, TIMES_THE_WAIT = 4, 4
 """An event within so many steps of a start, and of the wait before, counts as one by rounding."""
-FIRST_WAIT, LONGER, MOST = 8, 4, 4
+FIRST_WAIT, LONGER, MOST_IN_SUCCESSION = 8, 4, 4
 """Steps for which an event function is left alone after its first event of that kind, times how many after each further one, up to
 so many: a start's first steps double from one to the next."""
 TELLING = 3
@@ -63,7 +63,7 @@ class MaskedEvents:
         again = np.array(
             [event_function for event_function in fired if not left_behind[event_function]], dtype=np.int64
         )
-        self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MOST)
+        self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MOST_IN_SUCCESSION)
         telling = again[self._in_succession[again] >= TELLING]
         if len(telling):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import STEP_BOUND, packed
+from ...compile.machine.layout import STEP_BOUND, fill
 
 
 class StepBound:
@@ -26,7 +26,6 @@ class StepBound:
             self.table[:] = 0
             return
         self._kept = {
-            "n": len(features.starts), "place": np.zeros(1, dtype=np.int64),
-            "starts": np.ascontiguousarray(features.starts), "longest": np.ascontiguousarray(features.longest),
+            "n": len(features.starts), "starts": np.ascontiguousarray(features.starts), "longest": np.ascontiguousarray(features.longest),
         }  # fmt: skip
-        self.table[:] = packed(STEP_BOUND, self._kept)
+        fill(self.table, STEP_BOUND, {**self._kept, "place": 0})

@@ -11,13 +11,13 @@ import numpy as np
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
-from ..error_control.tolerances import absolute_tolerances
 from ..events.chattering import Chattering
 from ..events.divergence import refuse_beyond_sense
 from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
+from ..native.statuses import AT_END, AT_EVENT, PAUSED
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
@@ -25,8 +25,6 @@ from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
 
 ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)")
-PAUSED, AT_END, AT_EVENT = 0, 1, 2
-"""Statuses of a call: to be called again, done, and stopped where a force changes its law."""
 WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
 MOST_LOOKS_APART = 16
@@ -72,7 +70,7 @@ class AdaptiveRun:
         features = dynamics.input_features(grid.start, grid.end)
         self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
         work.step_bound.follow(features)
-        self._tolerances = settings.rtol, absolute_tolerances(dynamics.system, settings)
+        self._tolerances = settings.rtol, work.atol
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present leg

@@ -29,7 +29,7 @@ EULER_CROMER = Routine(
 FIXED_STEPS = Routine("stiffmbs.solve.native.runge_kutta", "fixed_steps", "int64(float64, float64, int64, int64*)")
 LOOKS, FARTHEST = 50, 0.1
 """How often a run looks whether a force jumps back and forth, and the largest change of a velocity in a step that is taken for that."""
-ROUNDING = 1e-9
+STEP_ROUNDING = 1e-9
 """Part of a step by which an output time may miss a whole number of steps."""
 CUT = 1e-6
 """Part of a step from which on it is told that steps are shorter."""
@@ -93,7 +93,7 @@ def solve_with_fixed_steps(
     apart = max(1, len(times) // LOOKS)
     with Ending() as ending:
         for row, (t, end) in enumerate(itertools.pairwise(times), 1):
-            count = max(1, math.ceil((end - t) / settings.step - ROUNDING))
+            count = max(1, math.ceil((end - t) / settings.step - STEP_ROUNDING))
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
@@ -132,5 +132,5 @@ def _cut(longest: float, settings: RunSettings) -> str:
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:
-    count = max(1, math.ceil((grid.end - grid.start) / step - ROUNDING))
+    count = max(1, math.ceil((grid.end - grid.start) / step - STEP_ROUNDING))
     return grid.start + (grid.end - grid.start) * np.arange(count + 1) / count

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import EXPLICIT, packed
+from ...compile.machine.layout import EXPLICIT, cells, packed
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
@@ -20,8 +20,6 @@ SHORTEST_PART = 1e-12
 """Shorter steps than this part of the run would never come to its end."""
 MOST_STEPS, MOST_VALUES = 1024, 300_000
 """Of one call of compiled code: steps, and numbers in the rows that it stores, so that it returns soon."""
-SMALLEST_ERROR = 1e-4
-"""What the step control remembers before its first step (as in DOPRI5)."""
 
 
 class Integration:
@@ -34,6 +32,8 @@ class Integration:
     step_times : list of ndarray
         Ends of the steps of each call.
     step_bound : StepBound
+    atol : ndarray, shape (n_q + n_u,)
+        Absolute tolerances.
     """
 
     def __init__(
@@ -48,32 +48,29 @@ class Integration:
         self._scheme, self._eliminated = scheme, dynamics.eliminated
         self._end = scheme.stages
         self.step_bound = StepBound()
-        atol = absolute_tolerances(dynamics.system, settings)
+        self.atol = atol = absolute_tolerances(dynamics.system, settings)
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         n_event_functions = dynamics.system.n_event_functions
         self._watch = EventSearch(dynamics.state)
-        marks = ("at_event", "uncertain", "dense_ready")
-        counters = ("steps", "rejected", "accelerations", "stiff_steps", "next_time", "rows")
         self._arrays: dict[str, Any] = {
             "dynamics": dynamics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
             "pivots_tell": self._eliminated.pivots_tell,
             "scheme": scheme.table, "n": n, "n_q": self._n_q,
-            "project": settings.projection, "tolerance": np.array([POSITION_TOLERANCE]),
-            "rtol": np.array([settings.rtol]), "atol": atol,
-            "longest": np.array([settings.max_step or np.inf]), "step_bound": self.step_bound.table,
-            "shortest": np.array([SHORTEST_PART * (grid.end - grid.start)]),
-            "t": np.array([grid.start]), "t_before": np.array([grid.start]), "span": np.zeros(1),
+            "project": settings.projection, "tolerance": POSITION_TOLERANCE,
+            "rtol": settings.rtol, "atol": atol,
+            "longest": settings.max_step or np.inf, "step_bound": self.step_bound.table,
+            "shortest": SHORTEST_PART * (grid.end - grid.start),
+            "t": grid.start, "t_before": grid.start, "h": settings.step,
             "n_event_functions": n_event_functions, "n_events": dynamics.system.n_values("event_function"), "sides": np.zeros(n_event_functions),
             "watch": self._watch.table,
-            "h": np.array([settings.step]), "last_error": np.array([SMALLEST_ERROR]),
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
-            **{name: np.zeros(1, dtype=np.int64) for name in (*marks, *counters)},
             "n_times": len(times), "times": times,
             "room": self.room, "row_t": np.empty(self.room), "row_y": np.empty((self.room, n)),
             "ends": np.empty(self.room),
         }  # fmt: skip
         self._table = packed(EXPLICIT, self._arrays)
+        self._cells = cells(self._table, EXPLICIT)
         self.begin(start)
 
     @property
@@ -84,20 +81,20 @@ class Integration:
     @property
     def t(self) -> float:
         """The time reached."""
-        return float(self._arrays["t"][0])
+        return float(self._cells["t"])
 
     @t.setter
     def t(self, value: float) -> None:
-        self._arrays["t"][0] = value
+        self._cells["t"] = value
 
     @property
     def h(self) -> float:
         """The length of the next step, s."""
-        return float(self._arrays["h"][0])
+        return float(self._cells["h"])
 
     @h.setter
     def h(self, value: float) -> None:
-        self._arrays["h"][0] = value
+        self._cells["h"] = value
 
     @property
     def q(self) -> np.ndarray:
@@ -114,8 +111,7 @@ class Integration:
         self.q[:], self.u[:] = start.q, start.u
         rates = self._dynamics.position_rates(start.q, start.u)
         self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
-        self._arrays["last_error"][0] = SMALLEST_ERROR
-        self._arrays["at_event"][0] = 0
+        self._cells["last_error"], self._cells["at_event"] = 0.0, 0
         state, sides = self._dynamics.state, self._arrays["sides"]
         state.q[:], state.u[:] = start.q, start.u
         state.evaluate("event_function", self.t)
@@ -126,13 +122,13 @@ class Integration:
 
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
-        return int(self._arrays[name][0])
+        return int(self._cells[name])
 
     def collect(self, rows: Rows) -> None:
         """Take over the rows and ends of steps that the last call stored, and make room for the next."""
         count, before = self.count("rows"), self._collected
         y = self._arrays["row_y"][:count]
         rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :])
-        self._arrays["rows"][0] = 0
+        self._cells["rows"] = 0
         self._collected = self.count("steps")
         self.step_times.append(self._arrays["ends"][np.arange(before, self._collected) % self.room])

@@ -77,8 +77,7 @@ class Scheme:
             "n_dense": len(self.dense), "error_needs_end": self.error_needs_end,
             "c": np.array(self.c, dtype=float), "a": self.matrix(self.a),
             "errors": self.matrix(self.errors), "dense": self.matrix(self.dense),
-            "exponent": np.array([self.exponent]), "memory": np.array([self.memory]),
-            "stability": np.array([self.stability]),
+            "exponent": self.exponent, "memory": self.memory, "stability": self.stability,
         }  # fmt: skip
 
     @cached_property

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from ..failures import FAILURES
-from ..native.statuses import NOT_FINITE
+from ..native.statuses import NOT_FINITE, STEP_TOO_SMALL, STIFF
 from .integration import Integration
-
-STEP_TOO_SMALL, STIFF = -4, -5
-"""Statuses of `stiffmbs.solve.native.runge_kutta` besides those of the mechanics."""
 
 _USE_BDF = "the scene is stiff, and solver bdf would be the choice"
 REASONS = {

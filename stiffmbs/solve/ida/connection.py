@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.machine.layout import NATIVE_IDA, packed
+from ...compile.machine.layout import MOST_STEPS, NATIVE_IDA, SAMPLES, cells, packed
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ..events.event_functions import EventSearch
@@ -15,7 +15,7 @@ from ..events.step_bound import StepBound
 from .error_norm import ErrorNorm
 from .iteration import Iteration
 from .matrices import Matrix
-from .output_correction import ENOUGH, LONG, Balance
+from .output_correction import OutputCorrection
 from .session import Session
 from .status import failure_sentence
 from .step_log import StepLog
@@ -26,13 +26,6 @@ JACOBIAN = Routine(
     MODULE, "jacobian", "int32(float64, float64, int64, int64, int64, int64, int64*, int64, int64, int64)"
 )
 SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
-
-RETURNED, INTERNAL, SIZE, NEXT_SIZE = range(4)
-SERVED, RECORDED, ORDER, TINY, SINCE, NEXT, WITHIN = range(7)
-SAMPLES = 16
-"""Marks and counts, as in `stiffmbs.solve.native.ida_loop`."""
-MOST_STEPS = 2048
-"""Steps of any one call of the loop."""
 
 
 class Connection:
@@ -51,9 +44,9 @@ class Connection:
     ----------
     y, yp, output : ndarrays, shape (n,)
         Memory of the vectors of the solution, its derivative, and of what is interpolated or asked for.
-    mark, count : ndarrays
-        What the loop leaves behind.
-    balance : Balance
+    cells : numpy.void
+        What the loop leaves behind (`stiffmbs.compile.machine.layout.NATIVE_IDA`).
+    output_correction : OutputCorrection
     iteration : Iteration
     error_norm : ErrorNorm
     step_bound : StepBound
@@ -75,11 +68,10 @@ class Connection:
         self._session, self._state, self._equations = session, state, equations
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
         self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
-        self.mark, self.count = np.zeros(4), np.zeros(7, dtype=np.int64)
         self.history = StepLog()
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self.balance, self.iteration, self.step_bound = Balance(n), Iteration(n), StepBound()
+        self.output_correction, self.iteration, self.step_bound = OutputCorrection(n), Iteration(n), StepBound()
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
         self.n_event_functions = equations.system.n_event_functions
@@ -88,10 +80,10 @@ class Connection:
         for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "event_function"):
             state.load(term_set)
         self._table = self._packed()
-        self.table = self._table.ctypes.data
+        self.table, self.cells = self._table.ctypes.data, cells(self._table, NATIVE_IDA)
         self.error_norm = ErrorNorm(n)
         tables = self._state_table, self._equations_table
-        self.error_norm.take_place(session, self.memory, self.y_vector, tables, self._assembled, self.iteration.mark)
+        self.error_norm.take_place(session, self.memory, self.y_vector, tables, self._assembled, self.iteration.table)
         self._initialise()
 
     def _packed(self) -> np.ndarray:
@@ -112,9 +104,8 @@ class Connection:
                 "time_of": address("IDAGetCurrentTime"), "order_of": address("IDAGetLastOrder"),
                 "step_of": address("IDAGetLastStep"), "stop_at": address("IDASetStopTime"),
                 "next_step_of": address("IDAGetCurrentStep"), "step_bound": self.step_bound.table,
-                "mark": self.mark, "count": self.count, "history": self.history.room(MOST_STEPS), "samples": self.samples,
-                "balance_mark": self.balance.mark, "balance": self.balance.table,
-                "iteration": self.iteration.count, "watch": self.watch.table, "probe": self._probe,
+                "history": self.history.room(MOST_STEPS), "samples": self.samples,
+                "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table, "probe": self._probe,
             },
         )  # fmt: skip
 
@@ -148,10 +139,10 @@ class Connection:
     def forget(self) -> None:
         """Drop the history, and the pivots that the linear solver has found."""
         self.history.forget()
-        self.balance.forget()
+        self.output_correction.forget()
         self.error_norm.forget()
-        if self._assembled.found is not None:
-            self._assembled.found[:] = 0
+        if self._assembled.pivots is not None:
+            self._assembled.pivots["ready"] = 0
 
     def set_tolerances(self, rtol: float, atol: np.ndarray) -> None:
         """Tolerances, one absolute one for each unknown."""
@@ -160,11 +151,21 @@ class Connection:
         self._atol = np.array(atol, dtype=float)
         self.ask("IDASVtolerances", rtol, self._session.vector(self._atol))
 
-    def balance_within(self, long_step: float, part: float) -> None:
+    def begin(self, t: float) -> None:
+        """Forget the last step, as the integrator starts at `t`, or starts anew."""
+        for cell, value in (("returned", t), ("internal", t), ("size", 0.0), ("tiny", 0), ("since_sample", 0)):
+            self.cells[cell] = value
+        self.samples[:] = np.nan
+        self.sides[:] = 0.0
+        self.watch.begin()
+        self.iteration.begin()
+        self.history.begin(t)
+
+    def correct_outputs(self, long_step: float, part: float) -> None:
         """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
-        if long_step < np.inf and not self.balance.ready:
-            self.balance.make_ready(self._session, self._matrix, self.memory, self.y_vector)
-        self.balance.mark[[LONG, ENOUGH]] = long_step, part
+        if long_step < np.inf and not self.output_correction.ready:
+            self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector)
+        self.output_correction.limit(long_step, part)
 
     def suppress(self, suppressed: np.ndarray) -> None:
         """Leave unknowns out of the error test."""
@@ -182,5 +183,5 @@ class Connection:
         """Call a compiled loop and keep the history of the call; returns IDA's last flag."""
         with self._session.libraries.on_one_thread():
             flag = loop.load()(*arguments, self.table)
-        self.history.add(int(self.count[RECORDED]))
+        self.history.add(int(self.cells["recorded"]))
         return flag

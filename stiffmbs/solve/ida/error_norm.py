@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import ERROR_NORM, packed
+from ...compile.machine.layout import ERROR_NORM, cells, fill
 from ...compile.machine.routines import Routine
 from .libraries import Unavailable
 from .matrices import Assembled
@@ -12,8 +12,6 @@ from .operations import take_norm
 from .session import Session
 
 NORM = Routine("stiffmbs.solve.native.error_norm", "error_norm", "float64(int64*, int64)")
-TROUBLE, ALWAYS = range(2)
-"""Marks, as in `stiffmbs.solve.native.error_norm`."""
 
 
 class ErrorNorm:
@@ -26,7 +24,8 @@ class ErrorNorm:
     """
 
     def __init__(self, n: int) -> None:
-        self._mark, self._count = np.zeros(3), np.zeros(6, dtype=np.int64)
+        self._table = np.zeros(len(ERROR_NORM), dtype=np.int64)
+        self._cells = cells(self._table, ERROR_NORM)
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
@@ -47,18 +46,19 @@ class ErrorNorm:
         assembled : Assembled
             IDA's iteration matrix and its solver.
         iteration : ndarray
-            Marks of Newton's iteration (`stiffmbs.solve.native.iteration`).
+            The table of Newton's iteration (`stiffmbs.solve.native.iteration`).
         """
         libraries, (state, equations) = session.libraries, tables
         functions = {
             "norm": "N_VWrmsNorm_Serial", "array_of": "N_VGetArrayPointer", "solve": "SUNLinSolSolve",
             "steps_of": "IDAGetNumSteps", "failures_of": "IDAGetNumErrTestFails", "order_of": "IDAGetLastOrder",
         }  # fmt: skip
-        self._table = packed(
+        fill(
+            self._table,
             ERROR_NORM,
             {
                 "memory": memory, **{name: libraries.address(function) for name, function in functions.items()},
-                "mark": self._mark, "count": self._count, "iteration": iteration, "state": state, "equations": equations,
+                "iteration": iteration, "state": state, "equations": equations,
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "at_change": session.vector(self._change), "change": self._change,
                 "at_filtered": session.vector(self._filtered), "filtered": self._filtered,
@@ -71,8 +71,9 @@ class ErrorNorm:
 
     def filter_always(self, asked: bool) -> None:
         """Have all estimates filtered, or those alone that follow many failures."""
-        self._mark[ALWAYS] = float(asked)
+        self._cells["always"] = asked
 
     def forget(self) -> None:
         """Forget failures of an earlier run."""
-        self._mark[:], self._count[:] = 0.0, 0
+        for cell in self._cells.dtype.names:
+            self._cells[cell] = 0

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...compile.machine.layout import FACTORS, FIXED_ORDER, Layout
+from ...compile.machine.layout import FACTORS, FIXED_ORDER, Layout, cells
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.elimination_order import EliminationOrder
@@ -75,7 +75,7 @@ class FixedOrder:
         functions = {"SUNLinSolSetup_Band": self.setup.address(), "SUNLinSolSolve_Band": self.solve.address()}
         take_place(session, solver, self.n, functions, memory.content)
         return Assembled(
-            matrix, solver, memory.factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64), (memory,), memory.arrays["found"]
+            matrix, solver, memory.factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64), (memory,), cells(memory.content, self.layout)
         )  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
@@ -84,7 +84,7 @@ class FixedOrder:
         table = packed_with_memory(FACTORS, factors)
         arrays = {
             "n": self.n, "pivots": 0, "last_flag": 0, "array_of": array_of, "factors": table,
-            "found": np.zeros(3, dtype=np.int64), "slot": np.zeros(len(self.rows), dtype=np.int32),
+            "slot": np.zeros(len(self.rows), dtype=np.int32),
             "weight": np.zeros(len(self.rows)), "update_start": np.zeros(self.n + 1, dtype=np.int64),
             "mark": np.zeros(self.n, dtype=np.int64), "x": np.zeros(self.n + 1), **self._lists(),
         }  # fmt: skip

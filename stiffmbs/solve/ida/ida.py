@@ -9,9 +9,11 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
+from ...compile.machine.layout import MOST_STEPS
 from ...compile.machine.routines import Routine
 from ...compile.state import State
-from .connection import INTERNAL, MODULE, MOST_STEPS, NEXT, RETURNED, SERVED, SINCE, SIZE, TINY, WITHIN, Connection
+from ..native.statuses import ROOT_RETURN, STOP_RETURN
+from .connection import MODULE, Connection
 from .matrices import Matrix
 from .session import Session
 from .statistics import Statistics
@@ -21,8 +23,6 @@ from .step_log import StepLog
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
-STOP_RETURN, ROOT_RETURN = 1, 2
-"""IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
 LONGEST_CALL, STEP = 0.1, 1e-7
 """Time, s, after which a call returns, for progress and interruption; of a step for each unknown, by a rough measure (a clock
 would make results hang on the machine's mood, as Newton's iteration is eased between calls)."""
@@ -131,7 +131,7 @@ class NativeIda:
     @property
     def t(self) -> float:
         """Time of the solution in `y`, s."""
-        return float(self._ida.mark[RETURNED])
+        return float(self._ida.cells["returned"])
 
     @property
     def history(self) -> StepLog:
@@ -141,7 +141,7 @@ class NativeIda:
     @property
     def samples(self) -> np.ndarray:
         """Every fourth of the last 64 steps since the beginning: time and reported unknowns, the earliest first."""
-        newest = int(self._ida.count[NEXT])
+        newest = int(self._ida.cells["next_sample"])
         rows: np.ndarray = np.roll(self._ida.samples, -newest, axis=0)
         return rows[~np.isnan(rows[:, 0])]
 
@@ -165,9 +165,9 @@ class NativeIda:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
         self._ida.ask("IDASetNonlinConvCoef", part)
 
-    def balance_within(self, long_step: float, part: float) -> None:
+    def correct_outputs(self, long_step: float, part: float) -> None:
         """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
-        self._ida.balance_within(long_step, part)
+        self._ida.correct_outputs(long_step, part)
 
     def filter_always(self, asked: bool) -> None:
         """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""
@@ -200,13 +200,7 @@ class NativeIda:
         self._ida.ask("IDASetInitStep", first_step)
         if highest_order is not None:
             self._ida.ask("IDASetMaxOrd", highest_order)
-        self._ida.mark[[RETURNED, INTERNAL, SIZE]] = t, t, 0.0
-        self._ida.count[[TINY, SINCE]] = 0
-        self._ida.samples[:] = np.nan
-        self._ida.sides[:] = 0.0
-        self._ida.watch.begin()
-        self._ida.iteration.begin()
-        self.history.begin(t)
+        self._ida.begin(t)
         self._begun, self._flag = True, 0
 
     def advance(
@@ -239,7 +233,7 @@ class NativeIda:
         self._run(
             ADVANCE, len(times), times.ctypes.data, stop, min(self._pace, self._look), y_out.ctypes.data, derivatives
         )
-        return int(self._ida.count[SERVED]), self._status()
+        return int(self._ida.cells["served"]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
         """Go on towards `stop` and report each of IDA's own steps; returns as `advance` does, or when `t_out` is full.
@@ -253,7 +247,7 @@ class NativeIda:
         self._check_rows(y_out, len(t_out))
         self._ida.ask("IDASetStopTime", stop)
         self._run(STEPS, min(self._pace, self._look, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data)
-        return int(self._ida.count[SERVED]), self._status()
+        return int(self._ida.cells["served"]), self._status()
 
     def _check_rows(self, rows: np.ndarray, count: int) -> None:
         expected = (count, len(self._ida.reported))
@@ -277,7 +271,7 @@ class NativeIda:
 
         None is where the step has passed a zone of a law (`stiffmbs.solve.native.within_step`).
         """
-        if self._ida.count[WITHIN]:
+        if self._ida.cells["within"]:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
         found = np.zeros(self.n_event_functions, dtype=np.intc)
         self._ida.ask("IDAGetRootInfo", found.ctypes.data)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import ITERATION, packed
+from ...compile.machine.layout import ITERATION, cells, fill
 from ...compile.machine.routines import Routine
 from .session import Session
 
 CONVERGED = Routine(
     "stiffmbs.solve.native.iteration", "converged", "int32(int64, int64, int64, float64, int64, int64*)"
 )
-CJ, GROWTH = 0, 4
-"""Marks, as in `stiffmbs.solve.native.iteration`."""
 
 
 class Iteration:
@@ -25,26 +23,25 @@ class Iteration:
 
     Attributes
     ----------
-    count : ndarray of int
-        As in `stiffmbs.solve.native.iteration`.
-    mark : ndarray
-        The same.
+    table : ndarray of int
+        For compiled code (`stiffmbs.compile.machine.layout.ITERATION`).
     """
 
     def __init__(self, n: int) -> None:
         self._n = n
-        self.count = np.zeros(4, dtype=np.int64)
-        self.mark = np.zeros(6)
-        self.mark[CJ] = np.inf
+        self.table = np.zeros(len(ITERATION), dtype=np.int64)
+        self._cells = cells(self.table, ITERATION)
+        self._cells["cj"] = np.inf
 
     def solver(self, session: Session, memory: int, y_vector: int) -> int:
         """The solver; IDA, whose memory is given, gives it its own test when it is attached: `take_over` comes after that."""
         libraries = session.libraries
         made = libraries.SUNNonlinSol_Newton(y_vector, session.context)
-        self._table = packed(
+        fill(
+            self.table,
             ITERATION,
             {
-                "n": self._n, "mark": self.mark, "count": self.count, "memory": memory,
+                "n": self._n, "memory": memory,
                 "array_of": libraries.address("N_VGetArrayPointer"), "cj_of": libraries.address("IDAGetCurrentCj"),
                 "iteration_of": libraries.address("SUNNonlinSolGetCurIter"),
             },
@@ -53,8 +50,8 @@ class Iteration:
 
     def begin(self) -> None:
         """Forget the rates that were measured, and the last step, as the integrator starts, or starts anew."""
-        self.mark[[CJ, GROWTH]] = np.inf, -1.0
+        self._cells["cj"], self._cells["growth"] = np.inf, -1.0
 
     def take_over(self, session: Session, solver: int) -> None:
         """Put the test in place."""
-        session.libraries.SUNNonlinSolSetConvTestFn(solver, CONVERGED.address(), self._table.ctypes.data)
+        session.libraries.SUNNonlinSolSetConvTestFn(solver, CONVERGED.address(), self.table.ctypes.data)

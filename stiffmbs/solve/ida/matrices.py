@@ -28,8 +28,8 @@ class Assembled:
         IDA clears them together with the values before each new matrix.
     kept : tuple
         What must live as long.
-    found : ndarray of int or None
-        Zero where the solver has to find its pivots anew; None where it always does.
+    pivots : numpy.void or None
+        Cells of a linear solver that keeps its pivots: "ready" is zero where it has to find them anew; None where it always does.
     """
 
     matrix: int
@@ -38,7 +38,7 @@ class Assembled:
     slots: np.ndarray | None
     pattern: np.ndarray
     kept: tuple[object, ...] = ()
-    found: np.ndarray | None = None
+    pivots: np.void | None = None
 
 
 class Matrix(Protocol):

@@ -9,15 +9,12 @@ from itertools import takewhile
 
 import numpy as np
 
+from ..native.statuses import CONTENT, NORM_TABLE, OPERATIONS
 from .libraries import Libraries, Unavailable
 from .session import Session
 
-OPERATIONS, TABLE = 1, 53
-"""The words of a vector and of its operations that `stiffmbs.solve.native.error_norm` reads."""
 LONGEST = 16
 """Words of a solver, or of its table of operations, that are looked through."""
-CONTENT = 0
-"""The word of a solver that holds the address of its content (`stiffmbs.solve.native.fixed_order.CONTENT`)."""
 
 
 def take_place(session: Session, solver: int, size: int, functions: Mapping[str, int], content: np.ndarray) -> None:
@@ -75,12 +72,12 @@ def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> No
         When the vector does not look as expected.
     """
     operations = list(_words(vector, OPERATIONS + 1))[OPERATIONS]
-    words = list(_words(operations, TABLE + 1))
+    words = list(_words(operations, NORM_TABLE + 1))
     own = session.libraries.address("N_VWrmsNorm_Serial")
-    if words.count(own) != 1 or words[TABLE] != session.libraries.address("N_VBufPack_Serial"):
+    if words.count(own) != 1 or words[NORM_TABLE] != session.libraries.address("N_VBufPack_Serial"):
         raise Unavailable("the SUNDIALS libraries lay out vectors in another way")
     _write(operations, words.index(own), norm)
-    _write(operations, TABLE, table.ctypes.data)
+    _write(operations, NORM_TABLE, table.ctypes.data)
 
 
 @cache

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import BALANCE, packed
+from ...compile.machine.layout import OUTPUT_CORRECTION, cells, fill
 from .matrices import Matrix
 from .session import Session
 
-FACTORED, CURRENT, ENOUGH, LONG = range(4)
-"""Marks, as in `stiffmbs.solve.native.output_correction`."""
 VECTORS = "y", "yp", "defect", "correction", "weight"
 
 
-class Balance:
+class OutputCorrection:
     """A matrix with its factors, and vectors, beside IDA's own; made when a scene is first found to be stiff.
 
     Parameters
@@ -23,16 +21,15 @@ class Balance:
 
     Attributes
     ----------
-    mark : ndarray
     table : ndarray of int
-        For compiled code; empty until `make_ready`.
+        For compiled code (`stiffmbs.compile.machine.layout.OUTPUT_CORRECTION`); without addresses until `make_ready`.
     """
 
     def __init__(self, n: int) -> None:
         self._n = n
-        self.mark = np.zeros(7)
-        self.mark[LONG] = np.inf
-        self.table = np.zeros(len(BALANCE), dtype=np.int64)
+        self.table = np.zeros(len(OUTPUT_CORRECTION), dtype=np.int64)
+        self._cells = cells(self.table, OUTPUT_CORRECTION)
+        self._cells["long"] = np.inf
         self._kept: tuple[object, ...] = ()
 
     @property
@@ -60,10 +57,11 @@ class Balance:
             "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights",
             "clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
         }  # fmt: skip
-        self.table[:] = packed(
-            BALANCE,
+        fill(
+            self.table,
+            OUTPUT_CORRECTION,
             {
-                "mark": self.mark, "memory": memory,
+                "memory": memory,
                 **{name: libraries.address(function) for name, function in functions.items()},
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "entries": assembled.values, "pattern": assembled.pattern,
@@ -72,6 +70,10 @@ class Balance:
         )  # fmt: skip
         self._kept = (assembled, vectors)
 
+    def limit(self, long_step: float, part: float) -> None:
+        """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left."""
+        self._cells["long"], self._cells["enough"] = long_step, part
+
     def forget(self) -> None:
         """Have the matrix factored anew."""
-        self.mark[FACTORED] = 0.0
+        self._cells["factored"] = 0.0

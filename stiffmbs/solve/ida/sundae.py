@@ -11,7 +11,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import IDA, packed
+from ...compile.machine.layout import IDA, cells, packed
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ..error_control.newton import Stiffness
@@ -23,8 +23,8 @@ RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int6
 JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
 SWITCHES = Routine(_MODULE, "event_functions", "void(float64, int64, int64, int64, int64*)")
 
-HISTORY_HEAD, HISTORY_ROOM = 4, 200_000
-"""Numbers before the first time in the history (as in `stiffmbs.solve.native.ida_callbacks`), and times kept."""
+MOST_ENDS = 200_000
+"""Ends of steps kept."""
 DENSE_UP_TO = 90
 """Unknowns up to which the dense linear solver is as fast as the sparse one."""
 STEPS_AT_ONCE = 20_000
@@ -59,17 +59,16 @@ class Callbacks:
         state.load("event_function")
         rows, columns = equations.pattern
         slots = rows * equations.n + columns if dense else None
-        self._history = np.zeros(HISTORY_HEAD + HISTORY_ROOM)
-        self._history[3] = HISTORY_ROOM
+        self._ends = np.zeros(MOST_ENDS)
         n_event_functions = state.system.n_event_functions
         self._sides, self.waits = np.zeros(n_event_functions), np.zeros(n_event_functions, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
-            "state": state.table, "equations": self._equations_table, "history": self._history,
+            "state": state.table, "equations": self._equations_table, "n_ends": MOST_ENDS, "ends": self._ends,
             "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "sides": self._sides, "waits": self.waits,
         }  # fmt: skip
         table = packed(IDA, fields)
-        self._kept = (state, equations, slot_of_entry, table)
+        self._kept, self._cells = (state, equations, slot_of_entry, table), cells(table, IDA)
         at = table.ctypes.data
         self.residual, self.jacobian, self.event_functions = (
             self._residual(at),
@@ -106,23 +105,23 @@ class Callbacks:
 
     def begin(self, t: float) -> None:
         """Go on with the history from an instant at which IDA starts anew, and look at the event functions' sides again."""
-        self._history[0] = t
+        self._cells["last_time"] = t
         self._sides[:] = 0.0
 
     @property
     def steps(self) -> int:
         """Accepted steps so far."""
-        return int(self._history[1])
+        return int(self._cells["steps"])
 
     @property
     def rejected(self) -> int:
         """Steps tried in vain so far."""
-        return int(self._history[2])
+        return int(self._cells["rejected"])
 
     @property
     def step_times(self) -> np.ndarray:
-        """Ends of the accepted steps, the first `HISTORY_ROOM` of them."""
-        return self._history[HISTORY_HEAD : HISTORY_HEAD + min(self.steps, HISTORY_ROOM)].copy()
+        """Ends of the accepted steps, the first `MOST_ENDS` of them."""
+        return self._ends[: self.steps].copy()
 
 
 class SundaeEngine:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import DTYPES, ELIMINATED, packed
+from ...compile.machine.layout import DTYPES, ELIMINATED, cells, fill
 from ...compile.state import State
 from .saddle_point import ACCELERATIONS
 
@@ -49,19 +49,19 @@ class Eliminated:
         products = self._products()
         columns = _filled({(a, b) for a, b, *_ in products}, len(rows))
         updates = sum(len(below) * (len(below) + 1) // 2 for below in columns)
-        self._most_kept = np.zeros(1)
         hanging = len(system.term("acceleration", "f_lam").source)
         self.serves = not hanging and updates <= MOST_UPDATES_PER_ENTRY * max(len(self._j[0]), 1)
         resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
         self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))
         self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
+        self._cells = cells(self.table, ELIMINATED)
         if self.serves:
             self._arrays = self._packable(state, products, columns)
-            self.table = packed(ELIMINATED, self._arrays)
+            fill(self.table, ELIMINATED, self._arrays)
 
     def forget(self) -> None:
         """Forget how many digits pivots have kept so far, so that a run's rounding does not depend on earlier runs."""
-        self._most_kept[:] = 0.0
+        self._cells["most_kept"] = 0.0
 
     def _products(self) -> list[tuple[int, int, int, int]]:
         """Row, column and both factors (by their number among the entries of J) of every product in the lower half of J M^-1 J^T."""
@@ -99,11 +99,11 @@ class Eliminated:
         scale = 1.0 / np.sqrt(system.mass)
         return {
             **{name: np.array(values, dtype=DTYPES[ELIMINATED[name]]) for name, values in lists.items()},
-            "state": state.table, "ready": np.zeros(1, dtype=np.int64), "n": n, "n_u": system.n_u, "n_f": len(force.source),
+            "state": state.table, "n": n, "n_u": system.n_u, "n_f": len(force.source),
             "n_gamma": len(lists["gamma_source"]), "n_j": len(self._j[0]),
             "n_slots": int(starts[-1]), "scale": scale, "j_scale": scale[self._j[2]], "j": np.zeros(len(self._j[0])),
             "s": np.zeros(int(starts[-1])), "l": np.zeros(int(starts[-1])), "diagonal": np.zeros(n),
-            "a": np.zeros(system.n_u), "b": np.zeros(n), "kept": np.ones(1), "most_kept": self._most_kept,
+            "a": np.zeros(system.n_u), "b": np.zeros(n), "kept": 1.0,
         }  # fmt: skip
 
 

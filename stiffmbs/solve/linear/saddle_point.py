@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ...compile.equations import Equations
 from ...compile.formulation import Block, Formulation, Product
-from ...compile.machine.layout import FACTORS
+from ...compile.machine.layout import FACTORS, cells
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.state import State
 from .elimination_order import elimination_order
@@ -70,7 +70,8 @@ class SaddlePoint:
         self.equations_table, self._slots = self.equations.table()
         self._arrays = factors_of(self.equations.n, *self.equations.pattern, elimination_order(self.equations))
         self.factors_table = packed_with_memory(FACTORS, self._arrays)
+        self._cells = cells(self.factors_table, FACTORS)
 
     def forget_pivots(self) -> None:
         """Have the pivots sought anew with the next factorisation."""
-        self._arrays["ready"][0] = 0
+        self._cells["ready"] = 0

@@ -44,5 +44,5 @@ def attempt(x, c, s, m, h):
     weighted(x, c, x.y, c.stages, h)
     if c.error_needs_end:
         load_state(s, x.y)
-        return rates(x, s, m, c.stages, x.t_before[0] + h)
+        return rates(x, s, m, c.stages, x.t_before + h)
     return 0

@@ -28,7 +28,7 @@ from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_ROOM, 
 
 MOST_MOVES = 20
 """Newton's moves back to the constraints, from a state that was near them."""
-ROUNDING = 9e-16
+COORDINATE_ROUNDING = 9e-16
 """Part of the largest coordinate that no violation can be told below: four roundings."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
@@ -97,7 +97,7 @@ def to_position_constraints(s, m, t, tolerance, most):
     for move in range(most):
         values = evaluate(s, POSITION, t)
         gap = largest_open(s, values)
-        if gap <= max(tolerance, ROUNDING * largest_of(s.q, s.n_pose)):
+        if gap <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose)):
             return move
         if not isfinite(gap):
             return NOT_FINITE
@@ -237,8 +237,8 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
             s.q[k] = at_row[k]
         for k in range(s.n_u):
             s.u[k] = u[row * s.n_u + k]
-        m.status[0] = _output_point(s, m, times[row], at_row, project, tolerance, shifted(largest, 3 * row))
-        if m.status[0] < 0:
+        m.status = _output_point(s, m, times[row], at_row, project, tolerance, shifted(largest, 3 * row))
+        if m.status < 0:
             return row
         solution = factors_view(m.acceleration_factors).b
         values = floats(s.values[OUTPUT])

@@ -52,15 +52,15 @@ def _factored(r):
     """
     at = 0
     kept = 1.0
-    r.kept[0] = kept
+    r.kept = kept
     for k in range(r.n):
         first = r.column_start[k]
         end = r.column_start[k + 1]
         pivot = r.s[first]
         if not pivot > SMALL * r.diagonal[k]:
             kept *= pivot / r.diagonal[k]
-            r.kept[0] = kept
-            if not pivot > LOST * r.diagonal[k] or not kept > max(TOGETHER, BESIDE * r.most_kept[0]):
+            r.kept = kept
+            if not pivot > LOST * r.diagonal[k] or not kept > max(TOGETHER, BESIDE * r.most_kept):
                 return False
         inverse = 1.0 / pivot
         r.s[first] = inverse
@@ -74,7 +74,7 @@ def _factored(r):
             for below in range(p, end):
                 r.s[r.update_slot[at]] -= value * r.s[below]
                 at += 1
-    r.most_kept[0] = max(r.most_kept[0], kept)
+    r.most_kept = max(r.most_kept, kept)
     return True
 
 
@@ -103,8 +103,8 @@ def eliminated_accelerations(r, s, t):
     """Accelerations (in r.a) and multipliers (in lam) at the current state; whether that could be done."""
     values = evaluate(s, ACCELERATION, t)
     _assemble(r, values)
-    r.ready[0] = _factored(r)
-    if not r.ready[0]:
+    r.ready = _factored(r)
+    if not r.ready:
         return False
     _backward(r)
     for k in range(r.n_j):

@@ -27,7 +27,7 @@ def _squares(x, c, row):
     add_stages(x, x.difference, shifted(c.errors, row * c.extended), c.stages + 1, 1.0)
     total = 0.0
     for i in range(x.n):
-        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
         ratio = x.difference[i] / scale
         total += ratio * ratio
     return total / x.n
@@ -50,7 +50,7 @@ def _sees_other_laws(x, h):
     w = event_search_view(x.watch)
     if w.n == 0:
         return False
-    t = x.t_before[0] + h
+    t = x.t_before + h
     load_state(s, x.y_stage)
     noted(w.m, evaluate(s, SWITCH, t), w.n)
     load_state(s, x.y)
@@ -75,7 +75,7 @@ def error_or_doubt(x, c, h):
     astray = 0.0
     way = 0.0
     for i in range(x.n):
-        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
         off, moved = (x.y[i] - x.y_stage[i]) / scale, (x.y[i] - x.y_before[i]) / scale
         astray += off * off
         way += moved * moved

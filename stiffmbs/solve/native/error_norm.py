@@ -18,26 +18,18 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.layout import ERROR_NORM
 from stiffmbs.compile.machine.native.access import (
+    address_of,
     compiled,
     equations_view,
     floats,
     ints,
-    shifted,
     state_view,
     view_of,
 )
 from stiffmbs.solve.native.calls import call_address, call_float, call_int
-from stiffmbs.solve.native.iteration import AT_CJ, CJ
+from stiffmbs.solve.native.iteration import iteration_view
+from stiffmbs.solve.native.statuses import NORM_TABLE, OK, OPERATIONS
 
-OK = 0
-OPERATIONS, TABLE = 1, 53
-"""Words of a SUNDIALS vector and of its table of operations: that table; N_VBufPack, which IDA never calls and in whose place stands the address of the table of this module (`stiffmbs.solve.ida.operations.take_norm`)."""
-TROUBLE, ALWAYS, LOOKED = range(3)
-"""Marks: failures of the error test, each counted less with each step since then; above 0 where all estimates are filtered; cj when failures
-were last looked for."""
-STEPS, FAILURES, KNOWN_STEPS, KNOWN_FAILURES, UNTIL, ORDER = range(6)
-"""Counts: steps and failures of the error test; the same when they were last looked at; the step up to which estimates are filtered; the order
-of the last step."""
 FADES_LOW, FADES, LOW = 0.99, 0.8, 2
 """What a step leaves of the count of failures, at orders up to the lowest two and above: at these a run creeps."""
 TROUBLED, LASTS = 7.0, 1000
@@ -56,7 +48,7 @@ def _filtered(c, estimate):
     s = state_view(c.state)
     values = floats(s.values[e.residual_set])
     d = floats(call_address(c.array_of, estimate))
-    cj = c.iteration[AT_CJ]
+    cj = iteration_view(c.iteration).matrix_cj
     for k in range(e.n):
         c.change[k] = 0.0
     for k in range(e.n_with_y, e.n_with_yp):
@@ -67,33 +59,34 @@ def _filtered(c, estimate):
 @compiled
 def _look(c):
     """Count failures, and steps since then."""
-    c.mark[LOOKED] = c.iteration[CJ]
-    call_int(c.steps_of, (c.memory, shifted(c.count, STEPS)))
-    call_int(c.failures_of, (c.memory, shifted(c.count, FAILURES)))
-    steps, failures = c.count[STEPS] - c.count[KNOWN_STEPS], c.count[FAILURES] - c.count[KNOWN_FAILURES]
+    c.looked = iteration_view(c.iteration).cj
+    call_int(c.steps_of, (c.memory, address_of(c.steps)))
+    call_int(c.failures_of, (c.memory, address_of(c.failures)))
+    steps, failures = c.steps - c.known_steps, c.failures - c.known_failures
     if steps == 0 and failures == 0:
         return
-    c.count[KNOWN_STEPS] += steps
-    c.count[KNOWN_FAILURES] += failures
+    c.known_steps += steps
+    c.known_failures += failures
     if steps < 0:  # counters begin anew with each start
-        c.mark[TROUBLE] = 0.0
-        c.count[UNTIL] = 0
-    call_int(c.order_of, (c.memory, shifted(c.count, ORDER)))
-    fades = FADES_LOW if c.count[ORDER] <= LOW else FADES
+        c.trouble = 0.0
+        c.until = 0
+    call_int(c.order_of, (c.memory, address_of(c.order)))
+    fades = FADES_LOW if c.order <= LOW else FADES
     for _ in range(steps):
-        c.mark[TROUBLE] *= fades
-    c.mark[TROUBLE] += max(failures, 0)
-    if c.mark[TROUBLE] > TROUBLED:
-        c.count[UNTIL] = c.count[STEPS] + LASTS
+        c.trouble *= fades
+    c.trouble += max(failures, 0)
+    if c.trouble > TROUBLED:
+        c.until = c.steps + LASTS
 
 
 def error_norm(estimate, weights):
     """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the error test fails often."""
-    c = error_norm_view(ints(ints(estimate[OPERATIONS])[TABLE]))
-    if c.iteration[CJ] != c.mark[LOOKED]:  # as it does with every failure
+    c = error_norm_view(ints(ints(estimate[OPERATIONS])[NORM_TABLE]))
+    cj = iteration_view(c.iteration).cj
+    if cj != c.looked:  # as it does with every failure
         _look(c)
-    wanted = c.mark[ALWAYS] > 0.0 or c.count[STEPS] < c.count[UNTIL]
-    if wanted and c.iteration[CJ] < float("inf") and _filtered(c, estimate):
+    wanted = c.always or c.steps < c.until
+    if wanted and cj < float("inf") and _filtered(c, estimate):
         size = call_float(c.norm, (c.at_filtered, weights))
         if size < NO_ESTIMATE:
             return size

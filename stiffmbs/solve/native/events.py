@@ -72,13 +72,13 @@ def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
 def _look_between(x, c, s):
     """Values of all event functions at `LOOKED_AT`, on the cubic through states and rates at both ends."""
     w = event_search_view(x.watch)
-    h, theta = x.span[0], LOOKED_AT
+    h, theta = x.span, LOOKED_AT
     rest = 1.0 - theta
     begins, ends = x.k, shifted(x.k, c.stages * x.n)
     for i in range(x.n):
         straight = rest * rest * (1.0 + 2.0 * theta) * x.y_before[i] + theta * theta * (3.0 - 2.0 * theta) * x.y[i]
         x.difference[i] = straight + theta * rest * h * (rest * begins[i] - theta * ends[i])
-    noted(w.m, _values(x, s, x.difference, x.t_before[0] + theta * h), w.n)
+    noted(w.m, _values(x, s, x.difference, x.t_before + theta * h), w.n)
 
 
 @compiled
@@ -90,8 +90,8 @@ def _stages_have_changed(x, c, s, until):
     for row in range(1, c.stages):
         if c.c[row] >= until:
             continue
-        weighted(x, c, x.y_stage, row, x.span[0])
-        if _changed(x, _values(x, s, x.y_stage, x.t_before[0] + c.c[row] * x.span[0])):
+        weighted(x, c, x.y_stage, row, x.span)
+        if _changed(x, _values(x, s, x.y_stage, x.t_before + c.c[row] * x.span)):
             return True
     return False
 
@@ -101,12 +101,12 @@ def _event_within(x, c, s, m, until):
     """The time from the step's start to an event that begins and ends within it; 0 for none, a negative status, or the whole
     length where stages before the part `until` of the step show that there is one but not where."""
     w = event_search_view(x.watch)
-    h = x.span[0]
-    if not h > ROUNDINGS * abs(x.t[0]):
+    h = x.span
+    if not h > ROUNDINGS * abs(x.t):
         return 0.0
     small = DIFFERENCE * h
-    _note_event_functions(x, s, x.y_before, x.k, x.t_before[0], small, w.value_before, w.rate_before)
-    _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t[0], -small, w.value_after, w.rate_after)
+    _note_event_functions(x, s, x.y_before, x.k, x.t_before, small, w.value_before, w.rate_before)
+    _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
     _look_between(x, c, s)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
@@ -119,8 +119,8 @@ def _event_within(x, c, s, m, until):
         interpolated(x, c, w.node[node], x.y_stage)
         load_state(s, x.y_stage)
         keep_row(w, s, node)
-    event = first_event(w, s, x.t_before[0], h)
-    return event * h if ROUNDINGS * abs(x.t[0]) < event * h < h else 0.0
+    event = first_event(w, s, x.t_before, h)
+    return event * h if ROUNDINGS * abs(x.t) < event * h < h else 0.0
 
 
 @compiled
@@ -129,8 +129,8 @@ def _first_change(x, c, s, high):
     low = 0.0
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        interpolated(x, c, middle / x.span[0], x.y_stage)
-        if _changed(x, _values(x, s, x.y_stage, x.t_before[0] + middle)):
+        interpolated(x, c, middle / x.span, x.y_stage)
+        if _changed(x, _values(x, s, x.y_stage, x.t_before + middle)):
             high = middle
         else:
             low = middle
@@ -143,10 +143,10 @@ def _retaken(x, c, s, m, h):
     status = attempt(x, c, s, m, h)
     if status < 0:
         return status
-    x.span[0] = h
-    x.t[0] = x.t_before[0] + h
-    x.dense_ready[0] = 0
-    return arrive(x, c, s, m, x.t[0])
+    x.span = h
+    x.t = x.t_before + h
+    x.dense_ready = 0
+    return arrive(x, c, s, m, x.t)
 
 
 @compiled
@@ -155,8 +155,8 @@ def _go_past(x, c, s, ahead):
     rates = shifted(x.k, c.stages * x.n)
     for i in range(x.n):
         x.y[i] += ahead * rates[i]
-    x.t[0] += ahead
-    x.at_event[0] = 1
+    x.t += ahead
+    x.at_event = 1
 
 
 @compiled
@@ -172,28 +172,28 @@ def _taken_to_change(x, c, s, m, high, behind):
         if status < 0:
             return status
         first = _first_change(x, c, s, high)
-        if not changed and first <= x.span[0] + 2.0 * behind:
+        if not changed and first <= x.span + 2.0 * behind:
             return 0
         status = _retaken(x, c, s, m, max(first - behind, 0.5 * first))
         if status < 0:
             return status
-        changed = _changed(x, _values(x, s, x.y, x.t[0]))
+        changed = _changed(x, _values(x, s, x.y, x.t))
         if changed:
-            high = x.span[0]
+            high = x.span
     return RETRIED if changed else 0
 
 
 @compiled
 def _taken_to_event(x, c, s, m, h, behind):
     """Take the step again up to the first event in it; 0, a negative status, `RETRIED`, or `NO_EVENT`."""
-    values = _values(x, s, x.y, x.t[0])
+    values = _values(x, s, x.y, x.t)
     changed = _changed(x, values)
     if changed:
         _note_changed(x, values)
         status = _taken_to_change(x, c, s, m, h, behind)
         if status != 0:
             return status
-        h = x.span[0]
+        h = x.span
     within = _event_within(x, c, s, m, BEFORE_END if changed else ALL)
     if within == 0.0:
         return 0 if changed else NO_EVENT
@@ -208,15 +208,15 @@ def end_at_event(x, c, s, m):
 
     0, a negative status, or `RETRIED` where the step's shortened form cannot be trusted and is left.
     """
-    h = x.span[0]
-    behind = max(BEHIND * h, ROUNDINGS * abs(x.t[0]))
+    h = x.span
+    behind = max(BEHIND * h, ROUNDINGS * abs(x.t))
     status = _taken_to_event(x, c, s, m, h, behind)
     if status == NO_EVENT:
-        copied(x.sides, _values(x, s, x.y, x.t[0]), x.n_event_functions)
+        copied(x.sides, _values(x, s, x.y, x.t), x.n_event_functions)
         return 0
     if status < 0:
         return status
-    error = error_or_doubt(x, c, x.span[0]) if status == 0 else DOUBTED
+    error = error_or_doubt(x, c, x.span) if status == 0 else DOUBTED
     if not error <= MOST_ERROR:
         return _left(x, c, error)
     _go_past(x, c, s, 2.0 * behind)
@@ -226,10 +226,10 @@ def end_at_event(x, c, s, m):
 @compiled
 def _left(x, c, error):
     """Go back to the step's start, for a shorter one."""
-    x.h[0] = x.span[0] * max(LEAST_FACTOR, 0.9 * error ** -c.exponent[0])
+    x.h = x.span * max(LEAST_FACTOR, 0.9 * error**-c.exponent)
     copied(x.y, x.y_before, x.n)
     copied(shifted(x.k, c.stages * x.n), x.k, x.n)
-    x.t[0] = x.t_before[0]
-    x.rejected[0] += 1
-    x.dense_ready[0] = 0
+    x.t = x.t_before
+    x.rejected += 1
+    x.dense_ready = 0
     return RETRIED

@@ -13,14 +13,8 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, float
 from stiffmbs.compile.machine.native.factors import DONE, FULL, equilibrate, factor, scale
 from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
+from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK, RECOVERABLE
 
-OK, RECOVERABLE, FAILED = 0, 1, -1
-"""What IDA is told: after a recoverable failure it tries a smaller step."""
-LAST_FLAG = list(FIXED_ORDER).index("last_flag")
-"""What SUNLinSolLastFlag gives: `FULL` where there was no memory for the factors."""
-CONTENT = 0
-"""Where a SUNLinearSolver holds the address of its content."""
-READY, N_LOWER, N_UPPER = range(3)
 LU, ROW, COLUMN, UPDATE = (list(FIXED_ORDER).index(name) for name in ("lu", "row", "column", "update"))
 LARGEST = 1e3
 """A pivot is refused when an entry of its column is so many times larger."""
@@ -90,8 +84,8 @@ def _listed(s, f):
             s.slot[p] = s.mark[f.pivot[f.a_row[p]]]
             s.weight[p] = f.scale[f.a_row[p]] * f.scale[column]
     s.update_start[n] = count
-    s.found[N_LOWER] = n_lower
-    s.found[N_UPPER] = n_upper
+    s.n_lower = n_lower
+    s.n_upper = n_upper
 
 
 @compiled
@@ -100,8 +94,8 @@ def _eliminated(s, f):
     n = f.n
     lu = s.lu
     update = s.update
-    n_lower = s.found[N_LOWER]
-    diagonal = n_lower + s.found[N_UPPER]
+    n_lower = s.n_lower
+    diagonal = n_lower + s.n_upper
     for p in range(diagonal + n):
         lu[p] = 0.0
     for p in range(f.a_start[n]):
@@ -140,19 +134,19 @@ def setup(solver, matrix):
     """SUNLinSolSetup: factors along the known order, else along a new one."""
     table = ints(solver[CONTENT])
     known = fixed_order_view(table)
-    if known.found[READY] and _eliminated(known, factors_view(known.factors)):
+    if known.ready and _eliminated(known, factors_view(known.factors)):
         return int32(OK)
-    known.found[READY] = 0
+    known.ready = 0
     outcome = factored_anew(known.factors, known.weight)
     if outcome == DONE and not _room_for_list(table, factors_view(known.factors)):
         outcome = FULL
-    table[LAST_FLAG] = outcome
+    known.last_flag = outcome  # SUNLinSolLastFlag gives it
     if outcome != DONE:
         return int32(FAILED if outcome == FULL else RECOVERABLE)
     s = fixed_order_view(table)  # the memory may have grown
     f = factors_view(s.factors)
     _listed(s, f)
-    s.found[READY] = 1
+    s.ready = 1
     return int32(OK if _eliminated(s, f) else RECOVERABLE)
 
 
@@ -164,8 +158,8 @@ def solve(solver, matrix, x, b, tolerance):
     n = f.n
     lu = s.lu
     y = s.x
-    n_lower = s.found[N_LOWER]
-    diagonal = n_lower + s.found[N_UPPER]
+    n_lower = s.n_lower
+    diagonal = n_lower + s.n_upper
     for k in range(n):
         y[f.pivot[k]] = f.scale[k] * of[k]
     for p in range(n_lower):

@@ -6,26 +6,19 @@ from stiffmbs.compile.machine.native.access import compiled, equations_view, flo
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.event_signs import watched
 
-LAST_TIME, STEPS, REJECTED, ROOM = range(4)
-"""What the head of the history holds; the times of the steps' ends follow it."""
-HEAD = 4
-
 
 @compiled
-def _note(history, t):
+def _note(c, t):
     """Count steps: IDA tries a later time after a success and an earlier one after a failure."""
-    last = history[LAST_TIME]
-    if t == last:
+    if t == c.last_time:
         return
-    steps = int(history[STEPS])
-    if t > last:
-        steps += 1
+    if t > c.last_time:
+        c.steps += 1
     else:
-        history[REJECTED] += 1.0
-    if 0 < steps <= int(history[ROOM]):
-        history[HEAD + steps - 1] = t
-    history[LAST_TIME] = t
-    history[STEPS] = steps
+        c.rejected += 1
+    if 0 < c.steps <= c.n_ends:
+        c.ends[c.steps - 1] = t
+    c.last_time = t
 
 
 @compiled
@@ -35,9 +28,9 @@ def _data(array, header):
 
 
 def residual(t, y, yp, r, ida):
-    """The residual r(t, y, y') into a numpy array; notes the time in the history."""
+    """The residual r(t, y, y') into a numpy array; notes the time."""
     c = ida_view(ida)
-    _note(c.history, t)
+    _note(c, t)
     s = state_view(c.state)
     e = equations_view(c.equations)
     unknowns, rates = _data(y, c.array_header), _data(yp, c.array_header)

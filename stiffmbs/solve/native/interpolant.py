@@ -19,7 +19,7 @@ motions it is a tenth to ten."""
 def prepare(x, c, s, m):
     """The coefficients p_k of the last step; 0 or a negative status."""
     n = x.n
-    h = x.span[0]
+    h = x.span
     for row in range(c.stages + 1, c.extended):
         status = take_stage(x, c, s, m, row, h)
         if status < 0:
@@ -37,7 +37,7 @@ def prepare(x, c, s, m):
         add_stages(x, target, shifted(c.dense, row * c.extended), c.extended, h)
     for i in range(_sound(x, c) * n, (3 + c.n_dense) * n):
         p[i] = 0.0
-    x.dense_ready[0] = 1
+    x.dense_ready = 1
     return 0
 
 
@@ -53,7 +53,7 @@ def _sound(x, c):
     by_rates = 0.0
     by_stages = 0.0
     for i in range(x.n):
-        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
+        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
         weight = 1.0 / (scale * scale)
         of_stages = 0.0
         for k in range(3, 3 + c.n_dense):
@@ -84,28 +84,28 @@ def interpolated(x, c, theta, target):
 @compiled
 def store_rows(x, c, s, m):
     """Store the states at all output times up to now; 1 when that is done, 0 when the room is full, or a status."""
-    while x.next_time[0] < x.n_times and x.times[x.next_time[0]] <= x.t[0]:
-        if x.rows[0] == x.room:
+    while x.next_time < x.n_times and x.times[x.next_time] <= x.t:
+        if x.rows == x.room:
             return 0
-        time = x.times[x.next_time[0]]
-        target = shifted(x.row_y, x.rows[0] * x.n)
-        if time == x.t[0]:
+        time = x.times[x.next_time]
+        target = shifted(x.row_y, x.rows * x.n)
+        if time == x.t:
             copied(target, x.y, x.n)
         else:
-            if not x.dense_ready[0]:
+            if not x.dense_ready:
                 status = prepare(x, c, s, m)
                 if status < 0:
                     return status
-            interpolated(x, c, (time - x.t_before[0]) / x.span[0], target)
-        x.row_t[x.rows[0]] = time
-        x.rows[0] += 1
-        x.next_time[0] += 1
+            interpolated(x, c, (time - x.t_before) / x.span, target)
+        x.row_t[x.rows] = time
+        x.rows += 1
+        x.next_time += 1
     return 1
 
 
 @compiled
 def store_step(x):
     """Store the state after a step."""
-    x.row_t[x.rows[0]] = x.t[0]
-    copied(shifted(x.row_y, x.rows[0] * x.n), x.y, x.n)
-    x.rows[0] += 1
+    x.row_t[x.rows] = x.t
+    copied(shifted(x.row_y, x.rows * x.n), x.y, x.n)
+    x.rows += 1

@@ -20,18 +20,12 @@ proportion to cj.
 from __future__ import annotations
 
 from stiffmbs.compile.machine.layout import ITERATION
-from stiffmbs.compile.machine.native.access import compiled, floats, shifted, view_of
+from stiffmbs.compile.machine.native.access import address_of, compiled, floats, view_of
 from stiffmbs.solve.native.calls import call_address, call_int, int32
 
 SETTLED, GO_ON, GIVE_UP = 0, 901, 902
 """SUN_SUCCESS, SUN_NLS_CONTINUE and SUN_NLS_CONV_RECVR of sundials_nonlinearsolver.h; after the last, the solver has a matrix that is
 not new made anew, and IDA tries a smaller step where it is."""
-CJ, AT_CJ, FIRST, BY_CJ, GROWTH, SPAN = range(6)
-"""Marks: cj, that of the matrix, size of the first correction, the part of the rate by the change of cj, what the rest grows by
-in a time (below 0: not known), and the time since the matrix was made, by the sum of 1/cj, which a step is but for a factor of 1 to 2.3."""
-DONE, AGE, SINCE, SLOW = range(4)
-"""Counts: corrections before this one, steps since the matrix was made, steps since a rate was measured, whether the matrix is
-to be made anew."""
 MADE = -1
 """The age that a matrix is given when it is made; the step's first correction makes it 0."""
 LAST = 3
@@ -75,28 +69,28 @@ def _left(rate, size):
 @compiled
 def _predicted(c):
     """The rate, from those measured before; 1 where it has to be measured."""
-    c.count[SINCE] += 1
-    age = c.count[AGE]
+    c.since += 1
+    age = c.age
     if age == 0:
-        c.mark[AT_CJ] = c.mark[CJ]
-        c.mark[SPAN] = 0.0
-    c.mark[SPAN] += 1.0 / c.mark[CJ]
-    c.mark[BY_CJ] = abs(c.mark[CJ] - c.mark[AT_CJ]) / (c.mark[CJ] + c.mark[AT_CJ])
-    known = c.mark[GROWTH] >= 0.0 and (c.count[SINCE] <= TRUSTED or age == 0)
-    return c.mark[BY_CJ] + c.mark[GROWTH] * c.mark[SPAN] if known else 1.0
+        c.matrix_cj = c.cj
+        c.span = 0.0
+    c.span += 1.0 / c.cj
+    c.by_cj = abs(c.cj - c.matrix_cj) / (c.cj + c.matrix_cj)
+    known = c.growth >= 0.0 and (c.since <= TRUSTED or age == 0)
+    return c.by_cj + c.growth * c.span if known else 1.0
 
 
 @compiled
 def _first(c, size, enough):
     """After the first correction, the rate is what is foreseen."""
-    c.count[AGE] += 1
-    age = c.count[AGE]
+    c.age += 1
+    age = c.age
     rate = _predicted(c)
-    c.mark[FIRST] = size
+    c.first = size
     if size <= NOTHING * enough:
         return SETTLED
-    slow = c.count[SLOW] == 1 and age > 0
-    c.count[SLOW] = 0
+    slow = c.slow == 1 and age > 0
+    c.slow = 0
     if slow:
         return GIVE_UP
     return SETTLED if _left(rate, size) <= enough else GO_ON
@@ -105,15 +99,15 @@ def _first(c, size, enough):
 @compiled
 def _later(c, size, enough):
     """After further corrections it is the mean of theirs."""
-    done = c.count[DONE]
-    age = c.count[AGE]
-    rate = (size / c.mark[FIRST]) ** (1.0 / done)
+    done = c.done
+    age = c.age
+    rate = (size / c.first) ** (1.0 / done)
     if not rate <= DIVERGING:
         return GIVE_UP
     if age > 0:
-        c.mark[GROWTH] = max(rate - c.mark[BY_CJ], LEAST * rate) / c.mark[SPAN]
-        c.count[SINCE] = 0
-    c.count[SLOW] = 1 if rate > SLOWEST else 0
+        c.growth = max(rate - c.by_cj, LEAST * rate) / c.span
+        c.since = 0
+    c.slow = 1 if rate > SLOWEST else 0
     left = _left(rate, size)
     if left <= enough:
         return SETTLED
@@ -124,8 +118,8 @@ def converged(solver, total, correction, enough, weights, table):
     """SUNNonlinSolConvTestFn: whether what the iteration leaves is at most `enough`, in units of the tolerance, or what short steps bear."""
     c = iteration_view(table)
     size = _size(c, correction, weights)
-    call_int(c.iteration_of, (solver, shifted(c.count, DONE)))
-    if c.count[DONE] == 0:
-        call_int(c.cj_of, (c.memory, shifted(c.mark, CJ)))
-    allowed_residual = max(enough, min(LOOSEST, enough * c.mark[CJ] / LONG_STEPS))
-    return int32(_first(c, size, allowed_residual) if c.count[DONE] == 0 else _later(c, size, allowed_residual))
+    call_int(c.iteration_of, (solver, address_of(c.done)))
+    if c.done == 0:
+        call_int(c.cj_of, (c.memory, address_of(c.cj)))
+    allowed_residual = max(enough, min(LOOSEST, enough * c.cj / LONG_STEPS))
+    return int32(_first(c, size, allowed_residual) if c.done == 0 else _later(c, size, allowed_residual))

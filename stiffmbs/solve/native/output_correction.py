@@ -3,35 +3,31 @@
 IDA's interpolant takes each unknown for itself.  Where a step is long against the stiffest oscillation, what that leaves
 in a position makes a force far beyond the forces there are.  Newton's iteration
     M delta = F(t, y, y'),  y -= delta,  y' -= cj delta,  M = dF/dy + cj dF/dy'
-restores the balance of stiff forces.  The factors of IDA's last step serve no longer where a body has turned by a small
+restores the equilibrium of stiff forces.  The factors of IDA's last step serve no longer where a body has turned by a small
 angle since then, as stiff directions turn with it; so this iteration has factors of its own, kept while they serve.
 """
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import BALANCE
+from stiffmbs.compile.machine.layout import OUTPUT_CORRECTION
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
 from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
+from stiffmbs.solve.native.statuses import OK
 
-OK = 0
-FACTORED, CURRENT, ENOUGH, LONG, MADE, GROWTH, SINCE = range(7)
-"""Marks: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
-beyond which states within it are brought back; the time at which the factors were made, what the rate of convergence grows by in a second
-from there (below 0: not known), and states brought back since that was measured."""
 APART = 2.0
 """Factor between cj of the factors and IDA's beyond which they are made anew: accelerations would change too much, or too little."""
-MOST = 8
+MOST_CORRECTIONS = 8
 """Corrections."""
 SLOWEST = 0.3
 """A correction that is a larger part of the one before asks for new factors, or ends the iteration in vain."""
 
-TRUSTED = 10.0
+TRUSTED = 10
 """States for which a measured rate serves."""
 WORSE = 3.0
 """Times the measured rate that is reckoned with: it hangs on the direction of what is left."""
 
-balance_view = view_of("Balance", BALANCE)
+output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
 
 
 @compiled
@@ -45,8 +41,8 @@ def _interpolated(b, t):
 @compiled
 def _factored(b, s, e, t):
     """Factor M at the state at hand."""
-    b.mark[FACTORED] = 0.0
-    cj = b.mark[CURRENT]
+    b.factored = 0.0
+    cj = b.current
     call_int(b.clear, (b.matrix,))
     load(s, e, b.y, b.yp)
     add_entries(e, evaluate(s, e.matrix_set, t), cj, floats(b.entries))
@@ -54,9 +50,9 @@ def _factored(b, s, e, t):
         copy_bytes(b.pattern[k], b.pattern[k + 1], b.pattern[k + 2])
     if call_int(b.setup, (b.solver, b.matrix)) != OK:
         return False
-    b.mark[FACTORED] = cj
-    b.mark[MADE] = t
-    b.mark[GROWTH] = -1.0
+    b.factored = cj
+    b.made = t
+    b.growth = -1.0
     return True
 
 
@@ -66,7 +62,7 @@ def _corrected(b, s, e, t):
     load(s, e, b.y, b.yp)
     add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.defect)
     call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
-    cj = b.mark[FACTORED]
+    cj = b.factored
     squares = 0.0
     for k in range(e.n):
         b.y[k] -= b.correction[k]
@@ -79,17 +75,17 @@ def _corrected(b, s, e, t):
 @compiled
 def _predicted(b, t):
     """The rate for the first correction: as bodies turn away from where the factors were made; 1 where it has to be measured."""
-    b.mark[SINCE] += 1.0
-    known = b.mark[GROWTH] >= 0.0 and b.mark[SINCE] <= TRUSTED
-    return WORSE * b.mark[GROWTH] * (t - b.mark[MADE]) if known else 1.0
+    b.since += 1
+    known = b.growth >= 0.0 and b.since <= TRUSTED
+    return WORSE * b.growth * (t - b.made) if known else 1.0
 
 
 @compiled
 def _note_rate(b, t, rate):
     """Where the factors are new, the iteration converges quadratically, which says nothing of later states."""
-    if t > b.mark[MADE]:
-        b.mark[GROWTH] = rate / (t - b.mark[MADE])
-        b.mark[SINCE] = 0.0
+    if t > b.made:
+        b.growth = rate / (t - b.made)
+        b.since = 0
 
 
 @compiled
@@ -97,28 +93,28 @@ def _settled(b, s, e, t):
     """Correct until what is left, by the rate at which corrections shrink, makes no force that counts."""
     rate = _predicted(b, t)
     before = 0.0
-    for k in range(MOST):
+    for k in range(MOST_CORRECTIONS):
         size = _corrected(b, s, e, t)
         if k > 0:
             rate = size / before
             if not rate < SLOWEST:
-                return size <= b.mark[ENOUGH]
+                return size <= b.enough
             _note_rate(b, t, rate)
-        if rate * size <= b.mark[ENOUGH]:
+        if rate * size <= b.enough:
             return True
         before = size
     return False
 
 
 @compiled
-def balanced(balance, state, equations, t):
+def corrected(output_correction, state, equations, t):
     """Interpolate, and bring the state, held in the table's y and y', back to the equations; False where that does not settle."""
-    b = balance_view(balance)
+    b = output_correction_view(output_correction)
     s = state_view(state)
     e = equations_view(equations)
     if call_int(b.weights, (b.memory, b.at_weight)) < OK or not _interpolated(b, t):
         return False
-    if b.mark[CURRENT] / APART < b.mark[FACTORED] < b.mark[CURRENT] * APART:
+    if b.current / APART < b.factored < b.current * APART:
         if _settled(b, s, e, t):
             return True
         _interpolated(b, t)

@@ -15,9 +15,9 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, float
 from stiffmbs.compile.machine.native.factors import DONE, FULL
 from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
-from stiffmbs.solve.native.fixed_order import CONTENT, FAILED, LARGEST, LAST_FLAG, OK, RECOVERABLE, factored_anew
+from stiffmbs.solve.native.fixed_order import LARGEST, factored_anew
+from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK, RECOVERABLE
 
-READY, N_LOWER, N_ITEMS = range(3)
 LU, ROW, COLUMN, PLACE, UPDATE = (
     list(PAIRED_COLUMNS).index(name) for name in ("lu", "row", "column", "place", "update")
 )
@@ -147,9 +147,9 @@ def _room_for_list(table, f):
 def _listed(s, f):
     """Write down what the elimination along the pivots in `f` does."""
     _sorted(f)
-    s.found[N_LOWER] = _lower_items(s, f)
-    s.found[N_ITEMS] = _upper_items(s, f, s.found[N_LOWER])
-    for p in range(2 * s.found[N_ITEMS]):
+    s.n_lower = _lower_items(s, f)
+    s.n_items = _upper_items(s, f, s.n_lower)
+    for p in range(2 * s.n_items):
         s.lu[p] = 0.0
     count = 0
     for j in range(f.n):
@@ -189,7 +189,7 @@ def _eliminated(s, f):
     n = f.n
     lu, x = s.lu, f.work
     above = f.l_start[n] - n
-    diagonal = 2 * s.found[N_ITEMS]
+    diagonal = 2 * s.n_items
     largest = 0.0
     for j in range(n):
         column = f.order[j]
@@ -218,19 +218,19 @@ def setup(solver, matrix):
     """SUNLinSolSetup: factors along the known order, else along a new one."""
     table = ints(solver[CONTENT])
     known = paired_view(table)
-    if known.found[READY] and _eliminated(known, factors_view(known.factors)):
+    if known.ready and _eliminated(known, factors_view(known.factors)):
         return int32(OK)
-    known.found[READY] = 0
+    known.ready = 0
     outcome = factored_anew(known.factors, known.weight)
     if outcome == DONE and not _room_for_list(table, factors_view(known.factors)):
         outcome = FULL
-    table[LAST_FLAG] = outcome
+    known.last_flag = outcome  # SUNLinSolLastFlag gives it
     if outcome != DONE:
         return int32(FAILED if outcome == FULL else RECOVERABLE)
     s = paired_view(table)  # the memory may have grown
     f = factors_view(s.factors)
     _listed(s, f)
-    s.found[READY] = 1
+    s.ready = 1
     return int32(OK if _eliminated(s, f) else RECOVERABLE)
 
 
@@ -242,8 +242,8 @@ def solve(solver, matrix, x, b, tolerance):
     n = f.n
     lu = s.lu
     y = s.x
-    n_lower = s.found[N_LOWER]
-    n_items = s.found[N_ITEMS]
+    n_lower = s.n_lower
+    n_items = s.n_items
     for k in range(n):
         y[f.pivot[k]] = f.scale[k] * of[k]
     for item in range(n_lower):

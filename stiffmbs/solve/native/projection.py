@@ -6,8 +6,8 @@ from stiffmbs.compile.machine.native.access import compiled, eliminated_view, sh
 from stiffmbs.compile.machine.native.evaluate import MOTION, POSITION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.dynamics import (
+    COORDINATE_ROUNDING,
     MOST_MOVES,
-    ROUNDING,
     largest_of,
     largest_open,
     to_position_constraints,
@@ -26,7 +26,7 @@ def _by_frozen_factors(r, s, t, tolerance):
     Velocities take one move: what it leaves of their violation is as small as the change of J since.
     """
     gaps = evaluate(s, POSITION, t)
-    close = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
+    close = max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose))
     for _ in range(MOST_FROZEN_MOVES):
         if largest_open(s, gaps) > close:
             smallest_move(r, s, gaps)
@@ -46,7 +46,7 @@ def back_to_constraints(x, s, m, t):
     """Bring q and u of the state at hand, the end of a step, to both constraints; 0 or a negative status."""
     if x.eliminates:
         r = eliminated_view(x.eliminated)
-        if r.ready[0] and _by_frozen_factors(r, s, t, x.tolerance[0]):
+        if r.ready and _by_frozen_factors(r, s, t, x.tolerance):
             return 0
-    status = to_position_constraints(s, m, t, x.tolerance[0], MOST_MOVES)
+    status = to_position_constraints(s, m, t, x.tolerance, MOST_MOVES)
     return status if status < 0 else to_velocity_constraints(s, m, t)

@@ -17,12 +17,10 @@ from stiffmbs.solve.native.error_estimate import error_or_doubt
 from stiffmbs.solve.native.events import RETRIED, end_at_event
 from stiffmbs.solve.native.interpolant import store_rows, store_step
 from stiffmbs.solve.native.stages import copied
-from stiffmbs.solve.native.statuses import NOT_FINITE
+from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 from stiffmbs.solve.native.uncertain_end import MOST_MOVED, SHORTER, uncertain_end
 
-STEP_TOO_SMALL, STIFF = -4, -5
-PAUSED, AT_END, AT_EVENT = 0, 1, 2
 SMALLEST_ERROR = 1e-4
 """What the step control remembers of an error at the least (as in DOPRI5)."""
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
@@ -43,23 +41,23 @@ def _watch_stiffness(x, c, h):
     for i in range(x.n):
         rate += (k_end[i] - k_last[i]) ** 2
         move += (x.y[i] - x.y_stage[i]) ** 2
-    if h * h * rate > c.stability[0] ** 2 * move and move > 0.0:
-        x.stiff_steps[0] += 1
+    if h * h * rate > c.stability**2 * move and move > 0.0:
+        x.stiff_steps += 1
 
 
 @compiled
 def _is_hopeless(x, end):
     """Whether stability holds the steps back and too many of them are left."""
-    return x.stiff_steps[0] > STIFF_PART * x.steps[0] and (end - x.t[0]) * x.n > TOO_MANY_STEPS * x.h[0]
+    return x.stiff_steps > STIFF_PART * x.steps and (end - x.t) * x.n > TOO_MANY_STEPS * x.h
 
 
 @compiled
 def _depart(x, c):
     """The end of the last step is the start of the next."""
-    x.t_before[0] = x.t[0]
+    x.t_before = x.t
     copied(x.y_before, x.y, x.n)
     copied(x.k, shifted(x.k, c.stages * x.n), x.n)
-    x.dense_ready[0] = 0
+    x.dense_ready = 0
 
 
 @compiled
@@ -67,16 +65,16 @@ def _factor(x, c, error):
     """How much longer the next step may be (PI control; Hairer, Wanner II, ch. IV.2)."""
     if error == 0.0:
         return LARGEST_FACTOR
-    exponent = c.exponent[0] - 0.75 * c.memory[0]
-    return SAFETY * error**-exponent * x.last_error[0] ** c.memory[0]
+    exponent = c.exponent - 0.75 * c.memory
+    return SAFETY * error**-exponent * max(x.last_error, SMALLEST_ERROR) ** c.memory
 
 
 @compiled
 def _step(x, c, s, m, end):
     """One accepted step, as long as the error allows; 0 or a negative status (the state is then as before)."""
     _depart(x, c)
-    t = x.t[0]
-    h = min(x.h[0], x.longest[0])
+    t = x.t
+    h = min(x.h, x.longest)
     bound = step_bound_view(x.step_bound)
     if bound.n > 0:
         h = min(h, longest_step(bound, t))
@@ -96,22 +94,22 @@ def _step(x, c, s, m, end):
             t_new = end if h == end - t else t + h
             status = arrive(x, c, s, m, t_new)
             uncertain = status == 0 and uncertain_end(x, c, h)
-            if uncertain and not x.uncertain[0] and t_new < end and moved <= MOST_MOVED:
+            if uncertain and not x.uncertain and t_new < end and moved <= MOST_MOVED:
                 moved += 1
                 h = h * SHORTER if moved <= MOST_MOVED else h / SHORTER**MOST_MOVED
                 continue
             if status == 0:
-                x.uncertain[0] = 1 if uncertain or moved else 0  # two in a row would creep up to a pose that locks
-                x.t[0] = t_new
-                x.span[0] = t_new - t
-                x.h[0] = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
-                x.last_error[0] = max(error, SMALLEST_ERROR)
+                x.uncertain = 1 if uncertain or moved else 0  # two in a row would creep up to a pose that locks
+                x.t = t_new
+                x.span = t_new - t
+                x.h = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
+                x.last_error = error
                 _watch_stiffness(x, c, h)
                 return 0
-        x.rejected[0] += 1
+        x.rejected += 1
         most = 1.0
-        h *= FACTOR_AFTER_FAILURE if status < 0 else max(LEAST_FACTOR, SAFETY * error ** -c.exponent[0])
-        if h < x.shortest[0]:
+        h *= FACTOR_AFTER_FAILURE if status < 0 else max(LEAST_FACTOR, SAFETY * error**-c.exponent)
+        if h < x.shortest:
             copied(x.y, x.y_before, x.n)
             return status if status < 0 else STEP_TOO_SMALL
 
@@ -125,16 +123,16 @@ def advance(end, steps, held, own_steps, explicit):
     c = scheme_view(x.scheme)
     m = dynamics_view(x.dynamics)
     s = state_view(m.state)
-    held += x.stiff_steps[0]
+    held += x.stiff_steps
     for _ in range(steps):
-        if x.stiff_steps[0] >= held or (own_steps and x.rows[0] >= x.room):
+        if x.stiff_steps >= held or (own_steps and x.rows >= x.room):
             return PAUSED
         stored = store_rows(x, c, s, m)
         if stored < 1:
             return stored
-        if x.t[0] >= end:
+        if x.t >= end:
             return AT_END
-        if x.at_event[0]:
+        if x.at_event:
             return AT_EVENT
         status = _step(x, c, s, m, end)
         if status >= 0 and x.n_events:
@@ -143,11 +141,11 @@ def advance(end, steps, held, own_steps, explicit):
             return status
         if status == RETRIED:
             continue
-        x.ends[x.steps[0] % x.room] = x.t[0]
-        x.steps[0] += 1
+        x.ends[x.steps % x.room] = x.t
+        x.steps += 1
         if own_steps:
             store_step(x)
-        if x.steps[0] >= ENOUGH_STEPS and _is_hopeless(x, end):
+        if x.steps >= ENOUGH_STEPS and _is_hopeless(x, end):
             return STIFF
     return PAUSED
 
@@ -159,7 +157,7 @@ def fixed_steps(start, h, steps, explicit):
     m = dynamics_view(x.dynamics)
     s = state_view(m.state)
     for step in range(steps):
-        x.t[0] = start + step * h
+        x.t = start + step * h
         _depart(x, c)
         status = attempt(x, c, s, m, h)
         if status < 0:

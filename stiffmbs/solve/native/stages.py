@@ -69,7 +69,7 @@ def rates(x, s, m, stage, t):
     for i in range(s.n_q):
         k[i] = 0.0
     add_rates(s, s.u, 1.0, k)
-    x.accelerations[0] += 1
+    x.accelerations += 1
     status = accelerated(x.eliminates, x.eliminated, s, m, t, shifted(k, s.n_q))
     add_rates_behind(s, m, 1.0, k)
     return status
@@ -80,4 +80,4 @@ def take_stage(x, c, s, m, row, h):
     """Stage `row` of the step of length h that starts at t_before; 0 or a negative status."""
     weighted(x, c, x.y_stage, row, h)
     load_state(s, x.y_stage)
-    return rates(x, s, m, row, x.t_before[0] + c.c[row] * h)
+    return rates(x, s, m, row, x.t_before + c.c[row] * h)

@@ -1,4 +1,4 @@
-"""How the compiled routines of the mechanics end: zero or a count, or one of these failures.
+"""How compiled routines end, zero or a count, or one of these failures; and what SUNDIALS' headers number.
 
 Python reads them too, so nothing of the compiler is imported here; `stiffmbs.solve.failures` puts them into words.
 """
@@ -13,3 +13,17 @@ NO_BALANCE = -6
 """Friction and the reactions that press it have no unique common solution, or the iteration does not find it."""
 NO_ROOM = -7
 """There is too little memory for the factors of a block system."""
+
+STEP_TOO_SMALL, STIFF = -4, -5
+PAUSED, AT_END, AT_EVENT = 0, 1, 2
+"""Of a call for explicit steps: to be called again, done, and stopped where a force changes its law."""
+
+OK, RECOVERABLE, FAILED = 0, 1, -1
+"""What a callback of SUNDIALS returns: after a recoverable failure IDA tries a smaller step."""
+ONE_STEP, STOP_RETURN, ROOT_RETURN = 2, 1, 2
+"""IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
+CONTENT, OPERATIONS = 0, 1
+"""Words of a solver, or a vector, of SUNDIALS: its content, its table of operations."""
+NORM_TABLE = 53
+"""Word of a vector's operations that holds N_VBufPack, which IDA never calls: the address of the table of
+`stiffmbs.solve.native.error_norm` takes its place (`stiffmbs.solve.ida.operations.take_norm`)."""

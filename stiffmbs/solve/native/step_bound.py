@@ -11,12 +11,12 @@ step_bound_view = view_of("StepBound", STEP_BOUND)
 @compiled
 def longest_step(f, t):
     """The longest step from a time on: no longer than is allowed in any stretch that it touches; f.n is not 0."""
-    k = f.place[0]
+    k = f.place
     while k + 1 < f.n and f.starts[k + 1] <= t:
         k += 1
     while k > 0 and f.starts[k] > t:
         k -= 1
-    f.place[0] = k
+    f.place = k
     h = f.longest[k]
     while k + 1 < f.n and f.starts[k + 1] < t + h:
         k += 1

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, eliminated_view, shifted
 
-ROUNDING = 2.2e-16
+POSITION_ROUNDING = 2.2e-16
+"""Of positions, relative to the size of the mechanism: that of a double."""
 CLOSE = 1e-2
 """Part that the pivots of J M^-1 J^T keep, d^2, from which on an end is looked at."""
 HARMFUL = 0.01
@@ -25,16 +26,16 @@ def uncertain_end(x, c, h):
     if not x.pivots_tell:
         return False
     r = eliminated_view(x.eliminated)
-    kept = r.kept[0]
-    if kept > CLOSE * r.most_kept[0]:
+    kept = r.kept
+    if kept > CLOSE * r.most_kept:
         return False
     if not kept > 0.0:
         return True
-    distance = (kept / r.most_kept[0]) ** 0.5
+    distance = (kept / r.most_kept) ** 0.5
     rates = shifted(x.k, c.stages * x.n)
     total = 0.0
     for i in range(x.n_q, x.n):
-        scale = x.atol[i] + x.rtol[0] * max(abs(x.y_before[i]), abs(x.y[i]))
-        change = h * rates[i] * ROUNDING / distance**3 / scale
+        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
+        change = h * rates[i] * POSITION_ROUNDING / distance**3 / scale
         total += change * change
     return total > HARMFUL * HARMFUL * x.n

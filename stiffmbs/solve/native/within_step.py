@@ -18,8 +18,6 @@ from stiffmbs.compile.machine.layout import EVENT_SEARCH
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 
-READY, BEGUN, DEPTH = range(3)
-"""Marks: whether values at the start of the step are known, that start's time, and how far an event function must go beyond zero."""
 MARGIN = 0.1
 """Part of the range of a function's bounds that is added to those between the ends."""
 LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
@@ -281,19 +279,15 @@ def _visits(w, k, value, low, high):
     if here != one and w.left_high[k] < 0.0:
         w.left_low[k], w.left_high[k] = low, high
     if k < w.n_event_functions:
-        return here != one and abs(value) > w.mark[DEPTH]
+        return here != one and abs(value) > w.depth
     if abs(one - other) > 1:
         return here != one
     if here > max(one, other):
         passed = max(one, other)
-        return value - _edge(w, k, passed) > max(
-            w.mark[DEPTH], BARELY * (_edge(w, k, passed + 1) - _edge(w, k, passed))
-        )
+        return value - _edge(w, k, passed) > max(w.depth, BARELY * (_edge(w, k, passed + 1) - _edge(w, k, passed)))
     if here < min(one, other):
         passed = min(one, other) - 1
-        return _edge(w, k, passed) - value > max(
-            w.mark[DEPTH], BARELY * (_edge(w, k, passed) - _edge(w, k, passed - 1))
-        )
+        return _edge(w, k, passed) - value > max(w.depth, BARELY * (_edge(w, k, passed) - _edge(w, k, passed - 1)))
     return False
 
 
@@ -386,7 +380,7 @@ def first_event(w, s, begun, h):
     noise = 0.0
     for i in range(w.n_state):
         noise = max(noise, NOISE * abs(w.row[i]))
-    w.mark[DEPTH] = SHALLOW * noise
+    w.depth = SHALLOW * noise
     while low < 1.0:
         end = min(low + part, 1.0)
         part = end - low

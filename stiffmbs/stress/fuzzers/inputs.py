@@ -25,7 +25,7 @@ IMPULSE = 10.0
 """Of the absolute value of each input, N s: absolute tolerances then do not matter."""
 NOTHING = 1e-9
 """Impulse, N s, of inputs of the size of 1 N that vanish but for rounding."""
-ROUNDING = 1e-15
+DRIVE_ROUNDING = 1e-15
 """Of a drive, m: differences of numbers of the size of 1, as tanh(z) - tanh(z - 3) far from its rise."""
 UNSEEN = 0.1
 """Part of a drive's change by which its peak may exceed what output points show without a word."""
@@ -92,7 +92,7 @@ def _driven(rng: np.random.Generator) -> Verdict:
     expected, everywhere = made.of(solution.time), made.of(made.mesh())
     change = float(np.ptp(everywhere))
     error = float(np.max(np.abs(x - expected))) / max(change, 1e-300)
-    unseen = max(np.max(everywhere) - np.max(x), np.min(x) - np.min(everywhere)) - ROUNDING
+    unseen = max(np.max(everywhere) - np.max(x), np.min(x) - np.min(everywhere)) - DRIVE_ROUNDING
     if unseen > UNSEEN * change and not any("output points" in note for note in solution.notes):
         return Verdict(Outcome.WRONG, unseen / change, UNSEEN, f"a peak between output points is not told: {detail}")
-    return measured(error, 1e-6 + ROUNDING / max(change, 1e-300), detail)
+    return measured(error, 1e-6 + DRIVE_ROUNDING / max(change, 1e-300), detail)

@@ -5,9 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..layout import DYNAMICS, ELIMINATED, EQUATIONS, EXPLICIT, FACTORS, IDA, INT, POINTERS, SCHEME, STATE, Layout
+from ..layout import (
+    CELLS,
+    DYNAMICS,
+    ELIMINATED,
+    EQUATIONS,
+    EXPLICIT,
+    FACTORS,
+    IDA,
+    INT,
+    POINTERS,
+    SCHEME,
+    STATE,
+    Layout,
+)
 from ..translate.code import Code, constant
-from ..translate.values import Builtin, Operand, Record, Value, builtin
+from ..translate.values import Builtin, Cell, Operand, Record, Untranslatable, Value, builtin
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -44,13 +57,23 @@ def call_kernel(code: Code, kernel: Operand, *arguments: Value) -> None:
     code.put(f"call void {function.text}({', '.join(argument.typed for argument in arguments)})")
 
 
+@builtin
+def address_of(code: Code, cell: Value) -> Value:
+    """The address of a cell, ``address_of(record.cell)``, for C functions that set it; the translator writes it out."""
+    raise Untranslatable(f"found {cell}, expected a cell of a record")
+
+
 def view_of(name: str, layout: Layout) -> Builtin:
-    """A function of compiled code that turns a table laid out by `layout` into a record of pointers and numbers."""
+    """A function of compiled code that turns a table laid out by `layout` into a record of pointers, numbers and cells."""
 
     def view(code: Code, table: Value) -> Record:
-        fields = {}
+        fields: dict[str, Value] = {}
         for column, (field, kind) in enumerate(layout.items()):
-            entry = code.load(code.item(table, constant(column)))
+            place = code.item(table, constant(column))
+            if kind in CELLS:
+                fields[field] = Cell(CELLS[kind], place.text)
+                continue
+            entry = code.load(place)
             fields[field] = entry if kind == INT else _pointer(code, POINTERS[kind], entry)
         return Record(name, fields)
 

@@ -22,7 +22,7 @@ TOO_SMALL = 1e-3
 
 DONE, SINGULAR, FULL = 0, 1, 2
 """FULL: there is no memory for more entries."""
-CAPACITY, L_ROW, L, U_ROW, U = (list(FACTORS).index(name) for name in ("capacity", "l_row", "l", "u_row", "u"))
+L_ROW, L, U_ROW, U = (list(FACTORS).index(name) for name in ("l_row", "l", "u_row", "u"))
 
 
 @compiled
@@ -68,7 +68,7 @@ def _more_room(table):
         return False
     if not (holds(table, U_ROW, capacity, INT) and holds(table, U, capacity, FLOAT)):
         return False
-    table[CAPACITY] = capacity
+    f.capacity = capacity
     return True
 
 
@@ -91,7 +91,7 @@ def _factored_within(f):
         f.stack[2 * n + k] = 0
     l_end = 0
     u_end = 0
-    f.ready[0] = 0
+    f.ready = 0
     for k in range(n):
         f.l_start[k] = l_end
         f.u_start[k] = u_end
@@ -144,7 +144,7 @@ def _factored_within(f):
     f.u_start[n] = u_end
     for p in range(l_end):
         f.l_row[p] = f.pivot[f.l_row[p]]
-    f.ready[0] = 1
+    f.ready = 1
     return DONE
 
 
@@ -233,7 +233,7 @@ def factored(table):
     The matrix is overwritten by the scaled one.
     """
     f = factors_view(table)
-    if f.ready[0]:
+    if f.ready:
         scale(f)
         if refactor(f) == DONE:
             return DONE

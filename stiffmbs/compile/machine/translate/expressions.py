@@ -10,7 +10,7 @@ from typing import Any
 from .arithmetic import compared, computed, negated
 from .code import Code, common, constant
 from .functions import FUNCTIONS
-from .values import Builtin, Operand, Record, Untranslatable, Value, refuse
+from .values import POINTERS_TO, Builtin, Cell, Operand, Record, Untranslatable, Value, refuse
 
 
 class Expressions:
@@ -59,11 +59,10 @@ class Expressions:
             case ast.Name(name):
                 return self._named(name)
             case ast.Attribute(owner, name):
-                record = self.value(owner)
-                if isinstance(record, Record) and name in record.fields:
-                    return record.fields[name]
-            case ast.Subscript(pointer, index):
-                return code.load(code.item(self.value(pointer), self.value(index)))
+                found = self._field(owner, name)
+                return code.load(found) if isinstance(found, Cell) else found
+            case ast.Subscript():
+                return code.load(self.place(node))
             case ast.BinOp(left, operation, right):
                 return computed(code, operation, self.value(left), self.value(right))
             case ast.UnaryOp(ast.USub(), operand):
@@ -78,9 +77,27 @@ class Expressions:
                 return tuple(self.value(part) for part in parts)
             case ast.Call(ast.Name("float"), [ast.Constant(str() as literal)], []):
                 return constant(float(literal))
+            case ast.Call(ast.Name("address_of"), [ast.Attribute() as cell], []):
+                place = self.place(cell)
+                return Value(POINTERS_TO[place.kind], place.text)
             case ast.Call(ast.Name(name), arguments, []):
                 return self._called(name, [self.value(argument) for argument in arguments])
         raise Untranslatable("not of the language")
+
+    def place(self, node: ast.Subscript | ast.Attribute) -> Value:
+        """Where an item of an array, or a cell of a record, stands in memory."""
+        if isinstance(node, ast.Subscript):
+            return self.code.item(self.value(node.value), self.value(node.slice))
+        found = self._field(node.value, node.attr)
+        if not isinstance(found, Cell):
+            raise Untranslatable(f"'{node.attr}' is no cell")
+        return found
+
+    def _field(self, owner: ast.expr, name: str) -> Value:
+        record = self.value(owner)
+        if not isinstance(record, Record) or name not in record.fields:
+            raise Untranslatable(f"no record with a field '{name}'")
+        return record.fields[name]
 
     def truth(self, node: ast.expr) -> Value:
         """Whether an expression is true."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from dataclasses import replace
 
 from .arithmetic import computed
 from .code import Code, Lines, common
@@ -47,8 +48,8 @@ class Statements:
             case ast.AugAssign(ast.Name() as target, operation, expression):
                 old = value(ast.Name(target.id))
                 self._assign(target, computed(code, operation, old, value(expression)))
-            case ast.AugAssign(ast.Subscript(pointer, index), operation, expression):
-                place = code.item(value(pointer), value(index))
+            case ast.AugAssign(ast.Subscript() | ast.Attribute() as target, operation, expression):
+                place = self.expressions.place(target)
                 old = code.load(place)
                 code.store(place, computed(code, operation, old, value(expression)))
             case ast.If(test, then, otherwise):
@@ -93,8 +94,8 @@ class Statements:
                 self._set(name, value)
             case ast.Name(name), Record() if name not in expressions.records:
                 expressions.records[name] = value
-            case ast.Subscript(pointer, index), Value():
-                code.store(code.item(expressions.value(pointer), expressions.value(index)), value)
+            case ((ast.Subscript() | ast.Attribute()), Value()):
+                code.store(expressions.place(target), value)
             case ast.Tuple(targets), tuple() if len(targets) == len(value):
                 for part, own in zip(targets, value, strict=True):
                     self._assign(part, own)
@@ -168,7 +169,7 @@ def parameters(names: Sequence[str], values: Sequence[Operand], expressions: Exp
     declared = []
     for name, value in zip(names, values, strict=True):
         if isinstance(value, Record):
-            fields = {field: Value(own.kind, f"%{name}.{field}") for field, own in value.fields.items()}
+            fields = {field: replace(own, text=f"%{name}.{field}") for field, own in value.fields.items()}
             expressions.records[name] = Record(value.name, fields)
             declared += [own.typed for own in fields.values()]
         elif isinstance(value, Value):

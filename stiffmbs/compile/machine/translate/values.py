@@ -19,6 +19,7 @@ LLVM_TYPES = {
 """The kinds of values: numbers, truth values, C's int, pointers to int64, int32 and float64."""
 ITEMS = {"ints": "int", "indices": "int32", "floats": "float"}
 """What a pointer points to."""
+POINTERS_TO = {item: pointer for pointer, item in ITEMS.items()}
 
 
 class Untranslatable(TypeError):
@@ -47,8 +48,18 @@ class Value:
 
 
 @dataclass(frozen=True)
+class Cell(Value):
+    """A number in memory under a name: its kind, and its address."""
+
+    @property
+    def typed(self) -> str:
+        """Its address as an operand: functions that are given a cell may set it."""
+        return f"ptr {self.text}"
+
+
+@dataclass(frozen=True)
 class Record:
-    """Named values that are known one by one; exists only while translating."""
+    """Named values and cells that are known one by one; exists only while translating."""
 
     name: str
     fields: dict[str, Value]
