@@ -1,24 +1,25 @@
 """Static equilibrium: Newton's method on the balance of forces, with the constraints, from poses far away too.
 
-Each move d solves, at rest and with the multipliers of the current pose,
+A motion in a thick fluid is followed by implicit steps (pseudo-transient continuation: Kelley and Keyes, SIAM J. Numer.
+Anal. 35, 1998), which lead to stable equilibria alone: from the pose q_n each step seeks, at rest,
 
-    (s M - f_q + d(J^T lam)/dq) d + J^T lam+ = f,    J d = -C.
+    s M (q - q_n) + J^T lam = f(q),    C(q) = 0,
 
-With s = 0 it is Newton's; s > 0 is an implicit step of a motion in a thick fluid (pseudo-transient continuation: Kelley and
-Keyes, SIAM J. Numer. Anal. 35, 1998), which leads to stable equilibria alone.  s falls where forces change along the move
-as the linear equations predict, and rises where they do not, as where a wheel meets the road.  States of the user's own
-are unknowns beside d: their rates have to vanish, and sqrt(s) stands for one over the length of the implicit step.
+by Newton's method on (s M - f_q + d(J^T lam)/dq) d = what is left.  s falls where Newton's moves become smaller quickly, as
+where forces change along the step as their derivatives predict, and rises where they do not, as where a wheel meets the
+road.  With s = 0 this is Newton's method for the equilibrium itself.  States x of the user's own are unknowns too: a step
+seeks sqrt(s) (x - x_n) = x'(q, x), as the implicit Euler step of its length.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 
+from ..compile.system import System
 from ..compile.terms import TERM_AXES
 from ..errors import SolverError
 from .dynamics import Dynamics
@@ -29,11 +30,15 @@ TRANSLATION, ROTATION = 0.25, 0.2
 """Longest move of a body, relative to the mechanism's size, and rad (Adams: EQUILIBRIUM/TLIMIT, ALIMIT)."""
 SLOWEST, STIFFEST = 1e-3, 1e15
 """Bounds of the root of s, rad/s: the least holds free directions where they are."""
-FALLS, RISES = 0.125, 8.0
-TRUSTED, REFUSED = 0.25, 1.0
-"""Error of the predicted forces relative to the imbalance, up to which s falls, and from which a move is taken back."""
-BALANCED = 1e-11
-"""Imbalance of forces that counts as none, relative to the largest force."""
+FALLS, RISES = 0.1, 4.0
+WANTED, CLOSE, TOO_FAR = 0.1, 0.05, 0.6
+"""Newton's moves in a step: each relative to the one before, which s is chosen for; relative to the whole step, which ends
+the step, and from which on it is taken back."""
+MOST_CORRECTIONS = 8
+SLOW = 0.5
+"""Part that has to be left after one of the last moves for another one."""
+BALANCED, ROUNDING = 1e-11, 8
+"""Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
 
 
 @dataclass(frozen=True)
@@ -56,50 +61,44 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
-class RatesOfStates:
-    """How fast states of the user's own change, and the sizes of what their rates are made of."""
-
-    rates: np.ndarray
-    sizes: np.ndarray
-
-
-@dataclass(frozen=True)
 class _Balance:
-    """What is known at a pose: the multipliers, what is left of the forces, and the largest of them."""
+    """What is known at a pose.
 
+    Attributes
+    ----------
+    n_u : int
+        Number of velocities.
+    left : ndarray, shape (n_u + states,)
+        What is left of the forces, and the rates of the states.
+    lam : ndarray
+    largest : float
+        The largest force.
+    allowed : ndarray, shape (n_u + states,)
+        What may be left.
+    stiffness : sparse array
+        Derivatives of what is left, with the opposite sign.
+    jacobian, reactions : sparse arrays
+        Of the constraints, and of what is left by multipliers, with the opposite sign.
+    """
+
+    n_u: int
     left: np.ndarray
     lam: np.ndarray
     largest: float
-    states: RatesOfStates
+    allowed: np.ndarray
+    stiffness: csc_array
+    jacobian: csc_array
+    reactions: csc_array
 
-    def is_found(self) -> bool:
-        """Whether forces balance and states stay as they are."""
-        forces = np.max(np.abs(self.left), initial=0.0) <= BALANCED * self.largest
-        return bool(forces and np.all(np.abs(self.states.rates) <= BALANCED * self.states.sizes))
+    @property
+    def imbalance(self) -> float:
+        """Of forces, relative to the largest."""
+        return float(np.max(np.abs(self.left[: self.n_u]), initial=0.0) / (self.largest or 1.0))
 
-    def norm(self, mass: np.ndarray, left: np.ndarray | None = None, rates: np.ndarray | None = None) -> float:
-        """Of what is left of the forces, or of other forces and rates as measured beside these."""
-        left, rates = self.left if left is None else left, self.states.rates if rates is None else rates
-        forces = float(np.sqrt(np.sum(left**2 / mass)))
-        if not len(rates):
-            return forces
-        of_one = self.largest / np.sqrt(mass.mean()) or 1.0
-        return float(
-            np.hypot(forces / of_one, np.linalg.norm(rates / np.where(self.states.sizes, self.states.sizes, 1.0)))
-        )
-
-
-def rates_of_states(dynamics: Dynamics, t: float) -> RatesOfStates:
-    """At the state at hand, of which accelerations are known."""
-    system, state = dynamics.system, dynamics.state
-    if not system.states:
-        return RatesOfStates(np.empty(0), np.empty(0))
-    own = slice(system.first_state, None)
-    rates = dynamics.position_rates(state.q, state.u)[own]
-    state.evaluate("tangent", t)
-    sizes = system.per_coordinate(system.size, 1.0)
-    sizes[own] = system.state_scales
-    return RatesOfStates(rates, np.abs(state.matrix("tangent", "rate_q")[own]) @ np.maximum(sizes, np.abs(state.q)))
+    @property
+    def balanced(self) -> bool:
+        """Whether no more is left than rounding and a little of the largest force."""
+        return bool(np.all(np.abs(self.left) <= self.allowed))
 
 
 def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
@@ -117,41 +116,62 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
     SolverError
         Where none is found; names the body with the largest imbalance.
     """
-    system, state = dynamics.system, dynamics.state
+    state = dynamics.state
     state.u[:] = 0.0
-    limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
-    shift, known = 1.0, _balance(dynamics, t)
-    for count in range(MOST_MOVES):
-        if known.is_found():
-            return Equilibrium(
-                state.q.copy(),
-                known.lam,
-                count,
-                float(np.max(np.abs(known.left), initial=0.0) / (known.largest or 1.0)),
-            )
+    shift, known, moves = 1.0, _balance(dynamics, t), 0
+    while moves < MOST_MOVES and shift < STIFFEST:
+        if known.balanced:
+            known, more = _polished(dynamics, t, known)
+            return Equilibrium(state.q.copy(), known.lam, moves + more, known.imbalance)
         before = state.q.copy()
-        move, change = _move(dynamics, t, shift, known)
-        longest = float(np.max(np.abs(move) / limits, initial=0.0))
-        if not system.states and known.left @ move < 0 and shift < STIFFEST:  # towards an unstable equilibrium
-            shift *= RISES
-            continue
-        if longest > 1.0:
-            shift = max(2.0 * shift, shift * float(np.sqrt(longest)))
-            continue
-        state.q[:] = system.of_body.moved(before, move)
-        state.q[system.first_state :] += change
-        found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
-        off = _misjudged(system.mass, known, found, shift, move, change)
-        if found is None or off > REFUSED:
+        step = _step(dynamics, t, shift, known)
+        moves += step.moves
+        shift = max(SLOWEST, step.factor * shift)
+        if step.known is None:
             state.q[:] = before
-            if shift > STIFFEST:
-                break
-            shift *= RISES
-            continue
-        known = found
-        if off < TRUSTED:
-            shift = max(SLOWEST, FALLS * shift)
+        else:
+            known = step.known
     raise SolverError(_unbalanced(dynamics, known))
+
+
+@dataclass(frozen=True)
+class _Step:
+    """What came of an implicit step: the balance there, or None where it was none; what the root of s is multiplied by."""
+
+    known: _Balance | None
+    factor: float
+    moves: int
+
+
+def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
+    """An implicit step from the present pose; the pose is wherever it led."""
+    system, state = dynamics.system, dynamics.state
+    of_states = np.maximum(system.state_scales, np.abs(state.q[system.first_state :]))
+    limits = np.append(system.per_velocity(TRANSLATION * system.size, ROTATION), of_states)
+    start, first = state.q.copy(), 0.0
+    for count in range(1, MOST_CORRECTIONS + 1):
+        whole = _way(system, start, state.q)
+        move = _move(dynamics, shift, known, whole)
+        if (
+            count == 1 and not system.states and not known.left @ np.nan_to_num(move) >= 0
+        ):  # towards an unstable equilibrium
+            break
+        longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
+        if longest_of_all > 1.0:
+            return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
+        if count > 1 and longest > TOO_FAR * longest_of_all:
+            break
+        state.q[:] = _moved(system, state.q, move)
+        if dynamics.assemble(t) < 0:
+            break
+        known, first = _balance(dynamics, t), first or longest
+        if known.balanced:
+            return _Step(known, 1.0, count)
+        if count > 1 and longest <= CLOSE * longest_of_all:
+            ratio = (longest / first) ** (1 / (count - 1))
+            factor = np.sqrt(np.clip(max(ratio / WANTED, longest_of_all), FALLS**2, 1.0))
+            return _Step(known, float(factor), count)
+    return _Step(None, RISES, count)
 
 
 def _balance(dynamics: Dynamics, t: float) -> _Balance:
@@ -166,9 +186,14 @@ def _balance(dynamics: Dynamics, t: float) -> _Balance:
     largest = max(
         np.max(np.abs(state.vector("motion", "f")), initial=0.0), np.max(np.abs(_entries(dynamics)), initial=0.0)
     )
-    return _Balance(
-        system.mass * acceleration, state.lam[: system.n_c].copy(), float(largest), rates_of_states(dynamics, t)
-    )
+    rates = dynamics.position_rates(state.q, state.u)[system.first_state :]
+    stiffness, jacobian, reactions, sizes = _derivatives(dynamics, t)
+    farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
+    of_poses = abs(stiffness[: system.n_u, : system.n_u])
+    rounding = ROUNDING * np.finfo(float).eps * (of_poses @ system.per_velocity(float(farthest), 1.0))
+    allowed = np.append(np.maximum(BALANCED * largest, rounding), BALANCED * sizes)
+    left, lam = np.append(system.mass * acceleration, rates), state.lam[: system.n_c].copy()
+    return _Balance(system.n_u, left, lam, float(largest), allowed, stiffness, jacobian, reactions)
 
 
 def _entries(dynamics: Dynamics) -> np.ndarray:
@@ -178,36 +203,67 @@ def _entries(dynamics: Dynamics) -> np.ndarray:
     return entries
 
 
-def _move(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> tuple[np.ndarray, np.ndarray]:
-    """The next move of the bodies, and the change of the states."""
-    system, state = dynamics.system, dynamics.state
-    state.lam[: system.n_c] = known.lam
-    state.evaluate("tangent", t)
-    rows = np.flatnonzero(system.active)
+def _derivatives(dynamics: Dynamics, t: float) -> tuple[csc_array, csc_array, csc_array, np.ndarray]:
+    """-f_q + d(J^T lam)/dq, J and J^T of the equations that are not redundant, by velocities, all with rows and columns of
+    states; and the sizes of what the rates of states are made of."""
+    system, q = dynamics.system, dynamics.state.q
+    dynamics.state.evaluate("tangent", t)
     rates = _sparse(dynamics, "tangent", "Z") + _identity(dynamics)
-    of_poses = _sparse(dynamics, "tangent", "f_q")
-    stiffness = (_sparse(dynamics, "tangent", "G_lam") - of_poses) @ rates
-    by_state = slice(system.first_state, None)
-    forces_by_states = -of_poses[:, by_state]
-    of_rates = _sparse(dynamics, "tangent", "rate_q")[by_state]
-    by_reactions = -_sparse(dynamics, "tangent", "rate_lam")[by_state][:, rows]
-    rates_by_states = diags_array(np.full(len(system.states), shift)) - of_rates[:, by_state]
+    by_pose = _sparse(dynamics, "tangent", "G_lam") - _sparse(dynamics, "tangent", "f_q")
+    stiffness, rows = by_pose @ rates, np.flatnonzero(system.active)
     jacobian = _sparse(dynamics, "tangent", "J")[rows]
-    state.evaluate("motion", t)
-    forces: list[Any] = [diags_array(shift**2 * system.mass) + stiffness]
-    blocks = [[*forces, jacobian.T], [jacobian, None]]
-    if system.states:
-        blocks = [
-            [*forces, forces_by_states, jacobian.T],
-            [-of_rates @ rates, rates_by_states, by_reactions],
-            [jacobian, None, None],
-        ]
-    right = np.concatenate([known.left, known.states.rates, np.zeros(len(rows))])
+    if not system.states:
+        return stiffness, jacobian, jacobian.T, np.empty(0)
+    own = slice(system.first_state, None)
+    of_rates = _sparse(dynamics, "tangent", "rate_q")[own]
+    whole = block_array([[stiffness, by_pose[:, own]], [-of_rates @ rates, -of_rates[:, own]]], format="csc")
+    wide = block_array([[jacobian, csc_array((len(rows), len(system.states)))]], format="csc")
+    reactions = block_array([[jacobian.T], [-_sparse(dynamics, "tangent", "rate_lam")[own][:, rows]]], format="csc")
+    sizes = system.per_coordinate(system.size, 1.0)
+    sizes[own] = system.state_scales
+    return whole, wide, reactions, abs(of_rates) @ np.maximum(sizes, np.abs(q))
+
+
+def _way(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """What leads from a pose and states to others."""
+    return np.append(system.move(start, there), (there - start)[system.first_state :])
+
+
+def _moved(system: System, q: np.ndarray, move: np.ndarray) -> np.ndarray:
+    """The pose and states after a move."""
+    there = system.of_body.moved(q, move[: system.n_u])
+    there[system.first_state :] += move[system.n_u :]
+    return there
+
+
+def _move(dynamics: Dynamics, shift: float, known: _Balance, whole: np.ndarray) -> np.ndarray:
+    """Newton's move in a step that has come so far as a whole; `shift` is the root of s."""
+    system, jacobian = dynamics.system, known.jacobian
+    inertia = np.append(shift**2 * system.mass, np.full(len(system.states), shift))
+    matrix = block_array([[diags_array(inertia) + known.stiffness, known.reactions], [jacobian, None]], format="csc")
+    right = np.concatenate([known.left - inertia * whole, np.zeros(jacobian.shape[0])])
     try:
-        found: np.ndarray = splu(block_array(blocks, format="csc")).solve(right)
+        found: np.ndarray = splu(matrix).solve(right)[: len(inertia)]
     except RuntimeError:  # exactly singular: a larger shift ends it
-        return np.full(system.n_u, np.inf), np.zeros(len(system.states))
-    return found[: system.n_u], found[system.n_u : system.n_u + len(system.states)]
+        return np.full(len(inertia), np.inf)
+    return found
+
+
+def _polished(dynamics: Dynamics, t: float, known: _Balance) -> tuple[_Balance, int]:
+    """Newton's moves from a balanced pose as long as less and less is left, and their number."""
+    system, state = dynamics.system, dynamics.state
+    for count in range(MOST_CORRECTIONS):
+        before = state.q.copy()
+        move = _move(dynamics, SLOWEST, known, np.zeros(len(known.left)))
+        if not np.all(np.isfinite(move)):
+            return known, count
+        state.q[:] = _moved(system, before, move)
+        found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
+        if found is None or not np.max(np.abs(found.left)) < SLOW * np.max(np.abs(known.left)):
+            state.q[:] = before
+            return known, count
+        known = found
+    return known, MOST_CORRECTIONS
 
 
 def _identity(dynamics: Dynamics) -> csc_array:
@@ -225,28 +281,18 @@ def _sparse(dynamics: Dynamics, term_set: str, name: str) -> csc_array:
     return csc_array((dynamics.state.values[term_set][term.source], (term.row, term.column)), shape=shape)
 
 
-def _misjudged(
-    mass: np.ndarray, known: _Balance, found: _Balance | None, shift: float, move: np.ndarray, change: np.ndarray
-) -> float:
-    """How far the forces left after a move are from the predicted s M d, relative to those before; the same of rates."""
-    if found is None:
-        return np.inf
-    off = known.norm(mass, found.left - shift**2 * mass * move, found.states.rates - shift * change)
-    return float(off / known.norm(mass))
-
-
 def _unbalanced(dynamics: Dynamics, known: _Balance) -> str:
     system = dynamics.system
-    forces = np.max(np.abs(known.left), initial=0.0) <= BALANCED * known.largest
-    if forces and system.states:
-        worst = int(np.argmax(np.abs(known.states.rates) / np.maximum(known.states.sizes, np.finfo(float).tiny)))
+    forces, rates = np.split(known.left, [system.n_u])
+    if system.states and np.all(np.abs(forces) <= known.allowed[: system.n_u]):
+        worst = int(np.argmax(np.abs(rates) / np.maximum(known.allowed[system.n_u :], np.finfo(float).tiny)))
         return (
-            f"no equilibrium was found: the state {system.states[worst]} goes on changing ({known.states.rates[worst]:.3g} per "
-            "second), expected rates of states that can vanish"
+            f"no equilibrium was found: the state {system.states[worst]} goes on changing ({rates[worst]:.3g} per second), "
+            "expected rates of states that can vanish"
         )
-    worst = int(np.argmax(np.abs(known.left)))
+    worst = int(np.argmax(np.abs(forces)))
     name = system.name_of(worst, system.of_body.reactions)
     return (
-        f"no equilibrium was found: the largest imbalance is left in {name} ({known.left[worst]:.3g} of "
+        f"no equilibrium was found: the largest imbalance is left in {name} ({forces[worst]:.3g} of "
         f"{known.largest:.3g}), expected forces that hold every free motion"
     )

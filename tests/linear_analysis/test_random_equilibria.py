@@ -1,0 +1,40 @@
+"""Equilibria of random mechanisms with springs, bushings, contacts and closed loops, in the plane and in space.
+
+Each is found, has no accelerations by the equations of motion, stays at rest in a run, and is stable by its modes unless
+it is told to be unstable (`stiffmbs.stress.fuzzers.equilibria`).
+"""
+
+import numpy as np
+import pytest
+
+from stiffmbs.jobs.equilibrium import EquilibriumFound, equilibrium
+from stiffmbs.results.solution import Solution
+from stiffmbs.stress.case import Outcome
+from stiffmbs.stress.fuzzers import equilibria
+from stiffmbs.stress.random_statics import random_statics
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_random_equilibrium_is_balanced_still_and_stable(seed):
+    verdict = equilibria.trial(seed)
+    assert verdict.outcome is Outcome.RIGHT, verdict.detail
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", range(0, 200, 20))
+def test_two_hundred_random_equilibria(first):
+    """All found: 100 in the plane (even seeds), 100 in space."""
+    verdicts = {seed: equilibria.trial(seed) for seed in range(first, first + 20)}
+    assert {seed: v.detail for seed, v in verdicts.items() if v.outcome is not Outcome.RIGHT} == {}
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_pose_beside_an_equilibrium_is_seen_to_be_none(seed, monkeypatch):
+    """The judge can fail: accelerations and motion tell a state that is a little off."""
+    model = random_statics(np.random.default_rng(seed), in_space=seed % 2 == 1)
+    found = equilibrium(model)
+    rest, body = found.solution, next(iter(model.bodies))
+    off = {name: values + 1e-4 * (name == f"{body}.x") for name, values in rest.channels.items()}
+    moved = Solution(**{**vars(rest), "channels": off})
+    monkeypatch.setattr(equilibria, "equilibrium", lambda model: EquilibriumFound(**{**vars(found), "solution": moved}))
+    assert equilibria.trial(seed).outcome is Outcome.WRONG
