@@ -39,7 +39,7 @@ _LATER = {
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
-    "verify": ".verification.verify",
+    "verify": ".verification.verify", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
 

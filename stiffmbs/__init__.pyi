@@ -54,6 +54,7 @@ from .jobs.transfer import transfer as transfer
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
+from .show.drawing.draw import draw as draw
 from .verification.verify import verify as verify
 
 __version__: str

@@ -14,14 +14,13 @@ from stiffmbs.describe.spatial.forces.beam import Beam as _Beam
 from stiffmbs.describe.spatial.forces.bushing import Bushing as _Bushing
 from stiffmbs.describe.spatial.forces.field import FieldForce as _FieldForce
 from stiffmbs.describe.spatial.forces.joint_friction import JointFriction as _JointFriction
-from stiffmbs.describe.spatial.forces.line_force import LineForce as _LineForce
 from stiffmbs.describe.spatial.forces.python_force import PythonForce as _PythonForce
+from stiffmbs.describe.spatial.forces.shared import LineForce as _LineForce
+from stiffmbs.describe.spatial.forces.shared import SpringDamper as _SpringDamper
 from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
-from stiffmbs.describe.spatial.forces.spring_damper import SpringDamper as _SpringDamper
 from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
 from stiffmbs.describe.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
 from stiffmbs.describe.spatial.joints.cylindrical import Cylindrical as _Cylindrical
-from stiffmbs.describe.spatial.joints.distance import Distance as _Distance
 from stiffmbs.describe.spatial.joints.fixed import Fixed as _Fixed
 from stiffmbs.describe.spatial.joints.orientation import Orientation as _Orientation
 from stiffmbs.describe.spatial.joints.parallel import Parallel as _Parallel
@@ -34,6 +33,7 @@ from stiffmbs.describe.spatial.joints.prismatic import Prismatic as _Prismatic
 from stiffmbs.describe.spatial.joints.revolute import Revolute as _Revolute
 from stiffmbs.describe.spatial.joints.revolute_spherical import RevoluteSpherical as _RevoluteSpherical
 from stiffmbs.describe.spatial.joints.screw import Screw as _Screw
+from stiffmbs.describe.spatial.joints.shared import Distance as _Distance
 from stiffmbs.describe.spatial.joints.spherical import Spherical as _Spherical
 from stiffmbs.describe.spatial.joints.thread import Thread as _Thread
 from stiffmbs.describe.spatial.joints.universal import Universal as _Universal

@@ -19,7 +19,7 @@ ORDER = (
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts"}
 METHODS = {
-    (ROOT.name, "describe", "model_builder"): {"jobs", "results", "verification"},
+    (ROOT.name, "describe", "model_builder"): {"jobs", "results", "show", "verification"},
     (ROOT.name, "results", "solution"): {"show"},
 }
 """What users hold offers what can be done with it as methods, which load it when they are called."""

@@ -8,6 +8,7 @@ from .bench import bench
 from .cache import cache
 from .check import check
 from .convert import convert
+from .draw import draw
 from .equilibrium import equilibrium
 from .modes import modes
 from .process import Process
@@ -24,5 +25,5 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, equilibrium, modes, response, convert, schema, bench, cache, report, stress):
+for command in (run, check, equilibrium, modes, response, convert, schema, bench, cache, draw, report, stress):
     main.add_command(command)

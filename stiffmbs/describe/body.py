@@ -12,6 +12,7 @@ from . import given
 from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .formula.names import PLANE
+from .geometry.planar import PlanarGeometry
 from .handle import Handle
 from .marker import Marker, Placement
 from .units import si
@@ -32,6 +33,8 @@ class Body(Described):
         At the start, m/s, rad/s.
     markers : mapping of str to Placement
         Named points and directions on the body.
+    geometry : mappings, optional
+        What drawings show of the body; derived from its markers and joints without it.
     """
 
     mass: si.PositiveMass = Field(description="mass, kg")
@@ -43,6 +46,7 @@ class Body(Described):
     )
     omega: si.AngularVelocity = Field(0.0, description="angular velocity at the start, rad/s")
     markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
+    geometry: PlanarGeometry = Field((), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh")
 
     if TYPE_CHECKING:
 
@@ -56,6 +60,7 @@ class Body(Described):
             velocity: given.Numbers = (0.0, 0.0),
             omega: given.Number = 0.0,
             markers: given.Markers = {},  # noqa: B006 is never called
+            geometry: given.Geometry = (),
         ) -> None: ...
 
     @field_validator("markers")

@@ -82,12 +82,15 @@ class Element(Described):
         law or components along the axes: ``vector``, ``rotations``, ``components`` (of force, then of torque), ``matrix``,
         ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``; names of fields that name joints: as
         the product of their coordinates.  For a marker: its axis whose direction matters, such as ``z``.
+    symbol : str
+        The kind whose symbol drawings show; its own by default, and a diamond or a dashed line where there is none.
     """
 
     kind: ClassVar[str] = ""
     dimensions: ClassVar[tuple[int, ...]] = ()
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
     reflected: ClassVar[dict[str, str] | None] = None
+    symbol: ClassVar[str] = ""
 
     type: str = ""
 

@@ -62,10 +62,16 @@ def _shipped(package: ModuleType, base: type[Element]) -> dict[str, type[Any]]:
     for module in pkgutil.iter_modules(package.__path__):
         members = vars(importlib.import_module(f"{package.__name__}.{module.name}")).values()
         for member in members:
-            named = isinstance(member, type) and issubclass(member, base) and member.kind
+            named = isinstance(member, type) and issubclass(member, base) and member.kind and not _is_generic(member)
             if named and found.setdefault(member.kind, member) is not member:
                 raise InputError(f"two classes of elements have the kind '{member.kind}'")
     return found
+
+
+def _is_generic(element: type[Element]) -> bool:
+    """Whether the class is for markers of any family, or one such with its marker: those of the plane and of space are subclasses."""
+    generic = element.__pydantic_generic_metadata__
+    return bool(generic["parameters"] or generic["origin"])
 
 
 @dataclass(frozen=True)

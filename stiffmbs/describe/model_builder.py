@@ -26,6 +26,10 @@ from .states.section import check_states
 from .states.state import State
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure as Sheet
+
     from ..jobs.check import Report
     from ..jobs.equilibrium import EquilibriumFound
     from ..jobs.modes import Modes
@@ -355,6 +359,15 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         from ..jobs.check import check
 
         return check(self, settings, **changes)
+
+    def draw(
+        self, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
+        view: str = "", names: bool = True, forces: bool = True,
+    ) -> Sheet | None:  # fmt: skip
+        """Draw the model at an instant; parameters, result and errors are those of `stiffmbs.draw`."""
+        from ..show.drawing.draw import draw
+
+        return draw(self, path, at, described, checked, view, names, forces)
 
 
 def _key(name: str) -> str:

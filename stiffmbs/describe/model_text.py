@@ -10,6 +10,7 @@ from .element import Element, JointName
 from .fields import Described
 from .files.scene_text import scene_text
 from .formula.dimension import Known
+from .geometry.shape import Shape
 from .marker import MarkerReference
 from .model_data import ModelData
 from .states.amount import Amount
@@ -49,7 +50,7 @@ def _written(value: Any) -> Any:
             rows = [[_quantity(*entry) for entry in zip(row, value.dimensions, strict=True)] for row in value.table]
             return {**_fields(value), "table": rows}
         case Described():
-            kind = {"type": value.kind} if isinstance(value, Element) else {}
+            kind = {"type": value.type} if isinstance(value, Element | Shape) else {}
             return {**kind, **_fields(value)}
         case JointName():
             return str(value)

@@ -124,7 +124,7 @@ def read_scene(
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, line)
+    return made_scene(found, changes, source, line, file.parent if file else None)
 
 
 def made_scene(
@@ -132,6 +132,7 @@ def made_scene(
     changes: Sequence[tuple[str, str]],
     source: str,
     line_of: Callable[[tuple[Any, ...]], int | str | None],
+    folder: Path | None = None,
 ) -> Scene:
     """The scene of a mapping.
 
@@ -144,6 +145,8 @@ def made_scene(
         What messages call it.
     line_of : callable
         The line in the source of what a path of keys leads to.
+    folder : Path, optional
+        Where meshes are looked for; the working folder by default.
 
     Raises
     ------
@@ -161,7 +164,7 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found, replaced, in_parts)
+        return _validated(found, replaced, in_parts, folder)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
 
@@ -196,7 +199,9 @@ class _Located(Exception):
         self.path = path
 
 
-def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts: Sequence[tuple[str, Any]]) -> Scene:
+def _validated(
+    found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts: Sequence[tuple[str, Any]], folder: Path | None
+) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"), replaced)
         tables = read_tables(found.get("tables"), parameters)
@@ -204,7 +209,7 @@ def _validated(found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"))
-        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables}
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from ..element import Symbolic
 from ..marker import Marker
@@ -37,6 +37,8 @@ class Contact(ContactLaw):
         {"radius": 0.1, "surface": "circle", "surface_radius": 0.1},
     )
     reflected: ClassVar[dict[str, str] | None] = {"j": "y"}
+    surfaces: ClassVar[tuple[str, str, str]] = ("line", "circle", "hole")
+    about: ClassVar[str] = "circle"
 
     i: Marker = Field(description="the point, or the circle's centre")
     j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")
@@ -44,21 +46,9 @@ class Contact(ContactLaw):
     surface: Literal["line", "circle", "hole"] = Field("line", description="what i meets")
     surface_radius: si.LengthOrZero = Field(0.0, description="of a circle or hole about j, m")
 
-    @model_validator(mode="after")
-    def _fits(self) -> Contact:
-        if self.surface == "circle" and self.radius + self.surface_radius == 0:
-            raise ValueError("found two points, expected a radius or surface_radius above zero")
-        if self.surface == "hole" and self.surface_radius <= self.radius:
-            raise ValueError(
-                f"found a circle of radius {self.radius:g} in a hole of {self.surface_radius:g}, expected a wider hole"
-            )
-        return self
-
     @staticmethod
-    def gap(e: Symbolic) -> Any:
-        if e.surface == "line":
-            return (e.i.point - e.j.point).dot(e.j.normal) - e.radius
-        return Contact.gap_round(e, 1 if e.surface == "circle" else -1)
+    def out_of(e: Symbolic) -> Any:
+        return e.j.normal
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
@@ -79,10 +69,10 @@ class Contact(ContactLaw):
         That point is `radius` from i and the rest of the distance from j, both along the normal.
         """
         d = e.i.point - e.j.point
-        if e.surface == "line":
+        outward = Contact.outward(e)
+        if not outward:
             return [(1, d.dot(e.j.axis) + e.radius * (e.i.angle - e.j.angle))]
         distance = e.distance(e.i.point, e.j.point)
-        outward = 1 if e.surface == "circle" else -1
         arm = outward * distance - e.radius
         across = outward / distance
         return [(across * d[1], d[0]), (-across * d[0], d[1]), (e.radius, e.i.angle), (arm, e.j.angle)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -16,11 +16,22 @@ class ContactLaw(Friction):
 
     Where the gap is closed by delta = -gap > 0 the surfaces repel each other with N = k delta^n (1 + chi delta'), never
     below zero.  Without friction and dissipation this has the potential k delta^(n+1)/(n+1).
+
+    Surfaces of j are flat, round and solid inside of `surface_radius`, or round and solid outside of it; `surfaces` has their
+    names, and `about` that of what is round about i.
     """
+
+    surfaces: ClassVar[tuple[str, str, str]]
+    about: ClassVar[str]
 
     stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
     exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
     dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
+
+    if TYPE_CHECKING:  # fields of the subclasses, which say what is round
+        radius: float
+        surface: str
+        surface_radius: float
 
     @model_validator(mode="after")
     def _rubs(self) -> ContactLaw:
@@ -28,14 +39,33 @@ class ContactLaw(Friction):
             raise ValueError("found static_friction alone, expected friction too")
         return self
 
-    @staticmethod
-    def gap(e: Symbolic) -> Any:
-        """Distance of the surfaces, m; below zero where they overlap."""
-        raise NotImplementedError
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _, solid, hollow = self.surfaces
+        if self.surface == solid and self.radius + self.surface_radius == 0:
+            raise ValueError("found two points, expected a radius or surface_radius above zero")
+        if self.surface == hollow and self.surface_radius <= self.radius:
+            raise ValueError(
+                f"found a {self.about} of radius {self.radius:g} in a {hollow} of {self.surface_radius:g}, expected a wider {hollow}"
+            )
+        return self
+
+    @classmethod
+    def outward(cls, e: Symbolic) -> int:
+        """1 where a round surface is solid inside, -1 where it is outside, 0 for a flat one."""
+        return (0, 1, -1)[cls.surfaces.index(e.surface)]
 
     @staticmethod
-    def gap_round(e: Symbolic, outward: int) -> Any:
-        """Distance of what is about i from a round surface about j, which is solid inside (`outward` 1) or outside (-1)."""
+    def out_of(e: Symbolic) -> Any:
+        """The direction of marker j out of its flat surface."""
+        raise NotImplementedError
+
+    @classmethod
+    def gap(cls, e: Symbolic) -> Any:
+        """Distance of the surfaces, m; below zero where they overlap."""
+        outward = cls.outward(e)
+        if not outward:
+            return (e.i.point - e.j.point).dot(cls.out_of(e)) - e.radius
         return outward * (e.distance(e.i.point, e.j.point) - e.surface_radius) - e.radius
 
     @classmethod

@@ -1,4 +1,4 @@
-"""A force by formula along the line between two points."""
+"""A force by formula along the line between two points, in the plane and in space alike."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ M = TypeVar("M", bound=MarkerReference)
 
 
 class ForceAlongLine(Force, Generic[M]):
-    """Base of the line forces of the plane and of space (it has no kind: scenes name its subclasses)."""
+    """The force between points of any markers: those of the plane and of space are made of it."""
+
+    kind: ClassVar[str] = "line_force"
+    reflected: ClassVar[dict[str, str] | None] = {}
 
     i: M = Field(description="marker of the first body, on which the force is reported")
     j: M = Field(description="marker of the second body")
@@ -53,6 +56,3 @@ class LineForce(ForceAlongLine[Marker]):
 
         {type: line_force, i: a, j: b, force: "-100*(dm(a, b) - 2) - vr(a, b)"}
     """
-
-    kind: ClassVar[str] = "line_force"
-    reflected: ClassVar[dict[str, str] | None] = {}

@@ -1,20 +1,36 @@
-"""A force and a torque by a Python function."""
+"""A force and a torque by a Python function: its fields are the same in the plane and in space."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
-from ..element import Symbolic
-from ..marker import Marker
-from .any_python_force import ForceOfFunction
+from pydantic import Field
+
+from ..element import Force, Symbolic
+from ..formula.field import OfMotion
+from ..marker import Marker, MarkerReference
+from ..python_function import PythonFunction
 from .applied import AppliedTorque, force_at
+
+M = TypeVar("M", bound=MarkerReference)
 
 
 def _example(x: Any) -> Any:
     """Of one number."""
     return [x[0] ** 2, math.sin(x[0]), math.cos(x[0])]
+
+
+class ForceOfFunction(Force, Generic[M]):
+    """Fields of the forces by a Python function in the plane and in space, which are made of it."""
+
+    kind: ClassVar[str] = "python_force"
+
+    i: M = Field(description="marker at which the force acts")
+    j: M | None = Field(None, description="a second body, which takes the opposite force at the same point")
+    of: tuple[OfMotion, ...] = Field(min_length=1, description="what the function is given: formulas")
+    function: PythonFunction = Field(description="takes an array of the values of `of`, returns force and torque")
 
 
 class PythonForce(ForceOfFunction[Marker]):
@@ -41,7 +57,6 @@ class PythonForce(ForceOfFunction[Marker]):
     Together with `AppliedForce` and `AppliedTorque` this is what Adams' GFOSUB is for.
     """
 
-    kind: ClassVar[str] = "python_force"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)
 
     @staticmethod

@@ -1,12 +1,58 @@
-"""Torsion spring-damper."""
+"""Torsion spring-damper: its fields and its law on an angle are the same in the plane and in space."""
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar, Generic, TypeVar
+
+from pydantic import Field
 
 from ..element import Symbolic
-from ..marker import Marker
-from .angle_spring import AngleSpring
+from ..formula.field import TorqueOfDeflection, TorqueOfRate
+from ..marker import Marker, MarkerReference
+from ..units import si
+from .spring import Spring
+
+M = TypeVar("M", bound=MarkerReference)
+
+
+class AngleSpring(Spring, Generic[M]):
+    """Fields and law of the torsion springs of the plane and of space, which are made of it."""
+
+    kind: ClassVar[str] = "torsion_spring"
+    reflected: ClassVar[dict[str, str] | None] = {
+        "free_angle": "angle",
+        "preload": "angle",
+        "spring_law": "angle",
+        "damper_law": "angle",
+    }
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"stiffness": 1, "damping": 1},)
+
+    i: M = Field(description="marker of the first body, on which the torque is reported")
+    j: M = Field(description="marker of the second body")
+    stiffness: si.TorsionalStiffness = Field(0.0, description="k, N m/rad")
+    damping: si.TorsionalDamping = Field(0.0, description="c, N m s/rad")
+    free_angle: si.Angle = Field(0.0, description="angle of i against j without moment of the spring, rad")
+    preload: si.Torque = Field(0.0, description="moment added at every angle, N m")
+    spring_law: TorqueOfDeflection | None = Field(
+        None, description="moment added over s = angle - free_angle (rad), N m"
+    )
+    damper_law: TorqueOfRate | None = Field(None, description="moment added over v = angle' (rad/s), N m")
+
+    @staticmethod
+    def angle(e: Symbolic) -> Any:
+        """Of marker i against marker j, whole turns counted."""
+        raise NotImplementedError
+
+    @classmethod
+    def efforts(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+        angle = cls.angle(e)
+        return [(-Spring.pull(e, angle - e.free_angle, e.rate(angle)), angle)]
+
+    @classmethod
+    def potential(cls, e: Symbolic) -> Any:
+        angle = cls.angle(e)
+        return Spring.stored(e, angle - e.free_angle, angle)
 
 
 class TorsionSpring(AngleSpring[Marker]):
@@ -20,14 +66,6 @@ class TorsionSpring(AngleSpring[Marker]):
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.2 (RSDA).
     """
-
-    kind: ClassVar[str] = "torsion_spring"
-    reflected: ClassVar[dict[str, str] | None] = {
-        "free_angle": "angle",
-        "preload": "angle",
-        "spring_law": "angle",
-        "damper_law": "angle",
-    }
 
     @staticmethod
     def angle(e: Symbolic) -> Any:

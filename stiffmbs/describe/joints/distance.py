@@ -1,11 +1,33 @@
-"""Distance joint: a rigid rod without mass."""
+"""Distance joint: a rigid rod without mass, in the plane and in space alike."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar, Generic, TypeVar
 
-from ..marker import Marker
-from .rod import Rod
+from pydantic import Field
+
+from ..element import Joint, Symbolic
+from ..fields import Measured
+from ..marker import Marker, MarkerReference
+
+M = TypeVar("M", bound=MarkerReference)
+
+
+class Rod(Joint, Generic[M]):
+    """The rod between points of any markers: those of the plane and of space are made of it."""
+
+    kind: ClassVar[str] = "distance"
+    reflected: ClassVar[dict[str, str] | None] = {}
+    equations: ClassVar[tuple[str, ...]] = ("length",)
+
+    i: M = Field(description="marker of the first body, on which the reaction is reported")
+    j: M = Field(description="marker of the second body")
+    length: Annotated[float, Measured("length", above=0)] = Field(description="L, from point to point, m")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        d = e.i.point - e.j.point
+        return [(d.dot(d) - e.length**2) / (2 * e.length)]
 
 
 class Distance(Rod[Marker]):
@@ -18,6 +40,4 @@ class Distance(Rod[Marker]):
     The reaction is a force along the rod, from point to point.
     """
 
-    kind: ClassVar[str] = "distance"
     elastic: ClassVar[str] = "spring_damper"
-    reflected: ClassVar[dict[str, str] | None] = {}

@@ -94,6 +94,7 @@ class PlanarFrame:
                 "velocity": self.turned(body.velocity),
                 "omega": self.handedness * body.omega,
                 "markers": {name: own.placed(marker) for name, marker in body.markers.items()},
+                "geometry": tuple(shape.placed(own) for shape in body.geometry),
             }
         )
 

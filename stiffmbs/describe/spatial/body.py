@@ -15,6 +15,7 @@ from ..fields import Described
 from ..formula.names import SPACE
 from ..handle import Handle
 from ..units import si
+from .geometry import SpatialGeometry
 from .marker import ORIGIN, Marker, Placement, Point
 from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated
 
@@ -47,6 +48,8 @@ class Body(Described):
         are; where these leave a choice, the value written stands.
     markers : mapping of str to Placement
         Named points and orientations on the body, in its own axes from its origin.
+    geometry : mappings, optional
+        What drawings show of the body; derived from its markers and joints without it.
     """
 
     mass: si.PositiveMass = Field(description="mass, kg")
@@ -68,6 +71,9 @@ class Body(Described):
     markers: dict[str, Placement] = Field(
         default_factory=dict, description="named points and orientations on the body, in its own axes"
     )
+    geometry: SpatialGeometry = Field(
+        (), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh"
+    )
 
     if TYPE_CHECKING:
 
@@ -83,6 +89,7 @@ class Body(Described):
             omega: given.Numbers = ORIGIN,
             open: Sequence[Literal["velocity", "omega"]] = (),
             markers: given.Markers = {},  # noqa: B006 is never called
+            geometry: given.Geometry = (),
         ) -> None: ...
 
     @field_validator("inertia", mode="before")

@@ -128,6 +128,7 @@ class SpatialFrame:
                 "center_of_mass": own.turned(body.center_of_mass),
                 "inertia": tuple(tuple(float(part) for part in row) for row in inertia),
                 "markers": {name: own.placed(marker) for name, marker in body.markers.items()},
+                "geometry": tuple(shape.placed(own) for shape in body.geometry),
             }
         )
 

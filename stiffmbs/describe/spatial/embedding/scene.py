@@ -15,6 +15,7 @@ from ...scene import Scene
 from .angles import Angles
 from .fields import fields, plain
 from .formulas import request
+from .geometry import shape
 from .markers import Written, placement, turned
 from .plane import loose
 
@@ -72,6 +73,7 @@ def _body(name: str, body: Body, angles: Angles) -> Written:
         "velocity": [*body.velocity, 0] if any(body.velocity) else None,
         "omega": [0, 0, body.omega] if body.omega else None,
         "markers": _markers(name, body.markers, angles),
+        "geometry": [shape(found) for found in body.geometry],
     }
     return {name: part for name, part in parts.items() if part}
 

@@ -5,27 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from ...element import Symbolic
-from ...forces.matrix import check_symmetric
 from ...formula.field import ForceOfDeflection, TorqueOfDeflection
-from .elastic import (
-    NONE,
-    NOTHING,
-    Damping,
-    Elastic,
-    Preload,
-    Stiffness,
-    has_moments,
-    pull_back,
-    six_rows,
-    stored,
-    without_zeros,
-)  # fmt: skip
+from .elastic import NOTHING, Connection, Preload, pull_back, stored
 
 
-class Bushing(Elastic):
+class Bushing(Connection):
     """Force and torque between two markers that are held together elastically in all six components.
 
     The deformation s = (x, y, z, and the rotation vector) of marker i against marker j is measured along the axes of j.
@@ -63,8 +50,6 @@ class Bushing(Elastic):
         "law_about_z": "about z",
     }
 
-    stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
-    damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     preload: Preload = Field(NOTHING, description="force and torque on i without deformation, N and N m")
     law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
     law_y: ForceOfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
@@ -83,14 +68,10 @@ class Bushing(Elastic):
         "j", description="whether x, y and z of the force are marker j's or the ground's"
     )
 
-    _six_rows = field_validator("stiffness", "damping", mode="before")(six_rows)
-    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
-    _sparse = field_validator("stiffness", "damping", "preload")(without_zeros)
-
     @classmethod
     def resisted(cls, e: Symbolic) -> list[bool]:
         laws = (e.law_about_x, e.law_about_y, e.law_about_z)
-        return [has or law is not None for has, law in zip(has_moments(e.stiffness, e.preload), laws, strict=True)]
+        return [has or law is not None for has, law in zip(super().resisted(e), laws, strict=True)]
 
     @classmethod
     def frame(cls, e: Symbolic) -> list[Any]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field, WithJsonSchema, field_validator
 
 from ...element import Force, Symbolic
 from ...files.quoted import written
-from ...forces.matrix import from_diagonal, product
+from ...forces.matrix import check_symmetric, from_diagonal, product
 from ...units import si
 from ..marker import Marker
 from ..nearest import nearest
@@ -164,6 +164,21 @@ class Elastic(Force):
     def limits(cls, e: Symbolic) -> Any:
         """How far the bodies may turn, where moments depend on it."""
         return [cls.turned(e).room] if any(cls.resisted(e)) else []
+
+
+class Connection(Elastic):
+    """Base of elastic connections with a stiffness and damping of their own (it has no kind: scenes name its subclasses)."""
+
+    stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+
+    _six_rows = field_validator("stiffness", "damping", mode="before")(six_rows)
+    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
+    _sparse = field_validator("stiffness", "damping", "preload", check_fields=False)(without_zeros)
+
+    @classmethod
+    def resisted(cls, e: Symbolic) -> list[bool]:
+        return has_moments(e.stiffness, e.preload)
 
 
 def pull_back(stiffness: Any, s: list[Any], preload: Any) -> list[Any]:

@@ -5,27 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from ...element import Symbolic
-from ...forces.matrix import check_symmetric
 from ...units import si
-from .elastic import (
-    NONE,
-    NOTHING,
-    Damping,
-    Elastic,
-    Preload,
-    Stiffness,
-    has_moments,
-    pull_back,
-    six_rows,
-    stored,
-    without_zeros,
-)  # fmt: skip
+from .elastic import NOTHING, Connection, Preload, pull_back, stored
 
 
-class FieldForce(Elastic):
+class FieldForce(Connection):
     """Linear elastic connection of two markers that are apart: preload - K (s - s0) - C (v, w).
 
     s is the place of marker i in the axes of j and its rotation vector against these, s0 that without force.  How it
@@ -46,20 +33,10 @@ class FieldForce(Elastic):
         "free": "components",
     }
 
-    stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
-    damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
     preload: Preload = Field(NOTHING, description="force and torque on i at s0, N and N m")
     free: tuple[si.Length, si.Length, si.Length, si.Angle, si.Angle, si.Angle] | None = Field(
         None, description="s0: place and rotation vector of i against j without force, m and rad"
     )
-
-    _six_rows = field_validator("stiffness", "damping", mode="before")(six_rows)
-    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
-    _sparse = field_validator("stiffness", "damping", "preload")(without_zeros)
-
-    @classmethod
-    def resisted(cls, e: Symbolic) -> list[bool]:
-        return has_moments(e.stiffness, e.preload)
 
     @staticmethod
     def strain(e: Symbolic) -> list[Any]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from ...element import Symbolic
-from ...forces.any_python_force import ForceOfFunction
+from ...forces.python_force import ForceOfFunction
 from ..marker import Marker
 from ..wrench import Pairs, force_at, torque_on
 
@@ -27,7 +27,6 @@ class PythonForce(ForceOfFunction[Marker]):
     What holds for its namesake in the plane (`stiffmbs.PythonForce`) holds here too.
     """
 
-    kind: ClassVar[str] = "python_force"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)
 
     @classmethod

@@ -35,6 +35,8 @@ class SphereContact(ContactLaw):
         {"radius": 0.1, "surface": "sphere", "surface_radius": 0.1, "friction": 0.3},
     )
     reflected: ClassVar[dict[str, str] | None] = {"j": "z"}
+    surfaces: ClassVar[tuple[str, str, str]] = ("plane", "sphere", "hollow")
+    about: ClassVar[str] = "sphere"
 
     i: Marker = Field(description="the point, or the sphere's centre")
     j: Marker = Field(description="on the plane, its z pointing out of the solid, or the surface's centre")
@@ -43,29 +45,21 @@ class SphereContact(ContactLaw):
     surface_radius: si.LengthOrZero = Field(0.0, description="of a sphere or hollow sphere about j, m")
 
     @model_validator(mode="after")
-    def _fits(self) -> SphereContact:
+    def _plane_without_radius(self) -> SphereContact:
         if self.surface == "plane" and self.surface_radius:
             raise ValueError("found a surface_radius of a plane, expected none")
-        if self.surface == "sphere" and self.radius + self.surface_radius == 0:
-            raise ValueError("found two points, expected a radius or surface_radius above zero")
-        if self.surface == "hollow" and self.surface_radius <= self.radius:
-            raise ValueError(
-                f"found a sphere of radius {self.radius:g} in a hollow of {self.surface_radius:g}, expected a wider one"
-            )
         return self
 
     @staticmethod
-    def gap(e: Symbolic) -> Any:
-        if e.surface == "plane":
-            return (e.i.point - e.j.point).dot(e.j.z) - e.radius
-        return SphereContact.gap_round(e, 1 if e.surface == "sphere" else -1)
+    def out_of(e: Symbolic) -> Any:
+        return e.j.z
 
-    @staticmethod
-    def normal(e: Symbolic) -> Any:
+    @classmethod
+    def normal(cls, e: Symbolic) -> Any:
         """The unit vector out of j's surface at the point of contact."""
-        if e.surface == "plane":
+        outward = cls.outward(e)
+        if not outward:
             return e.j.z
-        outward = 1 if e.surface == "sphere" else -1
         return outward * (e.i.point - e.j.point) / e.distance(e.i.point, e.j.point)
 
     @classmethod

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import Any
 
 from ...element import Symbolic
-from ...forces.angle_spring import AngleSpring
+from ...forces.torsion_spring import AngleSpring
 from ...model_data import ModelData
 from ..branches import initially_without_axis
 from ..marker import Marker
@@ -25,14 +25,6 @@ class TorsionSpring(AngleSpring[Marker]):
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 11.2 (RSDA).
     """
-
-    kind: ClassVar[str] = "torsion_spring"
-    reflected: ClassVar[dict[str, str] | None] = {
-        "free_angle": "angle",
-        "preload": "angle",
-        "spring_law": "angle",
-        "damper_law": "angle",
-    }
 
     def invalid_placement(self, model: ModelData) -> Iterator[str]:
         yield from initially_without_axis(model, self.i, self.j)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from ...element import Symbolic
-from ...joints.curve import Curve
+from ...joints.point_on_curve import Curve
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
 
@@ -21,7 +21,6 @@ class PointOnCurve(Curve[Marker]):
     cannot lift off.  Of Adams' PTCV it covers the flat curves.
     """
 
-    kind: ClassVar[str] = "point_on_curve"
     equations: ClassVar[tuple[str, ...]] = (*Curve.equations, *IN_PLANE)
 
     @staticmethod

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Symbolic
-from ...joints.rod import Rod
+from ...joints.distance import Rod
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
 

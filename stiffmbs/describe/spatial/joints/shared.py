@@ -1,12 +1,28 @@
-"""Joints that are the same in space as in the plane: their equations are of joint coordinates, or of formulas, alone."""
+"""Joints that are the same in space as in the plane: their equations are of distances, joint coordinates, or formulas alone."""
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ...joints.constraint_equation import ConstraintEquation
 from ...joints.coupler import Coupler
+from ...joints.distance import Rod
 from ...joints.drive import Drive
 from ...joints.gear import Gear
 from ...joints.rack_and_pinion import RackAndPinion
 from ...joints.velocity_equation import VelocityEquation
+from ..marker import Marker
 
-__all__ = ["ConstraintEquation", "Coupler", "Drive", "Gear", "RackAndPinion", "VelocityEquation"]
+__all__ = ["ConstraintEquation", "Coupler", "Distance", "Drive", "Gear", "RackAndPinion", "VelocityEquation"]
+
+
+class Distance(Rod[Marker]):
+    """Rod: a point of body i and a point of body j keep their distance, (d . d - L^2)/(2 L) = 0.
+
+    It turns freely about both of its ends (spherical - spherical).  The reaction is a force along the rod; the
+    multiplier is its tension.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (distance constraint).
+    """
+
+    elastic: ClassVar[str] = "spring_damper"

@@ -1,11 +1,18 @@
-"""Spring-damper between two points in space."""
+"""Forces that are the same in space as in the plane: along the line between two points."""
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from ...forces.line_spring import LineSpring
+from ...forces.line_force import ForceAlongLine
+from ...forces.spring_damper import LineSpring
 from ..marker import Marker
+
+
+class LineForce(ForceAlongLine[Marker]):
+    """A force between two points of space along the line through them: constant, or a formula of anything measured.
+
+    Above zero it pushes the points apart, as Adams' translational SFORCE does.  A constant force has a potential,
+    others have none.
+    """
 
 
 class SpringDamper(LineSpring[Marker]):
@@ -16,6 +23,3 @@ class SpringDamper(LineSpring[Marker]):
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 11.2 (TSDA).
     """
-
-    kind: ClassVar[str] = "spring_damper"
-    reflected: ClassVar[dict[str, str] | None] = {}

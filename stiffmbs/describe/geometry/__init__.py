@@ -1,0 +1,1 @@
+"""The shapes of bodies, for drawings; no equation depends on them."""

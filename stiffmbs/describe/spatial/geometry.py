@@ -1,0 +1,56 @@
+"""Shapes of bodies in space."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from ..geometry.shape import MeshShape, OneFor, OneOfShapes, PolylineShape, Shape
+from ..units import si
+from .marker import ORIGIN, Point
+from .orientation import IDENTITY, Orientation
+
+
+class Polyline(PolylineShape):
+    """A line from point to point."""
+
+    points: tuple[Point, ...] = Field(min_length=2, description="in the body's own axes from its origin, m")
+
+
+class Placed(Shape):
+    """Base of the shapes that have a place and an orientation."""
+
+    point: Point = Field(ORIGIN, description="its middle (of a mesh the origin) in the body's own axes, m")
+    orientation: Orientation = Field(IDENTITY, description="of its axes against the body's")
+
+
+class Box(Placed):
+    """A block."""
+
+    type: Literal["box"] = "box"
+    size: tuple[si.PositiveLength, si.PositiveLength, si.PositiveLength] = Field(description="along its x, y and z, m")
+
+
+class Cylinder(Placed):
+    """A cylinder about its z."""
+
+    type: Literal["cylinder"] = "cylinder"
+    radius: si.PositiveLength = Field(description="m")
+    length: si.PositiveLength = Field(description="m")
+
+
+class Sphere(Placed):
+    """A ball."""
+
+    type: Literal["sphere"] = "sphere"
+    radius: si.PositiveLength = Field(description="m")
+
+
+class Mesh(MeshShape, Placed):
+    """Triangles from a file."""
+
+
+SHAPES = (Polyline, Box, Cylinder, Sphere, Mesh)
+SpatialGeometry = Annotated[tuple[Annotated[Any, OneOfShapes(*SHAPES)], ...], OneFor()]
+"""The shapes of a body, one after the other; one may stand alone."""

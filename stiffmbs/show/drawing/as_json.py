@@ -1,0 +1,103 @@
+"""A drawing with its poses as plain numbers, for pages and other programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .palette import EDGES, LOAD, MARKS, ROLES
+from .poses import Poses
+from .scene_graph import Drawing, Line, Link, Part, Solid
+from .triangles import triangles
+
+DIGITS = 6
+
+
+def drawing_json(drawing: Drawing) -> dict[str, Any]:
+    """The drawables: vertices and triangles, lines, stretched profiles, names, colors.
+
+    Parameters
+    ----------
+    drawing : Drawing
+
+    Returns
+    -------
+    dict
+        Lengths in metres, in the axes of bodies from their centres of mass; ready for `json.dumps`.
+    """
+    return {
+        "name": drawing.name, "dimensions": drawing.dimensions, "size": drawing.size, "bodies": list(drawing.bodies),
+        "gravity": _numbers(drawing.gravity, drawing.size),
+        "parts": [_part(part, drawing) for part in drawing.parts],
+        "links": [_link(link, drawing) for link in drawing.links],
+        "names": [
+            {"text": name.text, "role": name.role, "body": name.anchor.body, "point": _numbers(name.anchor.point, drawing.size)}
+            for name in drawing.names
+        ],
+        "loads": [
+            {"name": name, "body": anchor.body, "point": _numbers(anchor.point, drawing.size)}
+            for name, anchor in drawing.loads.items()
+        ],
+        "marks": dict(drawing.marks), "load_color": LOAD,
+    }  # fmt: skip
+
+
+def poses_json(poses: Poses) -> dict[str, Any]:
+    """Time, s; of each body x, y, z (m) and quaternion; of each element its force (N), one list an instant."""
+    return {
+        "time": poses.time.tolist(),
+        "bodies": {
+            name: np.column_stack([poses.points[name], poses.orientations[name]]).tolist() for name in poses.points
+        },
+        "forces": {name: force.tolist() for name, force in poses.forces.items()},
+    }
+
+
+def _numbers(values: np.ndarray, size: float) -> list[Any]:
+    """Numbers to six digits of the mechanism's size."""
+    step = 10.0 ** (np.floor(np.log10(size)) - DIGITS)
+    rounded: list[Any] = (np.round(np.asarray(values) / step) * step).tolist()
+    return [[float(f"{x:.7g}") for x in row] if isinstance(row, list) else float(f"{row:.7g}") for row in rounded]
+
+
+def _color(part: Part, drawing: Drawing) -> str:
+    mark = drawing.marks.get(part.owner)
+    if mark and part.role in ("joint", "drive"):
+        return MARKS[mark]
+    return part.color or (drawing.bodies.get(part.owner, "") if part.role == "body" else "") or ROLES[part.role]
+
+
+def _edge(owner: str, role: Any, drawing: Drawing) -> str:
+    mark = drawing.marks.get(owner)
+    return MARKS[mark] if mark else EDGES[role]
+
+
+def _part(part: Part, drawing: Drawing) -> dict[str, Any]:
+    return {
+        "owner": part.owner, "role": part.role, "body": part.body, "color": _color(part, drawing),
+        "edge": _edge(part.owner, part.role, drawing),
+        "solids": [_solid(solid, drawing.size) for solid in part.solids],
+        "lines": [_line(line, drawing.size) for line in part.lines],
+    }  # fmt: skip
+
+
+def _solid(solid: Solid, size: float) -> dict[str, Any]:
+    return {
+        "vertices": _numbers(solid.vertices, size),
+        "triangles": triangles(solid).tolist(),
+        "edges": solid.edges[:, :2].tolist(),
+    }
+
+
+def _line(line: Line, size: float) -> dict[str, Any]:
+    return {"points": _numbers(line.points, size), "width": line.width, "dashed": line.dashed}
+
+
+def _link(link: Link, drawing: Drawing) -> dict[str, Any]:
+    return {
+        "owner": link.owner, "role": link.role, "edge": _edge(link.owner, link.role, drawing), "width": link.width,
+        "dashed": link.dashed, "i": {"body": link.i.body, "point": _numbers(link.i.point, drawing.size)},
+        "j": {"body": link.j.body, "point": _numbers(link.j.point, drawing.size)},
+        "profiles": [profile.tolist() for profile in link.profiles],
+    }  # fmt: skip

@@ -1,0 +1,157 @@
+"""The shapes of bodies: those that the scene gives, or one from the points that joints and forces act at."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import solids
+from .frames import axes_along, rotation
+from .mesh_file import read_mesh
+from .scene_graph import Line, Part, Solid
+
+Shapes = tuple[tuple[Solid, ...], tuple[Line, ...]]
+NEAR = 1e-3
+"""Of the mechanism's size: points that are closer count as one."""
+
+
+def given_shapes(name: str, body: Any, dimensions: int, size: float) -> list[Part]:
+    """The shapes that a body has in its scene.
+
+    Raises
+    ------
+    InputError
+        When a mesh cannot be read.
+    """
+    origin = np.zeros(3) if dimensions == 2 else -np.array(body.center_of_mass)
+    parts = []
+    for k, shape in enumerate(body.geometry):
+        found, lines = _shape(shape, dimensions, f"bodies.{name}.geometry.{k}", size)
+        point, axes = np.zeros(3), np.eye(3)
+        if shape.type != "polyline":
+            point[: len(shape.point)] = shape.point
+            half = getattr(shape, "angle", 0.0) / 2
+            turn = getattr(shape, "orientation", (math.cos(half), 0.0, 0.0, math.sin(half)))
+            axes = rotation(np.array(turn))
+        parts.append(
+            Part(
+                name, "body", name,
+                tuple(solids.moved(solid, origin + point, axes) for solid in found),
+                tuple(solids.moved_line(line, origin + point, axes) for line in lines), shape.color or "",
+            )
+        )  # fmt: skip
+    return parts
+
+
+def _shape(shape: Any, dimensions: int, where: str, size: float) -> Shapes:
+    """A shape in its own axes."""
+    match shape.type:
+        case "polyline":
+            points = np.zeros((len(shape.points), 3))
+            points[:, :dimensions] = shape.points
+            if shape.closed:
+                return ((solids.flat(points),) if dimensions == 2 else ()), (solids.outline(points, 1.3),)
+            return (), (Line(points, 2.0),)
+        case "mesh":
+            mesh = read_mesh(Path(shape.file), where)
+            scale = np.array(shape.scale)
+            flipped = np.prod(scale) < 0
+            faces = tuple(face[::-1] if flipped else face for face in mesh.faces)
+            solid = Solid(mesh.vertices * scale, faces)
+            return (solids.edged(solid) if len(faces) < MOST_FACES else solid,), ()
+        case "box" if dimensions == 3:
+            return _with_edges(solids.box(shape.size))
+        case "box":
+            corners = solids.rectangle(*shape.size)
+            return (solids.flat(corners),), (solids.outline(corners),)
+        case "cylinder" if dimensions == 3:
+            return _with_edges(solids.cylinder(shape.radius, shape.length, 32))
+    if dimensions == 3:
+        return (solids.sphere(shape.radius, 24),), ()
+    ring = solids.circle(shape.radius, corners=40)
+    return (solids.flat(ring[:-1]),), (Line(ring), Line(np.array([[0.6 * shape.radius, 0, 0], [shape.radius, 0, 0]])))
+
+
+MOST_FACES = 5_000
+"""Of a mesh whose edges are drawn."""
+
+
+def _with_edges(solid: Solid) -> Shapes:
+    return (solids.edged(solid),), ()
+
+
+def derived_shape(name: str, body: Any, dimensions: int, points: Sequence[np.ndarray], size: float) -> Part:
+    """A shape that tells where a body's points are: a bar, a plate or a hull; a block where there is one point alone."""
+    found = _distinct(points, NEAR * size)
+    if len(found) == 1 and np.linalg.norm(found[0]) > NEAR * size:
+        found = [found[0], _far_end(body, dimensions, found[0])]
+    thick = 0.02 * size
+    if len(found) < 2:
+        shapes = _block(body, dimensions, size)
+    elif dimensions == 2:
+        shapes = _planar(np.array(found), thick)
+    else:
+        shapes = _spatial(np.array(found), thick)
+    return Part(name, "body", name, *shapes)
+
+
+def _distinct(points: Sequence[np.ndarray], near: float) -> list[np.ndarray]:
+    found: list[np.ndarray] = []
+    for point in points:
+        if all(np.linalg.norm(point - other) > near for other in found):
+            found.append(np.asarray(point, dtype=float))
+    return found
+
+
+def _far_end(body: Any, dimensions: int, point: np.ndarray) -> np.ndarray:
+    """The other end of a bar with one joint: as far beyond the centre of mass as its moment of inertia tells, L^2 = 12 I/m."""
+    moment = body.inertia if dimensions == 2 else max(body.principal_moments())
+    reach = float(np.linalg.norm(point))
+    return -point / reach * min(math.sqrt(3 * moment / body.mass), reach)
+
+
+def _block(body: Any, dimensions: int, size: float) -> Shapes:
+    """A block of the body's own moments of inertia, neither tiny nor larger than the mechanism."""
+    low, high = 0.05 * size, 0.16 * size
+    if dimensions == 2:
+        radius = float(np.clip(math.sqrt(2 * body.inertia / body.mass), low / 2, high / 2))
+        ring = solids.circle(radius, corners=40)
+        return (solids.flat(ring[:-1]),), (Line(ring), Line(np.array([[0.5 * radius, 0, 0], [radius, 0, 0]])))
+    a, b, c = body.principal_moments()
+    widths = np.sqrt(np.maximum(6 / body.mass * np.array([b + c - a, c + a - b, a + b - c]), 0))
+    widths *= min(1.0, high * 1.5 / (widths.max() or 1.0))
+    widths = np.maximum(widths, max(0.12 * widths.max(), 0.3 * low))
+    block = solids.moved(
+        solids.box((float(widths[0]), float(widths[1]), float(widths[2]))), np.zeros(3), rotation(body.principal_axes())
+    )
+    return _with_edges(block)
+
+
+def _planar(points: np.ndarray, thick: float) -> Shapes:
+    """A bar or plate with round corners: the hull of circles about the points."""
+    around = np.vstack([point + solids.circle(thick, corners=16)[:-1] for point in points])
+    corners = around[_hull_in_plane(around[:, :2])]
+    return (solids.flat(corners),), (solids.outline(corners),)
+
+
+def _hull_in_plane(points: np.ndarray) -> np.ndarray:
+    from scipy.spatial import ConvexHull
+
+    return np.asarray(ConvexHull(points).vertices)
+
+
+def _spatial(points: np.ndarray, thick: float) -> Shapes:
+    """A rod through points on a line; else the hull of small spheres about the points."""
+    spread = points - points.mean(axis=0)
+    _, widths, ways = np.linalg.svd(spread, full_matrices=False)
+    if len(widths) < 2 or widths[1] < 0.5 * thick:
+        along = spread @ ways[0]
+        a, b = points[np.argmin(along)], points[np.argmax(along)]
+        rod = solids.cylinder(0.6 * thick, float(np.linalg.norm(b - a)), 14)
+        return _with_edges(solids.moved(rod, (a + b) / 2, axes_along(b - a)))
+    ball = 0.45 * thick * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    return _with_edges(solids.hull(np.vstack([point + ball for point in points])))

@@ -1,0 +1,199 @@
+"""The drawing of a model: shapes of its bodies and symbols of its elements, from its description alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from ...describe.element import Element, Joint, JointName
+from ...describe.formula.field import Formula
+from ...describe.marker import GROUND, MarkerReference
+from ...describe.model_data import ModelData
+from .bodies import derived_shape, given_shapes
+from .draft import Draft, Site
+from .palette import body_colors
+from .poses import Poses, described_poses, placed
+from .scene_graph import Anchor, Drawing, Mark, Name, Part
+
+UNIT = 0.022
+"""The unit of symbols over the mechanism's size."""
+Joints = dict[str, tuple[Any, Site | None, Site | None]]
+
+
+def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None) -> Drawing:
+    """The drawing of a model.
+
+    Parameters
+    ----------
+    data : ModelData
+    marks : mapping of str to Mark, optional
+        Joints of which there is something to say.
+
+    Raises
+    ------
+    InputError
+        When a mesh cannot be read.
+    """
+    poses = described_poses(data)
+    sites = _Sites(data, poses)
+    shaped = {name: given_shapes(name, body, data.dimensions, 1.0) for name, body in data.bodies.items()}
+    size = _size(data, sites, shaped)
+    colors = body_colors(data.bodies)
+    drafts = [_drawn(name, element, data, sites, size, colors) for name, element in _elements(data)]
+    parts = [part for draft in drafts for part in draft.parts]
+    having = {part.body for part in parts if part.role == "body"}
+    points = sites.on_bodies()
+    for name, body in data.bodies.items():
+        if not shaped[name] and not (name in having and len(_apart(points[name], 1e-3 * size)) <= 1):
+            shaped[name] = [derived_shape(name, body, data.dimensions, points[name], size)]
+    bodies = [part for found in shaped.values() for part in found]
+    gravity = np.zeros(3)
+    gravity[: data.dimensions] = data.gravity
+    weight = sum(body.mass for body in data.bodies.values()) * (float(np.linalg.norm(gravity)) or 1.0)
+    loads = {
+        draft.owner: draft.i.anchor
+        for draft in drafts
+        if draft.i is not None and not _is_reported_elsewhere(draft.element)
+    }
+    return Drawing(
+        data.name, data.dimensions, size, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
+        tuple(_names(data, drafts)), loads, gravity, weight, marks or {},
+    )  # fmt: skip
+
+
+def _elements(data: ModelData) -> Iterator[tuple[str, Element]]:
+    yield from data.joints.items()
+    yield from data.forces.items()
+
+
+def _is_reported_elsewhere(element: Element) -> bool:
+    """Whether an element is drawn at a joint's point, but acts on its body at large."""
+    return isinstance(element, Joint) and any(element.parts(JointName))
+
+
+class _Sites:
+    """The markers of a model as places on its bodies."""
+
+    def __init__(self, data: ModelData, poses: Poses) -> None:
+        self.data, self.poses = data, poses
+        self.used: dict[str, list[np.ndarray]] = {name: [] for name in (*data.bodies, GROUND)}
+
+    def of(self, marker: MarkerReference) -> Site:
+        point, axes = placed(self.data, marker)
+        origin, turned = self.poses.pose(marker.body, 0)
+        self.used[marker.body].append(point)
+        return Site(marker.body, point, axes, origin + turned @ point, turned @ axes)
+
+    def on_bodies(self) -> dict[str, list[np.ndarray]]:
+        """The points of each body: those that elements use, and the body's own markers."""
+        found = {}
+        for name, body in self.data.bodies.items():
+            own = [placed(self.data, MarkerReference(body=name, marker=marker))[0] for marker in body.markers]
+            found[name] = [*self.used[name], *own]
+        return found
+
+    def in_ground(self) -> np.ndarray:
+        """All points in ground axes, shape (n, 3)."""
+        every = {**self.on_bodies(), GROUND: self.used[GROUND]}
+        return np.array(
+            [
+                self.poses.pose(name, 0)[0] + self.poses.pose(name, 0)[1] @ point
+                for name, points in every.items()
+                for point in points
+            ]
+            + [self.poses.pose(name, 0)[0] for name in self.data.bodies]
+        )
+
+
+def _apart(points: Iterable[np.ndarray], near: float) -> set[tuple[int, ...]]:
+    return {tuple(np.round(point / near).astype(int)) for point in points}
+
+
+def _size(data: ModelData, sites: _Sites, shaped: Mapping[str, list[Part]]) -> float:
+    """Diagonal of the box around all points and given shapes, m."""
+    for _, element in _elements(data):
+        for marker in element.markers():
+            sites.of(marker[1])
+    points = [sites.in_ground()]
+    for name, parts in shaped.items():
+        origin, turned = sites.poses.pose(name, 0)
+        points += [origin + solid.vertices @ turned.T for part in parts for solid in part.solids]
+        points += [origin + line.points @ turned.T for part in parts for line in part.lines]
+    for _, element in _elements(data):
+        radius = getattr(element, "radius", None)  # of a circle in contact
+        if isinstance(radius, float):
+            points.append(points[0][:1] + radius * np.array([[1.0, 1, 0], [-1, -1, 0]]))
+    every = np.vstack(points)
+    spread = float(np.linalg.norm(every.max(axis=0) - every.min(axis=0)))
+    return spread or _own_size(data)
+
+
+def _own_size(data: ModelData) -> float:
+    """Of bodies at one point: as large as their moments of inertia tell."""
+    moments = [
+        (body.inertia if data.dimensions == 2 else max(body.principal_moments())) / body.mass
+        for body in data.bodies.values()
+    ]
+    return 6 * math.sqrt(max(moments))
+
+
+def _drawn(
+    name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str]
+) -> Draft:
+    """The symbol of one element."""
+    joints: Joints = {
+        other: (joint, *_ends(joint, data, sites)) for _, ref in element.parts(JointName) if (other := ref.joint)
+        for joint in [data.joints[other]]
+    }  # fmt: skip
+    i, j = _ends(element, data, sites)
+    if i is None and joints:
+        _, i, j = next(iter(joints.values()))
+    if i is None:
+        i = _of_formula(element, data, sites)
+    down = np.zeros(3)
+    down[: data.dimensions] = data.gravity
+    length = float(np.linalg.norm(down))
+    fallback = np.array([0.0, -1.0, 0.0]) if data.dimensions == 2 else np.array([0.0, 0.0, -1.0])
+    draft = Draft(name, element, UNIT * size, size, i, j, joints, down / length if length else fallback, dict(colors))
+    symbols = import_module(f".symbols.{'planar' if data.dimensions == 2 else 'spatial'}", __package__).SYMBOLS
+    usual = symbols["joint" if isinstance(element, Joint) else "any_force"]
+    symbols.get(element.symbol or element.kind, usual)(draft)
+    return draft
+
+
+def _ends(element: Any, data: ModelData, sites: _Sites) -> tuple[Site | None, Site | None]:
+    found = (getattr(element, end, None) for end in ("i", "j"))
+    i, j = (sites.of(marker) if isinstance(marker, MarkerReference) else None for marker in found)
+    return i, j
+
+
+def _of_formula(element: Element, data: ModelData, sites: _Sites) -> Site | None:
+    """The centre of mass of the first body that an element's formulas name."""
+    for _, formula in element.parts(Formula):
+        for body in formula.bodies():
+            if body != GROUND:
+                origin, turned = sites.poses.pose(body, 0)
+                return Site(body, np.zeros(3), np.eye(3), origin, turned)
+    return None
+
+
+def _names(data: ModelData, drafts: Iterable[Draft]) -> Iterator[Name]:
+    for name in data.bodies:
+        yield Name(name, "body", Anchor(name, np.zeros(3)))
+    for draft in drafts:
+        if draft.i is not None:
+            role = "joint" if isinstance(draft.element, Joint) else "force"
+            yield Name(draft.owner, role, _middle(draft) if role == "force" else draft.i.anchor)  # type: ignore[arg-type]
+
+
+def _middle(draft: Draft) -> Anchor:
+    """A force's name stands halfway between its points, as the bodies are drawn first."""
+    assert draft.i is not None
+    if draft.j is None or not draft.links:
+        return draft.i.anchor
+    half = (draft.j.in_ground - draft.i.in_ground) / 2
+    return Anchor(draft.i.body, draft.i.point + draft.i.axes @ draft.i.turned.T @ half)

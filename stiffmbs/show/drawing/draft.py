@@ -1,0 +1,114 @@
+"""What symbols are drawn with: places on bodies, and a sheet that takes shapes at them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...describe.marker import GROUND
+from . import solids
+from .scene_graph import Anchor, Line, Link, Part, Role, Solid
+
+
+@dataclass(frozen=True, eq=False)
+class Site:
+    """A marker on its body.
+
+    Attributes
+    ----------
+    body : str
+    point : ndarray, shape (3,)
+        From the body's centre of mass, m.
+    axes : ndarray, shape (3, 3)
+        Columns are the marker's axes in the body's.
+    in_ground : ndarray, shape (3,)
+        The point where the bodies are drawn first, in ground axes.
+    turned : ndarray, shape (3, 3)
+        The marker's axes there.
+    """
+
+    body: str
+    point: np.ndarray
+    axes: np.ndarray
+    in_ground: np.ndarray
+    turned: np.ndarray
+
+    @property
+    def anchor(self) -> Anchor:
+        return Anchor(self.body, self.point)
+
+    @property
+    def on_ground(self) -> bool:
+        return self.body == GROUND
+
+    def at(self, shift: Sequence[float] | np.ndarray) -> Site:
+        """The site at another point of the marker's axes."""
+        step = np.asarray(shift, dtype=float)
+        point, in_ground = self.point + self.axes @ step, self.in_ground + self.turned @ step
+        return Site(self.body, point, self.axes, in_ground, self.turned)
+
+    def with_axes(self, axes: np.ndarray) -> Site:
+        """The site with other axes, whose columns are given in the marker's."""
+        return Site(self.body, self.point, self.axes @ axes, self.in_ground, self.turned @ axes)
+
+    def along_ground(self) -> Site:
+        """The site with the ground's axes, as the bodies are drawn first."""
+        return self.with_axes(self.turned.T)
+
+
+@dataclass
+class Draft:
+    """A sheet for the symbols of one element.
+
+    Attributes
+    ----------
+    owner : str
+        The element's name.
+    element : Element
+    u : float
+        The unit of symbols, m.
+    size : float
+        Of the mechanism, m.
+    i, j : Site or None
+        The element's markers, or those of the joint that it refers to.
+    joints : mapping
+        All joints by name, with their sites.
+    down : ndarray, shape (3,)
+        Where the ground is below its supports.
+    colors : mapping of str to str
+        Of bodies.
+    """
+
+    owner: str
+    element: Any
+    u: float
+    size: float
+    i: Site | None
+    j: Site | None
+    joints: dict[str, tuple[Any, Site | None, Site | None]]
+    down: np.ndarray
+    colors: dict[str, str]
+    parts: list[Part] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
+
+    def put(self, site: Site, role: Role, *shapes: Solid | Line, color: str = "") -> None:
+        """Draw shapes given in the axes of a site."""
+        found = tuple(solids.moved(s, site.point, site.axes) for s in shapes if isinstance(s, Solid))
+        lines = tuple(solids.moved_line(s, site.point, site.axes) for s in shapes if isinstance(s, Line))
+        self.parts.append(Part(self.owner, role, site.body, found, lines, color))
+
+    def stretch(self, i: Site, j: Site, role: Role, *profiles: Any, width: float = 1.0, dashed: bool = False) -> None:
+        """Draw profiles from one site to another."""
+        shapes = tuple(np.array(profile, dtype=float) for profile in profiles)
+        self.links.append(Link(self.owner, role, i.anchor, j.anchor, shapes, width, dashed))
+
+    def grounded(self) -> Site | None:
+        """The marker that is on ground, if one is."""
+        return next((site for site in (self.i, self.j) if site is not None and site.on_ground), None)
+
+    def joint_site(self, field_name: str) -> Site | None:
+        """Marker i of the joint that a field of the element names."""
+        return self.joints.get(getattr(self.element, field_name).joint, (None, None, None))[1]

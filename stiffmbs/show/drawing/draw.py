@@ -1,0 +1,152 @@
+"""The drawing of a model as a file or a figure (pictures need matplotlib, the extra ``plot``)."""
+
+from __future__ import annotations
+
+import json
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...errors import InputError
+from ...jobs.check import check
+from ...jobs.run import data_of
+from ...results.files import refuse_path, written_whole
+from .as_json import drawing_json, poses_json
+from .derive import drawing_of
+from .marks import marks_of
+from .painted import largest_force
+from .picture import Shown, picture
+from .poses import Poses, described_poses
+from .scene_graph import Drawing
+from .states import poses_at
+from .view import check_view, view_named
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
+
+ENDINGS = (".svg", ".png", ".pdf", ".json")
+
+
+def check_drawing(path: Path) -> None:
+    """Refuse, before anything is solved, a drawing that could not be written.
+
+    Raises
+    ------
+    InputError
+        For an unknown ending, a missing folder, or a missing matplotlib.
+    """
+    refuse_path("-o", path, ENDINGS)
+    if path.suffix != ".json":
+        need_matplotlib(f"-o {path}")
+
+
+def need_matplotlib(what: str) -> None:
+    """Refuse a picture without matplotlib.
+
+    Raises
+    ------
+    InputError
+    """
+    if find_spec("matplotlib") is None:
+        raise InputError(f"{what}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+
+
+def state_drawn(
+    model: Any, at: float | None = None, described: bool = False, checked: bool = False, **changes: Any
+) -> tuple[Drawing, Poses]:
+    """A model's drawing and its poses at one instant.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+    at : float, optional
+        s; the start of the run by default.
+    described : bool
+        The bodies as they are described, before assembly; nothing is solved, so that there are no forces.
+    checked : bool
+        Mark joints with redundant equations, and those whose forces are not unique.
+    **changes
+        Fields of the settings to change.
+
+    Raises
+    ------
+    InputError, AssemblyError, SolverError
+        As for `stiffmbs.modes`.
+    """
+    marks = marks_of(check(model, **changes)) if checked else {}
+    if described:
+        data = data_of(model)
+        return drawing_of(data, marks), described_poses(data)
+    data, poses = poses_at(model, at=at, **changes)
+    return drawing_of(data, marks), poses
+
+
+def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: bool, forces: bool) -> None:
+    """Write a drawing; the file appears whole or not at all."""
+    if path.suffix == ".json":
+        text = json.dumps({"drawing": drawing_json(drawing), "poses": poses_json(poses)})
+        written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+        return
+    sheet = picture(drawing, poses, view_named(view, drawing.dimensions, drawing.gravity), Shown(names, forces))
+    plain: dict[str, Any] = {"metadata": {"Date": None}} if path.suffix == ".svg" else {}
+    written_whole(path, lambda part: sheet.savefig(part, dpi=130, **plain))
+
+
+def draw(
+    model: Any, path: str | Path | None = None, at: float | None = None, described: bool = False,
+    checked: bool = False, view: str = "", names: bool = True, forces: bool = True, **changes: Any,
+) -> Sheet | None:  # fmt: skip
+    """Draw a model at an instant: bodies by their geometry, joints and forces by the symbols of the field.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
+    path : str or Path, optional
+        Where to write the drawing: .svg, .png, .pdf, or .json for its shapes as numbers.
+    at : float, optional
+        The instant of the run, s; its start by default.
+    described : bool
+        The bodies as they are described, before assembly; nothing is solved, so that there are no forces.
+    checked : bool
+        Joints with redundant equations, and those whose forces are not unique, in colors of their own.
+    view : str
+        ``front``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, or ``AZIMUTH,ELEVATION`` in degrees; by default
+        along z in the plane and isometric in space.
+    names : bool
+        Whether names are written.
+    forces : bool
+        Whether the forces of joints and force elements are drawn as arrows, to scale.
+    **changes
+        Fields of the run's settings to change.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        Without a path one of pyplot's, so that ``pyplot.show()`` shows it.
+
+    Raises
+    ------
+    InputError, AssemblyError, SolverError
+        As for `stiffmbs.modes`, and for a file that cannot be written or a mesh that cannot be read.
+    """
+    check_view(view)
+    if path is None:
+        need_matplotlib("draw")
+    else:
+        check_drawing(Path(path))
+    drawing, poses = state_drawn(model, at, described, checked, **changes)
+    if path is None:
+        seen = view_named(view, drawing.dimensions, drawing.gravity)
+        return picture(drawing, poses, seen, Shown(names, forces), on_screen=True)
+    write_drawing(Path(path), drawing, poses, view, names, forces)
+    return None
+
+
+def summary(drawing: Drawing, poses: Poses) -> dict[str, Any]:
+    """What ``stiffmbs draw --json`` tells besides the file."""
+    owners = {part.owner for part in drawing.parts} | {link.owner for link in drawing.links}
+    return {
+        "bodies": len(drawing.bodies), "elements": len(owners - set(drawing.bodies)), "t": float(poses.time[0]),
+        "size": drawing.size, "largest_force": largest_force(drawing, poses), "marks": dict(drawing.marks),
+    }  # fmt: skip

@@ -1,0 +1,188 @@
+"""A drawing at an instant, seen from somewhere: polygons and lines of a plane, the farthest first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from .frames import across
+from .palette import EDGES, LOAD, LOAD_NOT_UNIQUE, MARKS, ROLES, shaded
+from .poses import Poses
+from .scene_graph import Drawing, Line, Link, Part, Role, Solid
+from .solids import face_normal
+from .view import View
+
+LIGHT = np.array([0.35, 0.5, 0.8])
+"""Where light comes from: to the right, up, towards the viewer."""
+FOREMOST = 0.004
+"""Of the size: how far lines lie before faces at the same place."""
+NEGLIGIBLE = 1e-9
+"""Of the weight of all bodies: a force below it is rounding."""
+LONGEST = 0.22
+"""The longest force arrow over the size."""
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """A polygon or line of the picture.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2)
+    depth : float
+        Towards the viewer.
+    face, edge : str
+        Colors; empty for none.
+    width : float
+        Of its line.
+    dashed : bool
+    opacity : float
+    """
+
+    points: np.ndarray
+    depth: float
+    face: str = ""
+    edge: str = ""
+    width: float = 1.0
+    dashed: bool = False
+    opacity: float = 1.0
+
+
+def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float = 0.0) -> list[Patch]:
+    """The picture at the k-th instant.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    poses : Poses
+    k : int
+    view : View
+    longest : float
+        The force, N, whose arrow is the longest; without one no arrows are drawn.
+    """
+    found: list[Patch] = []
+    for part in drawing.parts:
+        found += _part(drawing, part, poses, k, view)
+    for link in drawing.links:
+        found += _link(drawing, link, poses, k, view)
+    if longest > 0:
+        found += _loads(drawing, poses, k, view, longest)
+    return sorted(found, key=lambda patch: patch.depth)
+
+
+def _edge(drawing: Drawing, owner: str, role: Role) -> tuple[str, float]:
+    """The color of lines, and how much wider they are."""
+    mark = drawing.marks.get(owner)
+    return (MARKS[mark], 2.2) if mark else (EDGES[role], 1.0)
+
+
+def _face(drawing: Drawing, part: Part) -> str:
+    mark = drawing.marks.get(part.owner)
+    if mark and part.role in ("joint", "drive"):
+        return MARKS[mark]
+    return part.color or (drawing.bodies.get(part.owner, "") if part.role == "body" else "") or ROLES[part.role]
+
+
+def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Iterator[Patch]:
+    origin, axes = poses.pose(part.body, k)
+    face = _face(drawing, part)
+    edge, wider = _edge(drawing, part.owner, part.role)
+    for solid in part.solids:
+        yield from _solid(
+            view.seen(origin + solid.vertices @ axes.T), solid, face, (edge, wider), drawing.dimensions == 2
+        )
+    for line in part.lines:
+        seen = view.seen(origin + line.points @ axes.T)
+        yield from _line(seen, line, edge, wider, FOREMOST * drawing.size)
+
+
+def _solid(seen: np.ndarray, solid: Solid, color: str, edge: tuple[str, float], flat: bool) -> Iterator[Patch]:
+    """The faces that are turned to the viewer, and the edges of these."""
+    light = LIGHT / np.linalg.norm(LIGHT)
+    towards = np.zeros(len(solid.faces), dtype=bool)
+    for number, corners in enumerate(solid.faces):
+        points = seen[corners]
+        normal = face_normal(points)
+        towards[number] = not solid.closed or normal[2] > 0
+        if towards[number]:
+            normal = normal if normal[2] >= 0 else -normal
+            shade = color if flat else shaded(color, 0.62 + 0.42 * max(0.0, float(normal @ light)))
+            yield Patch(points[:, :2], float(points[:, 2].mean()), face=shade, opacity=0.9 if flat else 1.0)
+    for a, b, one, other in solid.edges:
+        if towards[one] or towards[other]:
+            ends = seen[[a, b]]
+            near = max(float(seen[solid.faces[k], 2].mean()) for k in (one, other) if towards[k])
+            yield Patch(ends[:, :2], near, edge=edge[0], width=0.7 * edge[1])
+
+
+def _line(seen: np.ndarray, line: Line, color: str, wider: float, lift: float) -> Iterator[Patch]:
+    yield Patch(seen[:, :2], float(seen[:, 2].mean()) + lift, edge=color, width=line.width * wider, dashed=line.dashed)
+
+
+def _link(drawing: Drawing, link: Link, poses: Poses, k: int, view: View) -> Iterator[Patch]:
+    ends = [poses.pose(end.body, k)[0] + poses.pose(end.body, k)[1] @ end.point for end in (link.i, link.j)]
+    edge, wider = _edge(drawing, link.owner, link.role)
+    for profile in link.profiles:
+        seen = view.seen(stretched(profile, *ends))
+        yield Patch(
+            seen[:, :2], float(seen[:, 2].mean()) + FOREMOST * drawing.size, edge=edge, width=link.width * wider,
+            dashed=link.dashed,
+        )  # fmt: skip
+
+
+def stretched(profile: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """A profile from one point to another, shape (n, 3)."""
+    way = end - start
+    first, second = across(way)
+    return start + profile[:, :1] * way + profile[:, 1:2] * first + profile[:, 2:3] * second
+
+
+def _loads(drawing: Drawing, poses: Poses, k: int, view: View, longest: float) -> Iterator[Patch]:
+    """Arrows of the forces on first bodies, whose tips are at the points that they act at where they push."""
+    for name, anchor in drawing.loads.items():
+        if name not in poses.forces:
+            continue
+        force = poses.forces[name][k]
+        length = float(np.linalg.norm(force)) / longest * LONGEST * drawing.size
+        if not np.isfinite(length) or length < 0.01 * drawing.size:
+            continue
+        origin, axes = poses.pose(anchor.body, k)
+        start = view.seen((origin + axes @ anchor.point)[None])[0]
+        way = view.seen(force[None] / np.linalg.norm(force))[0][:2]
+        color = LOAD_NOT_UNIQUE if drawing.marks.get(name) else LOAD
+        yield from _arrow(start[:2], way * length, color, drawing.size)
+
+
+def _arrow(start: np.ndarray, way: np.ndarray, color: str, size: float) -> Iterator[Patch]:
+    length = float(np.linalg.norm(way))
+    if length < 1e-6 * size:
+        return
+    head = min(0.35 * length, 0.03 * size)
+    along = way / length
+    side = np.array([-along[1], along[0]])
+    tip, neck = start + way, start + way - along * head
+    front = 1e3 * size
+    yield Patch(np.array([start, neck]), front, edge=color, width=2.2)
+    yield Patch(np.array([tip, neck + 0.45 * head * side, neck - 0.45 * head * side]), front, face=color)
+
+
+def largest_force(drawing: Drawing, poses: Poses) -> float:
+    """The largest force of any element that is drawn, N; zero where there is none but rounding."""
+    sizes = [np.linalg.norm(poses.forces[name], axis=1) for name in drawing.loads if name in poses.forces]
+    largest = max((float(np.nanmax(size)) for size in sizes if np.isfinite(size).any()), default=0.0)
+    return largest if largest > NEGLIGIBLE * drawing.weight else 0.0
+
+
+def extent(drawing: Drawing, poses: Poses, view: View, longest: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """The lower left and upper right corner of what is drawn over all instants; parameters as for `painted`."""
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for k in _rows(len(poses.time)):
+        for patch in painted(drawing, poses, k, view, longest):
+            low, high = np.minimum(low, patch.points.min(axis=0)), np.maximum(high, patch.points.max(axis=0))
+    return low, high
+
+
+def _rows(count: int) -> np.ndarray:
+    return np.unique(np.linspace(0, count - 1, min(count, 24)).astype(int))

@@ -1,0 +1,192 @@
+"""A drawing as a picture of matplotlib's: .svg, .png, .pdf."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .painted import Patch, extent, largest_force, painted
+from .palette import EDGES, LOAD, MARKS, PAPER
+from .poses import Poses
+from .scene_graph import Drawing
+from .view import View
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Sheet
+
+WIDTH = 8.0
+"""Of a picture, inch."""
+MOST_NAMES = 60
+"""With more, elements are not named."""
+MARK_WORDS = {"redundant": "redundant equations", "not unique": "force not unique"}
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a picture shows besides bodies and symbols.
+
+    Attributes
+    ----------
+    names : bool
+    forces : bool
+        Arrows for the forces of joints and force elements, to scale.
+    """
+
+    names: bool = True
+    forces: bool = True
+
+
+def picture(drawing: Drawing, poses: Poses, view: View, shown: Shown, on_screen: bool = False) -> Sheet:
+    """A sheet with the mechanism at the first instant; on the screen one of pyplot's."""
+    largest = largest_force(drawing, poses.at(np.array([0]))) if shown.forces else 0.0
+    low, high = framed(drawing, poses.at(np.array([0])), view, largest)
+    sheet, axes = empty_sheet(low, high, on_screen)
+    paint(axes, painted(drawing, poses, 0, view, largest))
+    if shown.names:
+        write_names(axes, drawing, poses, 0, view)
+    if drawing.name:
+        axes.set_title(drawing.name, fontsize=11, parse_math=False)
+    explain(axes, drawing, largest)
+    return sheet
+
+
+def empty_sheet(low: np.ndarray, high: np.ndarray, on_screen: bool = False) -> tuple[Sheet, Any]:
+    """A sheet of the shape of what is drawn, with axes without ticks."""
+    width, height = high - low
+    size = (WIDTH, float(np.clip(WIDTH * height / width, 2.0, 9.0)) + 0.5)
+    if on_screen:
+        from matplotlib import pyplot
+
+        sheet = pyplot.figure(figsize=size, layout="constrained")
+    else:
+        from matplotlib.figure import Figure as Sheet
+
+        sheet = Sheet(figsize=size, layout="constrained")
+    axes = sheet.add_subplot()
+    prepare(axes, low, high)
+    return sheet, axes
+
+
+def framed(drawing: Drawing, poses: Poses, view: View, largest: float) -> tuple[np.ndarray, np.ndarray]:
+    """The corners of the picture, with a margin for names and arrows."""
+    low, high = extent(drawing, poses, view, largest)
+    margin = 0.08 * max(float(np.linalg.norm(high - low)), 1e-9)
+    low, high = low - margin, high + margin
+    middle, least = (low + high) / 2, 0.35 * (high - low).max()
+    half = np.maximum(high - low, least) / 2
+    return middle - half, middle + half
+
+
+def prepare(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
+    """Axes without ticks, one scale for both."""
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def paint(axes: Axes, patches: Sequence[Patch], faint: float = 1.0) -> list[Any]:
+    """Put patches on axes; returns the artists, so that a film can take them away again."""
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    artists: list[Any] = []
+    for is_face, group in _runs(patches):
+        points = [patch.points for patch in group]
+        if is_face:
+            made: Any = PolyCollection(
+                points,
+                facecolors=[_faded(patch.face, faint * patch.opacity) for patch in group],
+                edgecolors="face",
+                linewidths=0.3 if faint == 1.0 else 0.0,
+            )
+        else:
+            made = LineCollection(
+                points, colors=[_faded(patch.edge, faint) for patch in group], linewidths=[patch.width for patch in group],
+                linestyles=[(0, (6, 2, 1, 2)) if patch.dashed else "solid" for patch in group], capstyle="round",
+            )  # fmt: skip
+        made.set_zorder(2 + len(artists) * 1e-3)
+        axes.add_collection(made, autolim=False)
+        artists.append(made)
+    return artists
+
+
+def _faded(color: str, opacity: float) -> tuple[float, float, float, float]:
+    r, g, b = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    return r, g, b, opacity
+
+
+def _runs(patches: Iterable[Patch]) -> Iterable[tuple[bool, list[Patch]]]:
+    """Patches in their order, neighbours of one sort together."""
+    run: list[Patch] = []
+    for patch in patches:
+        if run and bool(run[-1].face) != bool(patch.face):
+            yield bool(run[-1].face), run
+            run = []
+        run.append(patch)
+    if run:
+        yield bool(run[-1].face), run
+
+
+def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) -> list[Any]:
+    """Names beside their points, where they cover each other least."""
+    names = drawing.names if len(drawing.names) <= MOST_NAMES else [n for n in drawing.names if n.role == "body"]
+    taken: list[np.ndarray] = []
+    artists = []
+    unit = 0.016 * float(np.diff(axes.get_xlim())[0])
+    for name in sorted(names, key=lambda name: name.role != "body"):
+        origin, turned = poses.pose(name.anchor.body, k)
+        point = view.seen((origin + turned @ name.anchor.point)[None])[0][:2]
+        box = np.array([0.72 * len(name.text) + 0.6, 1.5]) * unit
+        place = _free_place(point, box, taken, unit)
+        taken.append(np.array([place - box / 2, place + box / 2]))
+        color = MARKS[drawing.marks[name.text]] if name.text in drawing.marks else EDGES[name.role]
+        artists.append(
+            axes.text(
+                place[0], place[1], name.text, ha="center", va="center", fontsize=7.5, color=color, parse_math=False, zorder=9,
+                style="normal" if name.role == "body" else "italic", weight="bold" if name.role == "body" else "normal",
+                bbox={"boxstyle": "round,pad=0.1", "facecolor": PAPER, "alpha": 0.72, "edgecolor": "none"}, clip_on=False,
+            )
+        )  # fmt: skip
+    return artists
+
+
+def _free_place(point: np.ndarray, box: np.ndarray, taken: Sequence[np.ndarray], unit: float) -> np.ndarray:
+    """Beside a point, with the least overlap of what is written already."""
+    ways = [
+        (1, 0.8),
+        (-1, 0.8),
+        (1, -0.8),
+        (-1, -0.8),
+        (0, 1.6),
+        (0, -1.6),
+        (1.4, 2.4),
+        (-1.4, 2.4),
+        (1.4, -2.4),
+        (-1.4, -2.4),
+    ]
+    places = [point + np.array([x * (box[0] / 2 + unit), y * (box[1] / 2 + unit)]) for x, y in ways]
+    return min(places, key=lambda place: sum(_overlap(place, box, other) for other in taken))
+
+
+def _overlap(place: np.ndarray, box: np.ndarray, other: np.ndarray) -> float:
+    low, high = np.maximum(place - box / 2, other[0]), np.minimum(place + box / 2, other[1])
+    return float(np.prod(np.maximum(high - low, 0)))
+
+
+def explain(axes: Axes, drawing: Drawing, largest: float) -> None:
+    """A line below the picture on the colors and arrows that are in it."""
+    from matplotlib.lines import Line2D
+
+    entries = []
+    if largest > 0:
+        entries.append(
+            Line2D([], [], color=LOAD, lw=2.2, label=f"force on an element's first body, longest {largest:.4g} N")
+        )
+    for mark in dict.fromkeys(drawing.marks.values()):
+        entries.append(Line2D([], [], color=MARKS[mark], lw=4, label=MARK_WORDS[mark]))
+    if entries:
+        axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, frameon=False, fontsize=8)

@@ -1,0 +1,122 @@
+"""Where bodies are, and the forces that act, over time: as described, or of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from ...describe.marker import GROUND, MarkerReference
+from ...describe.model_data import ModelData
+from ...errors import InputError
+from .frames import rotation
+
+Channels = Mapping[str, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Poses of all bodies at some instants.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        s.
+    points : mapping of str to ndarray, shape (n, 3)
+        Centres of mass in ground axes, m.
+    orientations : mapping of str to ndarray, shape (n, 4)
+        Quaternions of the bodies' own axes.
+    forces : mapping of str to ndarray, shape (n, 3)
+        Of joints and forces on their first bodies, in ground axes, N.
+    """
+
+    time: np.ndarray
+    points: Mapping[str, np.ndarray]
+    orientations: Mapping[str, np.ndarray]
+    forces: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    def pose(self, body: str, k: int) -> tuple[np.ndarray, np.ndarray]:
+        """A body's centre of mass and the matrix of its axes at the k-th instant; of ground, the origin."""
+        if body == GROUND:
+            return np.zeros(3), np.eye(3)
+        return self.points[body][k], rotation(self.orientations[body][k])
+
+    def at(self, rows: np.ndarray) -> Poses:
+        """The poses at some of the instants."""
+        pick = [
+            {name: values[rows] for name, values in part.items()}
+            for part in (self.points, self.orientations, self.forces)
+        ]
+        return Poses(self.time[rows], *pick)
+
+
+def placed(data: ModelData, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
+    """Where a marker is on its body, from the centre of mass, and its axes, shape (3, 3), in the body's."""
+    family = import_module(f"stiffmbs.results.{'planar' if data.dimensions == 2 else 'spatial'}_motion")
+    point, orientation = family.place(data, marker)
+    return point, rotation(orientation)
+
+
+def described_poses(data: ModelData) -> Poses:
+    """The bodies as the scene describes them, before assembly."""
+    points, orientations = {}, {}
+    for name, body in data.bodies.items():
+        if data.dimensions == 2:
+            points[name] = np.array([[*body.position, 0.0]])
+            orientations[name] = np.array([[math.cos(body.angle / 2), 0, 0, math.sin(body.angle / 2)]])
+        else:
+            orientations[name] = np.array([body.orientation])
+            points[name] = np.array([body.position]) + rotation(body.orientation) @ np.array(body.center_of_mass)
+    return Poses(np.zeros(1), points, orientations)
+
+
+def poses_of(data: ModelData, time: np.ndarray, channels: Channels) -> Poses:
+    """The poses of a run, and the forces of all elements that report one.
+
+    Parameters
+    ----------
+    data : ModelData
+    time : ndarray, shape (n,)
+    channels : mapping of str to ndarray, shape (n,)
+
+    Raises
+    ------
+    InputError
+        When the run is of another model.
+    """
+    points, orientations = {}, {}
+    for name in data.bodies:
+        points[name] = columns(channels, len(time), name, ("x", "y", "z")[: data.dimensions])
+        orientations[name] = _orientations(channels, name, data.dimensions)
+    axes = ("fx", "fy", "fz")[: data.dimensions]
+    forces = {
+        name: columns(channels, len(time), name, axes)
+        for name in (*data.joints, *data.forces) if all(f"{name}.{axis}" in channels for axis in axes)
+    }  # fmt: skip
+    return Poses(np.asarray(time), points, orientations, forces)
+
+
+def columns(channels: Channels, count: int, name: str, axes: Iterable[str]) -> np.ndarray:
+    """Channels of one owner side by side, with zeros for the third in the plane, shape (n, 3)."""
+    found = np.zeros((count, 3))
+    for k, axis in enumerate(axes):
+        found[:, k] = _channel(channels, f"{name}.{axis}")
+    return found
+
+
+def _orientations(channels: Channels, name: str, dimensions: int) -> np.ndarray:
+    if dimensions == 3:
+        return np.column_stack([_channel(channels, f"{name}.q{k}") for k in range(4)])
+    half = _channel(channels, f"{name}.angle") / 2
+    zero = np.zeros_like(half)
+    return np.column_stack([np.cos(half), zero, zero, np.sin(half)])
+
+
+def _channel(channels: Channels, channel: str) -> Any:
+    if channel not in channels:
+        raise InputError(f"found results without the channel '{channel}', expected those of a run of this scene")
+    return channels[channel]

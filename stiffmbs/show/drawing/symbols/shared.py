@@ -1,0 +1,181 @@
+"""Symbols that are the same in the plane and in space."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ....describe.formula.field import Formula
+from ....describe.formula.text import FormulaError
+from ....describe.formula.value import formula_value
+from .. import solids
+from ..draft import Draft, Site
+from ..frames import axes_along
+from ..scene_graph import Line
+from . import profiles
+
+TURN = 2 * math.pi
+
+
+def ground(d: Draft) -> None:
+    """The hatched line, or plate, under a point of the ground."""
+    site = d.grounded()
+    if site is not None:
+        d.put(upright(d, site).at((0, 0.0, 0)), "ground", *hatched(d.u, 1.1, 0.0))
+
+
+def upright(d: Draft, site: Site) -> Site:
+    """The site with axes whose -y points down."""
+    up = -d.down
+    x = np.cross(up, [0.0, 0.0, 1.0])
+    if np.linalg.norm(x) < 0.5:  # up is z: the plate stands across the x axis
+        x = np.array([1.0, 0.0, 0.0])
+    return site.along_ground().with_axes(np.column_stack([x, up, np.cross(x, up)]))
+
+
+def hatched(u: float, half: float, height: float) -> list[Line]:
+    """A line along x with hatching below it, half its width given in units."""
+    strokes = np.arange(-half, half + 1e-9, 0.4) * u
+    low = height - 0.45 * u
+    line = Line(np.array([[-half * u, height, 0], [half * u, height, 0]]), 1.4)
+    return [line, *(Line(np.array([[x, height, 0], [x - 0.35 * u, low, 0]]), 0.7) for x in strokes)]
+
+
+def arc_arrow(radius: float, start: float, end: float, head: float) -> list[Line]:
+    """An arc in the x-y plane with a head at its end."""
+    tip = radius * np.array([math.cos(end), math.sin(end), 0.0])
+    back = np.array([math.sin(end), -math.cos(end), 0.0]) * head
+    out = np.array([math.cos(end), math.sin(end), 0.0]) * head * 0.6
+    return [
+        Line(solids.circle(radius, start, end), 1.6),
+        Line(np.array([tip + back + out, tip, tip + back - out]), 1.6),
+    ]
+
+
+def arrow(direction: np.ndarray, length: float, head: float) -> list[Line]:
+    """An arrow from the origin."""
+    axes = axes_along(direction)
+    tip = axes[:, 2] * length
+    wings = [tip - axes[:, 2] * head + axes[:, 0] * side * head * 0.6 for side in (1, -1)]
+    return [Line(np.array([np.zeros(3), tip]), 1.8), Line(np.array([wings[0], tip, wings[1]]), 1.8)]
+
+
+def components(values: Any) -> np.ndarray | None:
+    """The direction of a constant force, shape (3,); None where it is none, or is zero."""
+    try:
+        numbers = [formula_value(v, t=0.0) if isinstance(v, Formula) else float(v) for v in values]
+    except (FormulaError, KeyError, TypeError, ValueError):
+        return None
+    found = np.array([*numbers, 0.0])[:3]
+    return found / np.linalg.norm(found) if np.linalg.norm(found) > 0 else None
+
+
+def force(d: Draft) -> None:
+    """An arrow at the point, in the direction that the force has where that is constant."""
+    if d.i is None:
+        return
+    direction = components(d.element.force)
+    site = d.i if getattr(d.element, "axes", "body") == "body" else d.i.along_ground()
+    if direction is None:
+        d.put(d.i, "force", solids.outline(solids.circle(0.55 * d.u, corners=4)[:-1], 1.6))
+        return
+    d.put(site.at(-5 * d.u * direction), "force", *arrow(direction, 4.3 * d.u, 1.1 * d.u))
+
+
+def torque(d: Draft) -> None:
+    """An arrow around the point."""
+    if d.i is not None:
+        d.put(d.i, "force", *arc_arrow(1.7 * d.u, -0.6 * TURN, 0.12 * TURN, 0.7 * d.u))
+
+
+def line_force(d: Draft) -> None:
+    """A line with two heads."""
+    if d.i is not None and d.j is not None:
+        d.stretch(d.i, d.j, "force", *profiles.arrows(0.6 * d.u))
+
+
+def spiral(d: Draft) -> None:
+    """A clock spring about z."""
+    if d.i is None:
+        return
+    angles = np.linspace(0, 2.5 * TURN, 60)
+    radius = np.linspace(0.5, 1.5, 60) * d.u
+    points = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), 0.05 * d.u + 0 * angles])
+    d.put(d.i, "force", Line(points, 1.3))
+
+
+def coupling(d: Draft) -> None:
+    """A dashed line between two joints that are tied to each other."""
+    one, other = d.joint_site("joint_1"), d.joint_site("joint_2")
+    if one is not None and other is not None:
+        d.stretch(one, other, "drive", profiles.STRAIGHT, dashed=True)
+
+
+def rubbing(d: Draft) -> None:
+    """Short strokes where surfaces slide."""
+    if d.i is not None:
+        strokes = (
+            Line(np.array([[x - 0.2, -1.5, 0], [x + 0.2, -1.1, 0]]) * d.u, 1.2) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)
+        )
+        d.put(d.i, "force", *strokes)
+
+
+def any_joint(d: Draft) -> None:
+    """A diamond where the joint reports its reaction."""
+    if d.i is not None:
+        d.put(
+            d.i,
+            "joint",
+            solids.flat(solids.circle(0.5 * d.u, corners=4)[:-1]),
+            solids.outline(solids.circle(0.5 * d.u, corners=4)[:-1]),
+        )
+    if d.i is not None and d.j is not None and np.linalg.norm(d.i.in_ground - d.j.in_ground) > d.u:
+        d.stretch(d.i, d.j, "joint", profiles.STRAIGHT, dashed=True)
+
+
+def any_force(d: Draft) -> None:
+    """A dashed line between the markers, or a diamond at the only one."""
+    if d.i is not None and d.j is not None and np.linalg.norm(d.i.in_ground - d.j.in_ground) > d.u:
+        d.stretch(d.i, d.j, "force", *profiles.arrows(0.5 * d.u), dashed=True)
+    elif d.i is not None:
+        d.put(d.i, "force", solids.outline(solids.circle(0.6 * d.u, corners=4)[:-1], 1.5))
+
+
+def curve(d: Draft) -> None:
+    """The curve that a point stays on, in the axes of marker j."""
+    if d.j is None:
+        return
+    points = _along_y(d) if d.element.y is not None else _around(d)
+    if points is not None:
+        d.put(d.j, "joint", Line(points, 1.6))
+
+
+def _value(law: Any, name: str, x: float) -> float:
+    variables: dict[str, Any] = {name: x}
+    return formula_value(law, **variables) if isinstance(law, Formula) else float(_interpolated(law, x))
+
+
+def _interpolated(table: Any, x: float) -> float:
+    rows = np.array(table.table)
+    period = {"period": rows[-1, 0] - rows[0, 0]} if table.ends == "periodic" else {}
+    return float(np.interp(x, rows[:, 0], rows[:, 1], **period))
+
+
+def _along_y(d: Draft) -> np.ndarray | None:
+    law = d.element.y
+    half = 0.4 * d.size
+    ends: tuple[float, float] = (law.table[0][0], law.table[-1][0]) if hasattr(law, "table") else (-half, half)
+    try:
+        return np.array([[x, _value(law, "x", x), 0.0] for x in np.linspace(*ends, 80)])
+    except FormulaError:
+        return None
+
+
+def _around(d: Draft) -> np.ndarray | None:
+    try:
+        radii = np.array([_value(d.element.radius, "angle", a) for a in np.linspace(0, TURN, 97)])
+    except FormulaError:
+        return None
+    return solids.circle(1.0, corners=96) * radii[:, None]
