@@ -50,6 +50,9 @@ class Compilable(Protocol):
     def elements(self) -> Iterator[tuple[str, Element]]:
         """Every joint, force, counter of turns and weight with its name."""
 
+    def state_outputs(self) -> Mapping[str, Formula]:
+        """Formulas that others use by a name."""
+
     def state_values(self) -> Mapping[str, StateValue]:
         """The states of the user's own."""
 
@@ -252,8 +255,18 @@ class _FormulaShape(ast.NodeTransformer):
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
         if node.id in self.formula.states:
+            output = self.model.state_outputs().get(node.id)
+            if output is not None:
+                return self._inlined(output)
             return ast.Name(f"{STATE}{self.data.state_slot(node.id)}")
         return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
+
+    def _inlined(self, output: Formula) -> ast.AST:
+        """The shape of another formula that stands in this one."""
+        inner = _FormulaShape(output, self.model, self.data)
+        inner.numbers, inner.measures, inner.tables = self.numbers, self.measures, self.tables
+        tree: ast.AST = inner.visit(copy.deepcopy(output.tree))
+        return tree
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         assert isinstance(node.value, ast.Name)

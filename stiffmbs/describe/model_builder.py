@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack, overload
 
 from ..errors import InputError
@@ -22,8 +22,8 @@ from .requests.check import ByChannel, by_channel, check_output
 from .requests.order import dimensions, with_named
 from .requests.output_field import RequestField
 from .settings import RunSettings, Settings, takes_settings
-from .states.section import check_states
-from .states.state import State
+from .states.linear_system import StateEntry
+from .states.section import check_states, names_in_formulas
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -62,7 +62,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         self.gravity = gravity
         self.markers: dict[str, Any] = {}
         self.bodies: dict[str, Body] = {}
-        self.states: dict[str, State] = {}
+        self.states: dict[str, StateEntry] = {}
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
         self.requests: dict[str, Any] = {}
@@ -74,7 +74,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
     def add(self, name: str, part: Body) -> BodyHandle: ...
 
     @overload
-    def add(self, name: str, part: Joint | Force | State) -> None: ...
+    def add(self, name: str, part: Joint | Force | StateEntry) -> None: ...
 
     def add(self, name: str, part: Any) -> BodyHandle | None:
         """Add a body, a joint, a force or a state.
@@ -169,7 +169,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         """The section that a part belongs to."""
         if isinstance(part, self.body_type):
             return self.bodies
-        if isinstance(part, State):
+        if isinstance(part, StateEntry):
             return self.states
         if not isinstance(part, Joint | Force):
             raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
@@ -185,7 +185,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         try:
             for other, element in (*self.joints.items(), *self.forces.items()):
                 self._check_element(other, element)
-            self._check_states(self.states, self.states)
+            self._check_states(self.states, names_in_formulas(self.states))
             self.data_type.model_construct(**self._content()).check_requests()
         except ValueError as error:
             section.clear()
@@ -268,15 +268,23 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         try:
             if isinstance(part, Element):
                 self._check_element(name, part)
-            if isinstance(part, State):
+            if isinstance(part, StateEntry):
                 self._check_states({name: part}, known=None)
         except ValueError as error:
             raise InputError(str(error)) from None
 
     def _check_element(self, name: str, part: Element) -> None:
-        check_element(name, part, self.bodies, self.joints, self.markers, NAMES[self._dimensions()], self.states)
+        check_element(
+            name,
+            part,
+            self.bodies,
+            self.joints,
+            self.markers,
+            NAMES[self._dimensions()],
+            names_in_formulas(self.states),
+        )
 
-    def _check_states(self, states: Mapping[str, State], known: Mapping[str, State] | None) -> None:
+    def _check_states(self, states: Mapping[str, StateEntry], known: Collection[str] | None) -> None:
         check_states(states, self.bodies, self.markers, NAMES[self._dimensions()], known)
 
     def _content(self) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from .requests.order import dimensions
 from .requests.output import Output
 from .states.equation import Reported, StateEquation
 from .states.name import StateName
-from .states.section import AnyState, check_states, check_states_of
+from .states.section import AnyState, check_states, check_states_of, names_in_formulas, refuse_algebraic_loops
 from .states.state import StateValue
 
 if TYPE_CHECKING:
@@ -108,8 +108,9 @@ class ModelData(Described):
                 raise ValueError(
                     f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
                 )
-        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.states
-        check_states(self.states, self.bodies, self.markers, NAMES[self.dimensions], self.states)
+        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], names_in_formulas(self.states)
+        check_states(self.states, self.bodies, self.markers, NAMES[self.dimensions], names_in_formulas(self.states))
+        refuse_algebraic_loops(self.state_outputs())
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
         }
@@ -162,6 +163,10 @@ class ModelData(Described):
                 yield full, StateEquation.model_construct(state=StateName(full), formula=value.rate)
             for full, formula in state.outputs(name):
                 yield full, Reported.model_construct(formula=formula)
+
+    def state_outputs(self) -> dict[str, Formula]:
+        """Formulas that others use by a name, as the output of a transfer function, by full name."""
+        return {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
 
     def state_values(self) -> dict[str, StateValue]:
         """What is solved for beside the bodies, by full name."""

@@ -14,6 +14,7 @@ from .geometry.shape import Shape
 from .marker import MarkerReference
 from .model_data import ModelData
 from .states.amount import Amount
+from .states.linear_system import PID
 from .table import Table
 from .units.units import Quantity, in_text
 
@@ -49,6 +50,8 @@ def _written(value: Any) -> Any:
         case Table():
             rows = [[_quantity(*entry) for entry in zip(row, value.dimensions, strict=True)] for row in value.table]
             return {**_fields(value), "table": rows}
+        case PID():
+            return {"pid": _fields(value)}
         case Described():
             kind = {"type": value.type} if isinstance(value, Element | Shape) else {}
             return {**kind, **_fields(value)}

@@ -47,6 +47,10 @@ class MergedBodies:
         """All joints by name."""
         return self.model.joints
 
+    def state_outputs(self) -> dict[str, Formula]:
+        """The outputs that formulas use by a name."""
+        return self.model.state_outputs()
+
     def state_values(self) -> dict[str, StateValue]:
         """The states, all of them."""
         return self.model.state_values()

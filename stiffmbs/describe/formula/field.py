@@ -22,7 +22,7 @@ from .dimension import UNKNOWN, Known, measured_in
 from .full_names import text_in_full, with_full_names
 from .functions import IN_FORMULAS, check_functions
 from .measured import dimension_within
-from .names import MEASURES
+from .names import COORDINATES, MEASURES
 from .state_names import with_states
 from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
@@ -175,6 +175,8 @@ def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
         match node:
             case ast.Name(name) if name != TIME and not any(name in known for known in (own, UNITS, CONSTANTS)):
                 yield name
+            case ast.Attribute(ast.Name(owner), name) if owner != UNIT and name not in COORDINATES:
+                yield f"{owner}.{name}"
 
 
 @dataclass(frozen=True)

@@ -67,6 +67,8 @@ SPACE = FormulaNames(
 )
 NAMES = {2: PLANE, 3: SPACE}
 """By the dimensions of the model."""
+COORDINATES = frozenset(name for names in NAMES.values() for name in (*names.positions, *names.velocities))
+"""Of bodies, in both families."""
 VELOCITIES = tuple(
     dict.fromkeys(name for names in NAMES.values() for name in (*names.velocities, *names.velocity_measures))
 )

@@ -14,14 +14,14 @@ from ...errors import InputError
 from ..element import Element
 from ..fields import Described, sentence
 from ..files.quoted import written
+from ..formula.dimension import Known
 from ..formula.full_names import with_full_names
 from ..formula.names import MEASURES
 from ..formula.state_names import with_states
 from ..formula.text import parse
 from ..formula.variables import meant_within
 from ..marker import MarkerReference
-from ..states.section import refuse_other_meanings
-from ..states.state import dimension_of_state
+from ..states.section import dimensions_of_entry, refuse_other_meanings
 from ..units.units import in_text
 from .instances import NAMED, Instance, Instances
 from .mirrored import Mirror
@@ -60,18 +60,19 @@ def with_parts(
     for path, _ in left:
         raise InputError(f"--set {path}: found no such place in the scene")
     bodies = [*_keys(raw.get("bodies")), *(name for one in instances.found for name in one.names("bodies"))]
-    own = raw.get("states")
+    own: Any = raw.get("states")
     known = {name: context.get(name) or {} for name in ("parameters", "tables", "variables")}
     refuse_other_meanings("states", _keys(own), known)
-    states = {} if not isinstance(own, dict) else {
-        name: dimension_of_state(entry, context["parameters"]) for name, entry in own.items() if isinstance(name, str)
-    }  # fmt: skip
+    states: dict[str, Known] = {}
+    for name in _keys(own):
+        states |= dimensions_of_entry(name, own[name], context["parameters"])
     for one in instances.found:
         refuse_other_meanings(
             f"{one.where}.states", one.sections.get("states") or {}, {**known, "parameters": one.parameters}
         )
         entries = (one.sections.get("states") or {}).items()
-        states |= {f"{one.name}.{name}": dimension_of_state(entry, one.parameters) for name, entry in entries}
+        for name, entry in entries:
+            states |= dimensions_of_entry(f"{one.name}.{name}", entry, one.parameters)
     names = Names(frozenset(bodies), states=states)
     variables = {
         name: with_states(with_full_names(tree, names, MEASURES), names, (), MEASURES)

@@ -3,17 +3,95 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from typing import Any
+from graphlib import CycleError, TopologicalSorter
+from typing import Annotated, Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic_core import core_schema
 
 from ...errors import InputError
 from ..check_marker import check_marker, listed
+from ..files.quoted import quoted, written
+from ..formula.dimension import UNKNOWN, Known
 from ..formula.field import Formula
 from ..formula.names import FormulaNames
 from ..marker import GROUND
 from ..units.units import CONSTANTS, UNITS
-from .state import State
+from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
+from .state import State, dimension_of_state
 
-AnyState = State
+KINDS: dict[str, type[StateEntry]] = {
+    "rate": State, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
+}  # fmt: skip
+"""The kinds of entries, by a key that only they have."""
+
+
+class _Entry:
+    """Marks a field as an entry of the section, told apart by its keys."""
+
+    @staticmethod
+    def read(found: Any, info: ValidationInfo) -> StateEntry:
+        """The entry that stands in the scene."""
+        if isinstance(found, StateEntry):
+            return found
+        if not isinstance(found, dict):
+            raise ValueError(f"found {written(found)}, expected a mapping of keys to values")
+        kind = next((kind for key, kind in KINDS.items() if key in found), None)
+        if kind is None:
+            raise ValueError(f"found none of the keys {', '.join(KINDS)}, expected one of them")
+        if kind is PID:
+            others = [key for key in found if key != "pid"]
+            if others:
+                raise ValueError(f"found the key '{quoted(others[0])}' beside pid, expected it within: pid: {{...}}")
+            found = found["pid"]
+        return kind.model_validate(found, context=info.context)
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        return core_schema.with_info_plain_validator_function(cls.read)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        ways = [
+            handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, []))
+            for kind in dict.fromkeys(KINDS.values())
+        ]
+        pid = {"type": "object", "additionalProperties": False, "properties": {"pid": ways.pop()}, "required": ["pid"]}
+        return {"anyOf": [*ways, pid]}
+
+
+AnyState = Annotated[Any, _Entry]
+
+
+def dimensions_of_entry(name: str, entry: Any, parameters: Any) -> dict[str, Known]:
+    """The names that an entry of a scene gives to formulas, and what it tells of their dimensions, before it is validated."""
+    outputs = entry.get("outputs") if isinstance(entry, dict) else getattr(entry, "outputs_", None)
+    if isinstance(outputs, list | tuple) and outputs:
+        return {f"{name}.{output}": UNKNOWN for output in outputs}
+    return {name: dimension_of_state(entry, parameters)}
+
+
+def names_in_formulas(states: Mapping[str, StateEntry]) -> set[str]:
+    """The names by which formulas may use entries: those of states that are the output themselves, and of other outputs."""
+    found = {full for name, state in states.items() for full, _ in state.outputs(name)}
+    return found | {name for name, state in states.items() if any(full == name for full, _ in state.values(name))}
+
+
+def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
+    """Refuse outputs that depend on themselves at once.
+
+    Raises
+    ------
+    ValueError
+    """
+    needs = {name: [other for other in formula.states if other in outputs] for name, formula in outputs.items()}
+    try:
+        TopologicalSorter(needs).prepare()
+    except CycleError as error:
+        way = error.args[1][::-1]
+        raise ValueError(
+            f"states.{way[0]}: found an output that depends on itself at once ({' -> '.join(way)}), expected a state in the loop"
+        ) from None
 
 
 def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str, Collection[str]]) -> None:

@@ -12,6 +12,7 @@ from ...fields import Described
 from ...formula.field import Formula
 from ...marker import Marker
 from ...states.amount import Amount
+from ...states.linear_system import PID
 from ...units.units import in_text
 from ..model import FORCES, JOINTS
 from .angles import Angles
@@ -77,6 +78,8 @@ def plain(value: Any, angles: Angles) -> Any:
 
 def fields(described: Described, angles: Angles) -> Written:
     """The fields that do not have their defaults, as they are written."""
+    if isinstance(described, PID):
+        return {"pid": {name: plain(value, angles) for name, value in described.__repr_args__()}}
     return {name: plain(value, angles) for name, value in described.__repr_args__()}
 
 
