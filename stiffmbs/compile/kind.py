@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..describe.element import Element, Joint, JointName
-from ..describe.formula.field import TIME, Formula, is_measure, measured_markers
+from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
@@ -28,6 +28,8 @@ from .callbacks import callback_of
 from .table_values import spline_data
 
 Shape = tuple[Any, ...]
+REACTION = "reaction"
+"""Before the number of a joint's reaction in a formula's shape."""
 STATE = "state"
 """Before the slot of a state in a formula's shape."""
 OWN = "own_"
@@ -205,6 +207,7 @@ class _FormulaShape(ast.NodeTransformer):
         self.numbers: list[float] = []
         self.measures: list[tuple[str, tuple[Any, ...]]] = []
         self.tables: list[Table] = []
+        self.reactions: list[tuple[str, str]] = []
         self._found: dict[str, ast.AST] = {}
 
     def shape(self) -> Shape:
@@ -219,7 +222,12 @@ class _FormulaShape(ast.NodeTransformer):
         self.data.tables += [(first + k, spline_data(table)) for k, table in enumerate(self.tables)]
         self.data.numbers += [0.0] * len(self.tables)
         counts = len(self.formula.variables), len(self.numbers), len(self.tables)
-        return ("formula", ast.unparse(tree), counts, measures)
+        joints = {
+            joint: _shape(JointName(joint), self.model, self.data)
+            for joint in dict.fromkeys(j for _, j in self.reactions)
+        }
+        reactions = tuple((name, joints[joint]) for name, joint in self.reactions)
+        return ("formula", ast.unparse(tree), counts, measures, *([reactions] if reactions else []))
 
     def visit(self, node: ast.AST) -> Any:
         constant = _constant_value(node, self.formula)
@@ -246,6 +254,9 @@ class _FormulaShape(ast.NodeTransformer):
         if is_measure(node):
             self.measures.append((node.func.id, measured_markers(node)))  # type: ignore[attr-defined]
             return ast.Name(f"measure{len(self.measures) - 1}")
+        if is_reaction(node):
+            self.reactions.append((node.func.id, joint_of(node)))  # type: ignore[attr-defined]
+            return ast.Name(f"{REACTION}{len(self.reactions) - 1}")
         arguments = [self.visit(argument) for argument in node.args]
         table = self.formula.tables.get(node.func.id)  # type: ignore[attr-defined]
         if table is None:
@@ -264,7 +275,12 @@ class _FormulaShape(ast.NodeTransformer):
     def _inlined(self, output: Formula) -> ast.AST:
         """The shape of another formula that stands in this one."""
         inner = _FormulaShape(output, self.model, self.data)
-        inner.numbers, inner.measures, inner.tables = self.numbers, self.measures, self.tables
+        inner.numbers, inner.measures, inner.tables, inner.reactions = (
+            self.numbers,
+            self.measures,
+            self.tables,
+            self.reactions,
+        )
         tree: ast.AST = inner.visit(copy.deepcopy(output.tree))
         return tree
 
@@ -281,7 +297,7 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
     if not isinstance(node, ast.expr):
         return None
     for part in ast.walk(node):
-        if is_measure(part) or (
+        if is_named(part) or (
             isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)
         ):
             return None

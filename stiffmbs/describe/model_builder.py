@@ -285,7 +285,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         )
 
     def _check_states(self, states: Mapping[str, StateEntry], known: Collection[str] | None) -> None:
-        check_states(states, self.bodies, self.markers, NAMES[self._dimensions()], known)
+        check_states(states, self.bodies, self.markers, self.joints, NAMES[self._dimensions()], known)
 
     def _content(self) -> dict[str, Any]:
         sections = ("name", "gravity", "markers", "bodies", "states", "joints", "forces", "requests")

@@ -24,7 +24,14 @@ from .requests.order import dimensions
 from .requests.output import Output
 from .states.equation import Reported, StateEquation
 from .states.name import StateName
-from .states.section import AnyState, check_states, check_states_of, names_in_formulas, refuse_algebraic_loops
+from .states.section import (
+    AnyState,
+    check_reactions,
+    check_states,
+    check_states_of,
+    names_in_formulas,
+    refuse_algebraic_loops,
+)
 from .states.state import StateValue
 
 if TYPE_CHECKING:
@@ -109,7 +116,9 @@ class ModelData(Described):
                     f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
                 )
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], names_in_formulas(self.states)
-        check_states(self.states, self.bodies, self.markers, NAMES[self.dimensions], names_in_formulas(self.states))
+        check_states(
+            self.states, self.bodies, self.markers, self.joints, NAMES[self.dimensions], names_in_formulas(self.states)
+        )
         refuse_algebraic_loops(self.state_outputs())
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
@@ -249,6 +258,7 @@ def check_element(
             if body not in bodies and body != GROUND:
                 raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {listed(bodies)}")
         check_states_of(f"{where}.{field}", formula, states)
+        check_reactions(f"{where}.{field}", formula, joints)
         for reason in names.refused(formula):
             raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]

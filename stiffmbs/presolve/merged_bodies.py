@@ -116,6 +116,7 @@ def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
 def _candidates(model: ModelData) -> Iterator[str]:
     elements = [*model.joints.values(), *model.forces.values(), *(element for _, element in model.state_equations())]
     referred = {name.joint for element in elements for _, name in element.parts(JointName)}
+    referred |= {joint for e in elements for _, formula in e.parts(Formula) for _, joint in formula.reactions()}
     named = {body for e in elements for _, formula in e.parts(Formula) for body, _ in formula.coordinates()}
     for name, joint in model.joints.items():
         bodies = {marker.body for _, marker in joint.markers()}

@@ -106,6 +106,7 @@ class Dynamics:
                 "n_behind": len(row),
                 "behind_source": self._behind[0],
                 "behind_row": self._behind[1],
+                "by_reactions": len(system.term("tangent", "rate_lam").row) > 0,
             },
         )
         self._cells = cells(self.table, DYNAMICS)

@@ -77,10 +77,11 @@ PAIRED_COLUMNS: Layout = {
 DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
-    "n_behind": INT, "behind_source": INTS, "behind_row": INTS,
+    "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
 }  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
-`behind` tells where the rates of counters of turns and states stand among the terms of accelerations."""
+`behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
+depends on multipliers."""
 
 
 IDA: Layout = {

@@ -126,6 +126,11 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
                 f"{kind.element.__name__}: found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
                 "in velocities"
             )
+    pressed = [symbol for joint in symbols.joint_lam for symbol in joint]
+    if any(e.depends(entry, pressed) for entry in V):
+        raise InputError(
+            f"{kind.element.__name__}: found a reaction in its equations, expected formulas without reactions"
+        )
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
     force = e.work_by_velocities(zip(lam, V, strict=True))
     turning = e.rate(V)

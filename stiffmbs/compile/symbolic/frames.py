@@ -201,6 +201,14 @@ class SymbolicElement:
             changes.append(whole if much == 1 else self.named(whole) * much)
         return sp.Add(*changes)
 
+    def reaction(self, joint: ReferredJoint, on: Any) -> dict[str, sp.Expr]:
+        """What a joint does to one of its bodies, about the joint's point, by component: -J^T lam."""
+        force = -self.work_by_velocities(zip(joint.lam, joint.velocity_level, strict=True))
+        first = sum(len(frame.u) for frame in self.frames[: self.frames.index(on)])
+        wrench = on.wrench(force[first : first + len(on.u), :], sp.Matrix(joint.point))
+        names = ("fx", "fy", "tz") if len(wrench) == 3 else ("fx", "fy", "fz", "tx", "ty", "tz")
+        return dict(zip(names, wrench, strict=True))
+
     def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
         """The matrix of derivatives by any symbols."""
         return self.derivatives.jacobian(column, symbols)
@@ -255,6 +263,17 @@ class ReferredJoint(SymbolicElement):
         count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
         self.angles, self.breakpoints = of.angles, of.breakpoints
+
+    @cached_property
+    def velocity_level(self) -> list[sp.Expr]:
+        """Its constraints on velocities, in the order of the multipliers."""
+        position = [self.rate(self.read(equation)) for equation in self._joint.position(self)]
+        return [*position, *map(self.read, self._joint.velocity(self))]
+
+    @property
+    def point(self) -> Any:
+        """About which its torque is reported."""
+        return self._joint.point(self)
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ import sympy as sp
 from ...describe.formula.field import TIME
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.text import evaluate
-from ..kind import OWN, STATE, Kind, Shape
+from ..kind import OWN, REACTION, STATE, Kind, Shape
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
@@ -146,8 +146,8 @@ class _Builder:
                 return lambda x: self.spline(offset, x)
             case ("python",):
                 return python_law(self.fresh(name), self.symbols.element.read)
-            case ("formula", text, counts, measures):
-                return self.formula(name, text, counts, measures)
+            case ("formula", text, counts, measures, *reactions):
+                return self.formula(name, text, counts, measures, *reactions)
             case ("joint", element, fields, slot, coordinate):
                 return self.joint(name, element, fields, slot, coordinate)
         raise TypeError(f"no such shape: {shape}")
@@ -169,7 +169,14 @@ class _Builder:
         self.symbols.joint_lam.append(joint.lam)
         return joint
 
-    def formula(self, name: str, text: str, counts: tuple[int, int, int], measures: tuple[Any, ...]) -> Any:
+    def formula(
+        self,
+        name: str,
+        text: str,
+        counts: tuple[int, int, int],
+        measures: tuple[Any, ...],
+        reactions: tuple[Any, ...] = (),
+    ) -> Any:
         """A formula's expression, or a function of its variables where it has such; of so many variables, numbers, tables."""
         n_variables, n_numbers, n_tables = counts
         numbers = [self.fresh(f"{name}_p") for _ in range(n_numbers)]
@@ -180,6 +187,8 @@ class _Builder:
 
         tables = {f"table{k}": partial(self.spline, self.fresh(f"{name}_t", integer=True)) for k in range(n_tables)}
 
+        pressed = self.reactions(name, reactions)
+
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
             def value(word: str) -> sp.Expr:
                 owner, _, coordinate = word.partition(".")
@@ -189,6 +198,8 @@ class _Builder:
                     return SymbolicElement.t
                 if word.startswith(STATE):
                     return self.symbols.element.states[int(word[len(STATE) :])]
+                if word.startswith(REACTION):
+                    return pressed[int(word[len(REACTION) :])]
                 if word.startswith("measure"):
                     return measured[int(word[7:])]
                 return (numbers if word[0] == "p" else variables)[int(word[1:])]
@@ -206,6 +217,16 @@ class _Builder:
             return expression
 
         return function if n_variables else function()
+
+    def reactions(self, name: str, wanted: tuple[tuple[str, Shape], ...]) -> list[sp.Expr]:
+        """Components of the reactions of joints."""
+        known: dict[Shape, dict[str, sp.Expr]] = {}
+        for k, shape in enumerate(dict.fromkeys(shape for _, shape in wanted)):
+            joint = self.made(f"{name}_j{k}", shape)
+            _, _, fields, *_ = shape
+            first = next(field[1] for _, field in fields if field[0] == "marker")
+            known[shape] = self.symbols.element.reaction(joint, self.frames[first])
+        return [known[shape][component] for component, shape in wanted]
 
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
         """The functions of formulas; those with breakpoints note where they are, if it is in the state."""

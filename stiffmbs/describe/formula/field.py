@@ -22,12 +22,14 @@ from .dimension import UNKNOWN, Known, measured_in
 from .full_names import text_in_full, with_full_names
 from .functions import IN_FORMULAS, check_functions
 from .measured import dimension_within
-from .names import COORDINATES, MEASURES
+from .names import COORDINATES, MEASURES, REACTIONS
 from .state_names import with_states
 from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
 
 TIME = "t"
+TAKERS = (*MEASURES, *REACTIONS)
+"""What is called with names: of markers, of joints."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +84,12 @@ class Formula:
             if is_measure(node):
                 yield node.func.id, measured_markers(node)  # type: ignore[attr-defined]
 
+    def reactions(self) -> Iterator[tuple[str, str]]:
+        """The components of reactions that it uses, with their joints, in reading order."""
+        for node in reading_order(self.tree):
+            if is_reaction(node):
+                yield node.func.id, joint_of(node)  # type: ignore[attr-defined]
+
     def bodies(self) -> Iterator[str]:
         """The bodies that it names, some more than once."""
         for body, _ in self.coordinates():
@@ -107,13 +115,13 @@ class Formula:
 
 
 def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
-    """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers."""
+    """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
     yield tree
     match tree:
         case ast.Attribute():
             return
         case ast.Call(_, arguments):
-            children = [] if is_measure(tree) else arguments
+            children = [] if is_named(tree) else arguments
         case _:
             children = [child for child in ast.iter_child_nodes(tree) if isinstance(child, ast.expr)]
     for child in children:
@@ -123,6 +131,27 @@ def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
 def is_measure(node: ast.AST) -> bool:
     """Whether a node is a measure between markers such as ``dm(bar.end, ground)``."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MEASURES
+
+
+def is_reaction(node: ast.AST) -> bool:
+    """Whether a node is a component of a joint's reaction such as ``fy(guide)``."""
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in REACTIONS
+
+
+def is_named(node: ast.AST) -> bool:
+    """Whether a node is a measure or a reaction, whose arguments are names."""
+    return is_measure(node) or is_reaction(node)
+
+
+def joint_of(node: ast.AST) -> str:
+    """The joint of a reaction, by its full name."""
+    assert isinstance(node, ast.Call)
+    match node.args:
+        case [ast.Name(joint)]:
+            return joint
+        case [ast.Attribute(ast.Name(owner), name)]:
+            return f"{owner}.{name}"
+    raise FormulaError(f"found '{ast.unparse(node)}', expected the name of one joint")
 
 
 def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
@@ -232,12 +261,10 @@ class FormulaOf:
         names: Names,
     ) -> Formula:
         found = formula_text(found, "a formula or a table" if self.table else "a formula")
-        named = with_states(with_full_names(parse(found), names, MEASURES), names, self.variables, MEASURES)
+        named = with_states(with_full_names(parse(found), names, TAKERS), names, self.variables, TAKERS)
         text = text_in_full(found, named, names)
         tree = with_variables(named, variables, self.variables)
-        check_functions(
-            tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
-        )
+        check_functions(tree, IN_FORMULAS, tables=tuple(tables), measures=TAKERS, listed=self._listed())
         used = dict(self.quantities(text, tree, parameters, names.states))
         if names.values:
             named, tree = (with_variables(each, names.values, self.variables) for each in (named, tree))
@@ -252,6 +279,10 @@ class FormulaOf:
         return Formula(
             text, tree, self.variables, values, self.velocities, called, dimension, own, expanded, tuple(dict.fromkeys(states))
         )  # fmt: skip
+
+    def _listed(self) -> tuple[str, ...]:
+        """Measures and reactions that may be called."""
+        return (*MEASURES, *(REACTIONS if self.velocities else ())) if self.coordinates else ()
 
     def quantities(
         self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Container[str] = ()
@@ -306,6 +337,11 @@ class FormulaOf:
             raise FormulaError(f"found t in '{formula.text}', expected a formula without it")
         used = [f"{body}.{coordinate}" for body, coordinate in formula.coordinates()]
         used += [f"{name}(...)" for name, _ in formula.measures()]
+        reactions = [f"{name}({joint})" for name, joint in formula.reactions()]
+        if reactions and not self.velocities:
+            raise FormulaError(
+                f"found {reactions[0]} in '{formula.text}', expected a formula without reactions of joints"
+            )
         used += formula.states
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")

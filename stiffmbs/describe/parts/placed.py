@@ -15,8 +15,8 @@ from ..element import Element
 from ..fields import Described, sentence
 from ..files.quoted import written
 from ..formula.dimension import Known
+from ..formula.field import TAKERS
 from ..formula.full_names import with_full_names
-from ..formula.names import MEASURES
 from ..formula.state_names import with_states
 from ..formula.text import parse
 from ..formula.variables import meant_within
@@ -75,7 +75,7 @@ def with_parts(
             states |= dimensions_of_entry(f"{one.name}.{name}", entry, one.parameters)
     names = Names(frozenset(bodies), states=states)
     variables = {
-        name: with_states(with_full_names(tree, names, MEASURES), names, (), MEASURES)
+        name: with_states(with_full_names(tree, names, TAKERS), names, (), TAKERS)
         for name, tree in (context.get("variables") or {}).items()
     }
     context = {**context, "names": names, "variables": variables}

@@ -11,6 +11,7 @@ from pydantic_core import core_schema
 
 from ...errors import InputError
 from ..check_marker import check_marker, listed
+from ..element import JointName
 from ..files.quoted import quoted, written
 from ..formula.dimension import UNKNOWN, Known
 from ..formula.field import Formula
@@ -119,6 +120,7 @@ def check_states(
     states: Mapping[str, Any],
     bodies: Mapping[str, Any],
     on_ground: Mapping[str, Any],
+    joints: Mapping[str, Any],
     names: FormulaNames,
     known: Collection[str] | None,
 ) -> None:
@@ -144,10 +146,24 @@ def check_states(
             for body in formula.bodies():
                 if body not in bodies and body != GROUND:
                     raise ValueError(f"{where}: found the unknown body '{body}', expected {listed(bodies)}")
+            check_reactions(where, formula, joints)
             if known is not None:
                 check_states_of(where, formula, known)
             for reason in names.refused(formula):
                 raise ValueError(f"{where}: {reason}")
+
+
+def check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> None:
+    """Refuse a formula of reactions of joints that the model does not have, or that are not between two markers."""
+    for name, joint in formula.reactions():
+        if joint not in joints:
+            raise ValueError(
+                f"{where}: found '{name}({joint})' in '{formula.text}', expected one of the joints {', '.join(joints) or 'none'}"
+            )
+        if next(joints[joint].parts(JointName), None) or next(joints[joint].parts(Formula), None):
+            raise ValueError(
+                f"{where}: found '{name}({joint})' of the type {joints[joint].kind}, expected a joint between markers without a formula"
+            )
 
 
 def check_states_of(where: str, formula: Formula, states: Collection[str]) -> None:

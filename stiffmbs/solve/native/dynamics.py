@@ -159,6 +159,8 @@ def to_accelerations(s, m, t):
             largest = max(largest, abs(new))
             s.lam[k] = new
         if not iterated or change <= FRICTION_TOLERANCE * largest:
+            if m.by_reactions:
+                evaluate(s, ACCELERATION, t)
             return 0
     return 0 if change <= ROUNDED_OFF * largest else NO_BALANCE
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, eliminated_view, factors_view, floats, shifted
-from stiffmbs.compile.machine.native.evaluate import ACCELERATION
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.native.dynamics import to_accelerations
 from stiffmbs.solve.native.eliminated import eliminated_accelerations
@@ -48,6 +48,8 @@ def accelerated(eliminates, eliminated, s, m, t, target):
         r = eliminated_view(eliminated)
         if eliminated_accelerations(r, s, t):
             copied(target, r.a, s.n_u)
+            if m.by_reactions:
+                evaluate(s, ACCELERATION, t)
             return 0
     status = to_accelerations(s, m, t)
     copied(target, factors_view(m.acceleration_factors).b, s.n_u)
