@@ -23,6 +23,7 @@ from .requests.names import OutputNames
 from .requests.order import dimensions
 from .requests.output import Output
 from .states.equation import Reported, StateEquation
+from .states.inputs import InputValue, formulas_of_inputs
 from .states.name import StateName
 from .states.section import (
     AnyState,
@@ -72,6 +73,9 @@ class ModelData(Described):
     states: dict[str, AnyState] = Field(
         default_factory=dict, description="values by name that equations of their own determine"
     )
+    inputs: dict[str, InputValue] = Field(
+        default_factory=dict, description="values by name that another program gives: numbers, or tables of time"
+    )
     joints: dict[str, Any] = Field(default_factory=dict, description="joints by name")
     forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")
     requests: dict[str, Any] = Field(default_factory=dict, description="formulas to report, by channel name")
@@ -89,7 +93,7 @@ class ModelData(Described):
             check_names(markers, "marker")
         return markers
 
-    @field_validator("bodies", "states", "joints", "forces", "requests", mode="before")
+    @field_validator("bodies", "states", "inputs", "joints", "forces", "requests", mode="before")
     @classmethod
     def _names(cls, named: Any, info: Any) -> Any:
         if isinstance(named, dict):
@@ -104,7 +108,7 @@ class ModelData(Described):
         if not self.bodies:
             raise ValueError("bodies: found no body, expected at least one")
         seen: dict[str, str] = {}
-        for section in ("bodies", "states", "joints", "forces", "requests"):
+        for section in ("bodies", "states", "inputs", "joints", "forces", "requests"):
             for name in getattr(self, section):
                 if name in seen:
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
@@ -115,9 +119,9 @@ class ModelData(Described):
                 raise ValueError(
                     f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
                 )
-        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], names_in_formulas(self.states)
+        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
         check_states(
-            self.states, self.bodies, self.markers, self.joints, NAMES[self.dimensions], names_in_formulas(self.states)
+            self.states, self.bodies, self.markers, self.joints, NAMES[self.dimensions], self.names_in_formulas()
         )
         refuse_algebraic_loops(self.state_outputs())
         placed = {
@@ -170,12 +174,17 @@ class ModelData(Described):
         for name, state in self.states.items():
             for full, value in state.values(name):
                 yield full, StateEquation.model_construct(state=StateName(full), formula=value.rate)
-            for full, formula in state.outputs(name):
-                yield full, Reported.model_construct(formula=formula)
+        for full, formula in self.state_outputs().items():
+            yield full, Reported.model_construct(formula=formula)
 
     def state_outputs(self) -> dict[str, Formula]:
         """Formulas that others use by a name, as the output of a transfer function, by full name."""
-        return {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
+        of_states = {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
+        return of_states | dict(formulas_of_inputs(self.inputs))
+
+    def names_in_formulas(self) -> set[str]:
+        """The names of states, outputs and inputs that formulas may use."""
+        return names_in_formulas(self.states) | set(self.inputs)
 
     def state_values(self) -> dict[str, StateValue]:
         """What is solved for beside the bodies, by full name."""

@@ -19,7 +19,7 @@ from .table import Table
 from .units.units import Quantity, in_text
 
 PLAIN = ("name", "dimensions", "gravity")
-SECTIONS = ("markers", "bodies", "states", "joints", "forces", "requests")
+SECTIONS = ("markers", "bodies", "states", "inputs", "joints", "forces", "requests")
 
 
 def model_text(data: ModelData) -> str:

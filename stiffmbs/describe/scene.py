@@ -208,7 +208,7 @@ def _validated(
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
-        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"))
+        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:

@@ -17,9 +17,9 @@ from .quoted import written
 
 
 def read_variables(
-    found: Any, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None
+    found: Any, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None, inputs: Any = None
 ) -> dict[str, ast.expr]:
-    """The trees of a scene's variables, by name; `states` is the scene's section of that name.
+    """The trees of a scene's variables, by name; `states` and `inputs` are the scene's sections of these names.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def read_variables(
             raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
         formulas[name] = formula
     try:
-        known = states if isinstance(states, dict) else {}
+        known = [name for section in (states, inputs) if isinstance(section, dict) for name in section]
         return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})
     except FormulaError as error:
         raise InputError(f"variables.{error}") from None

@@ -249,7 +249,7 @@ class FormulaOf:
         ):  # built in Python, where the model that it will belong to is not known
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
         formula = self._made(found, parameters, tables, variables, names)
-        self._check(formula)
+        self._check(formula, names.inputs)
         return formula
 
     def _made(
@@ -332,7 +332,7 @@ class FormulaOf:
         check_dimension("the table's arguments", argument, *self.measured_in or ("time",))
         check_dimension("the table's values", value, self.dimension)
 
-    def _check(self, formula: Formula) -> None:
+    def _check(self, formula: Formula, inputs: Container[str] = ()) -> None:
         if not self.time and any(isinstance(n, ast.Name) and n.id == TIME for n in reading_order(formula.tree)):
             raise FormulaError(f"found t in '{formula.text}', expected a formula without it")
         used = [f"{body}.{coordinate}" for body, coordinate in formula.coordinates()]
@@ -342,7 +342,7 @@ class FormulaOf:
             raise FormulaError(
                 f"found {reactions[0]} in '{formula.text}', expected a formula without reactions of joints"
             )
-        used += formula.states
+        used += [name for name in formula.states if name not in inputs]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
         check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)

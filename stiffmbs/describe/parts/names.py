@@ -30,13 +30,16 @@ class Names:
     values : mapping of str to ast.expr
         Within a part: its own parameters, as the numbers with units that stand in their places outside of it.
     states : mapping of str to Known
-        All states of the scene, by their full names, and what is known of their dimensions.
+        All states and inputs of the scene, by their full names, and what is known of their dimensions.
+    inputs : frozenset of str
+        The inputs among them, which formulas of time may use too.
     """
 
     bodies: frozenset[str] = frozenset()
     local: Mapping[str, str] = field(default_factory=dict)
     values: Mapping[str, ast.expr] = field(default_factory=dict)
     states: Mapping[str, Known] = field(default_factory=dict)
+    inputs: frozenset[str] = frozenset()
 
     @cached_property
     def dotted(self) -> bool:

@@ -21,6 +21,7 @@ from ..formula.state_names import with_states
 from ..formula.text import parse
 from ..formula.variables import meant_within
 from ..marker import MarkerReference
+from ..states.inputs import dimension_of_input
 from ..states.section import dimensions_of_entry, refuse_other_meanings
 from ..units.units import in_text
 from .instances import NAMED, Instance, Instances
@@ -73,7 +74,10 @@ def with_parts(
         entries = (one.sections.get("states") or {}).items()
         for name, entry in entries:
             states |= dimensions_of_entry(f"{one.name}.{name}", entry, one.parameters)
-    names = Names(frozenset(bodies), states=states)
+    given: Any = raw.get("inputs")
+    refuse_other_meanings("inputs", _keys(given), {**known, "states": states})
+    states |= {name: dimension_of_input(given[name], context["parameters"]) for name in _keys(given)}
+    names = Names(frozenset(bodies), states=states, inputs=frozenset(_keys(given)))
     variables = {
         name: with_states(with_full_names(tree, names, TAKERS), names, (), TAKERS)
         for name, tree in (context.get("variables") or {}).items()
@@ -127,7 +131,9 @@ class _Placed:
             for name, value in instance.parameters.items()
             if self.context["parameters"].get(name) != value
         }
-        names = Names(self.context["names"].bodies, local, own, self.context["names"].states)
+        names = Names(
+            self.context["names"].bodies, local, own, self.context["names"].states, self.context["names"].inputs
+        )
         found = self._read(instance, names)
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
         in_ground = self._pose(on).then(frame)

@@ -102,7 +102,7 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
 def channels_of_states(model: Any) -> set[str]:
     """What is reported of states: their values and rates."""
     values = {full for name, state in model.states.items() for full, _ in state.values(name)}
-    outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)}
+    outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
     return values | outputs | {f"{name}.rate" for name in values}
 
 
