@@ -40,7 +40,8 @@ _LATER = {
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
-    "verify": ".verification.verify", "draw": ".show.drawing.draw",
+    "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation",
+    "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
 

@@ -54,7 +54,10 @@ from .jobs.transfer import transfer as transfer
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
+from .show.drawing.animate import animate as animate
 from .show.drawing.draw import draw as draw
+from .studies.sweep import sweep as sweep
+from .studies.variation import Range as Range
 from .verification.verify import verify as verify
 
 __version__: str

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from .animate import animate
 from .bench import bench
 from .cache import cache
 from .check import check
@@ -11,12 +12,14 @@ from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
 from .modes import modes
+from .plot import plot
 from .process import Process
 from .report import report
 from .response import response
 from .run import run
 from .schema import schema
 from .stress import stress
+from .study import study
 
 
 @click.group(cls=Process, context_settings={"help_option_names": ["-h", "--help"]})
@@ -25,5 +28,7 @@ def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
 
 
-for command in (run, check, equilibrium, modes, response, convert, schema, bench, cache, draw, report, stress):
+for command in (
+    run, check, equilibrium, modes, response, study, convert, schema, bench, cache, draw, animate, plot, report, stress,
+):  # fmt: skip
     main.add_command(command)

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from ..describe.files.text_file import STANDARD_INPUT, file_text
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
 from .scene import (  # fmt: skip
@@ -39,7 +40,7 @@ def report(scene: str, output: Path | None, verify: bool, **options: Any) -> Non
         refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes_of(options))
         solution = solve_scene(scene, loaded, verify)
-        write_report(path, loaded, solution)
+        write_report(path, loaded, solution, "" if scene == STANDARD_INPUT else file_text(scene))
     except StiffmbsError as error:
         refuse(scene, error)
     except OSError as error:

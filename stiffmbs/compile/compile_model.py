@@ -154,7 +154,7 @@ def _group(kind: Kind, record: KindRecord, of_body: BodyKind, members: list[_Mem
         places.index(member.data, start, record.n_counters) for member, start in zip(members, starts, strict=False)
     ]
     return Group(
-        kind, record, of_body, tuple(m.name for m in members), tuple(m.element for m in members),
+        kind, record, of_body, tuple(m.name for m in members), [m.element for m in members],
         np.array(index, dtype=np.int64), np.concatenate([*numbers, [0.0]]),
         places.rows[members[0].name] if record.n_equations else 0,
     )  # fmt: skip

@@ -21,6 +21,8 @@ class Group:
     ----------
     names : tuple of str
         Element by element.
+    elements : list of Element
+        Those of these names; may be changed together with their numbers, as inputs are looked through by their formulas.
     of_body : BodyKind
         Coordinates and velocities of the bodies.
     index : ndarray of int, shape (count, 2 * bodies + 1 + joints + states + counters)
@@ -36,7 +38,7 @@ class Group:
     record: KindRecord
     of_body: BodyKind
     names: tuple[str, ...]
-    elements: tuple[Element, ...]
+    elements: list[Element]
     index: np.ndarray
     numbers: np.ndarray
     first_row: int

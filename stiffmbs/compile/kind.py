@@ -230,6 +230,7 @@ class _FormulaShape(ast.NodeTransformer):
         return ("formula", ast.unparse(tree), counts, measures, *([reactions] if reactions else []))
 
     def visit(self, node: ast.AST) -> Any:
+        """A placeholder for a number, and the number noted."""
         constant = _constant_value(node, self.formula)
         if constant is not None:
             self.numbers.append(constant)
@@ -251,6 +252,7 @@ class _FormulaShape(ast.NodeTransformer):
         return ast.UnaryOp(node.op, self.visit(node.operand))
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
+        """A placeholder for a measure, and the measure noted."""
         if is_measure(node):
             self.measures.append((node.func.id, measured_markers(node)))  # type: ignore[attr-defined]
             return ast.Name(f"measure{len(self.measures) - 1}")

@@ -87,7 +87,7 @@ class State:
         return self._packed(n_calls, calls_at), [n_calls, calls_at, *kept]
 
     def load(self, term_set: str) -> None:
-        """Make a term set ready for compiled code: its kernels, and room for its values."""
+        """Make a term set ready for compiled code: its kernels, and memory for its values."""
         if term_set in self.values:
             return
         system, k = self.system, SETS.index(term_set)
@@ -101,8 +101,8 @@ class State:
         self._n_turned[k] = len(self._turned[term_set])
         self._turned_at[k] = self._turned[term_set].ctypes.data
         self._calls[term_set] = np.array(calls, dtype=np.int64).reshape(-1, len(CALL))
-        room = np.zeros(system.n_values(term_set))
-        self.values[term_set] = np.concatenate([room, system.mass, self._relaxations, [1.0]])
+        empty = np.zeros(system.n_values(term_set))
+        self.values[term_set] = np.concatenate([empty, system.mass, self._relaxations, [1.0]])
         self._n_calls[k] = len(calls)
         self._calls_at[k] = self._calls[term_set].ctypes.data
         self._values_at[k] = self.values[term_set].ctypes.data
@@ -132,7 +132,7 @@ class State:
 
     def count_anew(self, t: float) -> None:
         """Set the counters of turns to the very angles that they count."""
-        term = self.system.term("position", "counted")
+        term = self.system.term("position", "continuous_angle")
         if len(term.row):
             self.evaluate("position", t)
             self.q[term.row] = self.values["position"][term.source]

@@ -59,6 +59,7 @@ def curve(table: Table) -> Curve:
     count, x, pieces = parts_of(table)
 
     def values(arguments: np.ndarray) -> np.ndarray:
+        """The table at an array of arguments."""
         at = np.asarray(arguments, dtype=float)
         if table.ends == "periodic":
             at = x[0] + np.mod(at - x[0], x[-1] - x[0])

@@ -131,12 +131,12 @@ class Element(Described):
         """The names of the element's constraint equations; none for a force."""
         return ()
 
-    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
         yield from ()
 
     def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        """Why the element cannot act where the bodies are drawn."""
+        """Why the element cannot act at the initial pose."""
         yield from ()
 
     def in_space(self, angles: Any) -> dict[str, Any]:

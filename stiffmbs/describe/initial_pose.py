@@ -1,4 +1,4 @@
-"""Elements with the numbers of the bodies' described poses in place of symbols: mechanisms as they are drawn."""
+"""Elements with the numbers of the bodies' described poses in place of symbols: mechanisms at the initial pose."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class InitialMarker:
         return np.array([-math.sin(self.angle), math.cos(self.angle)])
 
 
-def drawn(element: Element, model: ModelData) -> Any:
+def initial_element(element: Element, model: ModelData) -> Any:
     """The element as its equations see it, for markers, numbers and joints that it refers to."""
     fields = {name: _drawn(getattr(element, name), model) for name in type(element).model_fields}
     return SimpleNamespace(**fields, angle=math.atan2)
@@ -54,7 +54,7 @@ def _drawn(value: Any, model: ModelData) -> Any:
             return model.initial_marker(value)
         case JointName():
             joint: Joint = model.joints[value.joint]
-            e, name = drawn(joint, model), value.coordinate_of(joint)
+            e, name = initial_element(joint, model), value.coordinate_of(joint)
             e.coordinate = None if name is None else getattr(joint, name)(e)
             return e
         case _:

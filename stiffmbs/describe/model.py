@@ -54,7 +54,7 @@ class PlanarData(ModelData):
         return weights(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialMarker:
-        """A marker with numbers, in ground axes, as the bodies are drawn."""
+        """A marker with numbers, in ground axes, at the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialMarker(np.array(placed.point), placed.angle)

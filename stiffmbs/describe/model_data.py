@@ -156,7 +156,7 @@ class ModelData(Described):
 
     @abstractmethod
     def initial_marker(self, marker: MarkerReference) -> Any:
-        """A marker with numbers, in ground axes, as the bodies are drawn."""
+        """A marker with numbers, in ground axes, at the initial pose."""
 
     @abstractmethod
     def carried(self, marker: MarkerReference) -> tuple[str, Any]:
@@ -260,7 +260,7 @@ def check_element(
             raise ValueError(
                 f"{where}.{field}: found '{joint}', which refers to a joint itself, expected one between markers"
             )
-    for field, reason in element.refused(joints):
+    for field, reason in element.validation_errors(joints):
         raise ValueError(f"{where}.{field}: {reason}")
     for field, formula in element.parts(Formula):
         for body in formula.bodies():
@@ -268,7 +268,7 @@ def check_element(
                 raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {listed(bodies)}")
         check_states_of(f"{where}.{field}", formula, states)
         check_reactions(f"{where}.{field}", formula, joints)
-        for reason in names.refused(formula):
+        for reason in names.validation_errors(formula):
             raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
     if len(placed) > 1 and len(set(placed)) == 1:

@@ -88,7 +88,7 @@ class Samples:
         """An element that names joints which fit it."""
         for chosen in itertools.permutations(self.joints, len(names)):
             element = kind(**fields, **dict(zip(names, chosen, strict=True)))
-            if not any(True for _ in element.refused(self.joints)):
+            if not any(True for _ in element.validation_errors(self.joints)):
                 return element
         raise InputError(f"{kind.__name__}: found no joints that it fits among {', '.join(self.joints)}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -22,7 +23,9 @@ from .files.expand import (
 )
 from .files.include import read_including
 from .files.quoted import written
+from .files.unchanged import Unchanged
 from .files.variables import read_variables
+from .files.written_scene import WrittenScene
 from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .model import PlanarData
@@ -54,6 +57,7 @@ class Scene(ModelData):
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
+    _written: WrittenScene | None = PrivateAttr(default=None)
 
     def check_requests(self) -> None:
         """The same for variables, whose formulas are read as those of requests."""
@@ -70,6 +74,11 @@ class Scene(ModelData):
     def written_parameters(self) -> dict[str, float | str]:
         """The parameters as a scene writes them, with their units."""
         return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
+
+    @property
+    def written(self) -> WrittenScene | None:
+        """What the scene was read from, to read it again with other values; None where it was made in another way."""
+        return self._written
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
@@ -129,10 +138,11 @@ def read_scene(
 
 def made_scene(
     found: dict[str, Any],
-    changes: Sequence[tuple[str, str]],
+    changes: Sequence[tuple[str, Any]],
     source: str,
     line_of: Callable[[tuple[Any, ...]], int | str | None],
     folder: Path | None = None,
+    unchanged: Unchanged | None = None,
 ) -> Scene:
     """The scene of a mapping.
 
@@ -141,32 +151,38 @@ def made_scene(
     found : mapping
         Is changed.
     changes : sequence of (path, text)
+        Values that are no text are put there as they are.
     source : str
         What messages call it.
     line_of : callable
         The line in the source of what a path of keys leads to.
     folder : Path, optional
         Where meshes are looked for; the working folder by default.
+    unchanged : Unchanged, optional
+        What was validated before and need not be again.
 
     Raises
     ------
     InputError
         When it is no valid scene.
     """
+    scene_as_written = WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
     in_parts = []
     for path, value in changes:
-        read = read_yaml(value, f"--set {path}")
+        read = read_yaml(value, f"--set {path}") if isinstance(value, str) else value
         if set_in_instances(path, found.get("use")):
             in_parts.append((path, read))
         else:
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        return _validated(found, replaced, in_parts, folder)
+        scene = _validated(found, replaced, in_parts, folder, unchanged)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
+    scene._written = scene_as_written
+    return scene
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
@@ -180,7 +196,7 @@ def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
 
 
 def _place(
-    fault: tuple[Any, ...], changes: Sequence[tuple[str, str]], line_of: Callable[[tuple[Any, ...]], int | str | None]
+    fault: tuple[Any, ...], changes: Sequence[tuple[str, Any]], line_of: Callable[[tuple[Any, ...]], int | str | None]
 ) -> str:
     """Where a fault is, for a sentence that goes on with its path: in what was changed, or in a line."""
     for path, _ in changes:
@@ -200,7 +216,11 @@ class _Located(Exception):
 
 
 def _validated(
-    found: dict[str, Any], replaced: Mapping[str, Quantity], in_parts: Sequence[tuple[str, Any]], folder: Path | None
+    found: dict[str, Any],
+    replaced: Mapping[str, Quantity],
+    in_parts: Sequence[tuple[str, Any]],
+    folder: Path | None,
+    unchanged: Unchanged | None,
 ) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"), replaced)
@@ -215,6 +235,9 @@ def _validated(
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"] = tables
+    written_entries = dict(raw)
+    if unchanged:
+        raw = unchanged.put_into(raw, context)
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
@@ -224,6 +247,8 @@ def _validated(
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
     scene._quantities = parameters
+    if unchanged:
+        unchanged.keep(written_entries, context, scene)
     return scene
 
 

@@ -25,7 +25,7 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
         Of the run.
     """
     system, state = dynamics.system, dynamics.state
-    counted = system.term("position", "counted")
+    counted = system.term("position", "continuous_angle")
     solved = np.flatnonzero(~np.isnan(rows.position_violation))
     if not system.n_counters or not len(solved):
         return

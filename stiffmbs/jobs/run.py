@@ -77,6 +77,7 @@ class Job:
     dynamics: Dynamics
     start: InitialValues
     subsystems: tuple[Subsystem, ...] = ()
+    start_from: SavedState | None = None
 
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
@@ -124,21 +125,27 @@ def prepare(
         refuse_inconsistencies(found.redundancy)
     dynamics = found.dynamics()
     with told_faults(dynamics.system):
-        start = _start(found, dynamics)
+        start = _start(found.data, dynamics, found.grid.start, found.start_from)
         subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
-    return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems)
+    return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
 
 
-def _start(found: Examined, dynamics: Dynamics) -> InitialValues:
+def start_of_job(job: Job) -> InitialValues:
+    """The start of a job whose numbers have changed; errors as for `run`."""
+    with told_faults(job.dynamics.system):
+        job.dynamics.return_to_start()
+        return _start(job.data, job.dynamics, job.grid.start, job.start_from)
+
+
+def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | None) -> InitialValues:
     """The saved state that is given, else the equilibrium or the described state, whichever the scene asks for."""
-    t, state = found.grid.start, found.start_from
     if state is not None:
         start = consistent_values(dynamics, t)
         return replace(
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
         )
     start = initial_values(dynamics, t)
-    if isinstance(found.data, Scene) and found.data.start == "equilibrium":
+    if isinstance(data, Scene) and data.start == "equilibrium":
         from .settled import settled
 
         return settled(dynamics, start, t).start
@@ -150,7 +157,7 @@ def presolved(
 ) -> tuple[Subsystem, ...]:
     """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
 
-    For implicit steps their mechanics, or those of the whole, then leave out coordinates that others determine.
+    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import qr
+from scipy.linalg import qr, solve_triangular
 
 from ..errors import SolverError
 from .tangent_space import Linearised
@@ -70,19 +70,23 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
     SolverError
         Where a motion that the constraints leave free has no mass.
     """
-    poses = null_space(linear.position * scale) * scale[:, None]
-    free = null_space(linear.velocity * scale) * scale[:, None]
-    left = null_space(linear.reactions.T * scale) * scale[:, None]
+    constraints = _Constraints(linear.velocity * scale)
+    free = constraints.null_space * scale[:, None]
+    poses, left = (
+        free if np.array_equal(matrix, linear.velocity) else null_space(matrix * scale) * scale[:, None]
+        for matrix in (linear.position, linear.reactions.T)
+    )
     n_a, n_b, n_s = poses.shape[1], free.shape[1], len(linear.rate_by_states)
     x = np.hstack([poses, np.zeros((len(scale), n_b + n_s))])
-    v = np.hstack([_following(linear, linear.velocity_at_position @ poses, scale), free, np.zeros((len(scale), n_s))])
+    following = _following(constraints, linear.velocity_at_position @ poses, scale)
+    v = np.hstack([following, free, np.zeros((len(scale), n_s))])
     s = np.hstack([np.zeros((n_s, n_a + n_b)), np.eye(n_s)])
     n = n_a + n_b + n_s
-    carried = _following(linear, linear.acceleration_at_position @ x + linear.acceleration_at_velocity @ v, scale)
+    carried = _following(constraints, linear.acceleration_at_position @ x + linear.acceleration_at_velocity @ v, scale)
     acting = linear.stiffness @ x + linear.damping @ v + linear.by_states @ s
     force = left.T @ (acting - linear.mass @ carried)
     accelerations = _solved(left.T @ linear.mass @ free, np.hstack([force, left.T]))
-    rates = np.linalg.lstsq(poses / scale[:, None], v / scale[:, None], rcond=None)[0]
+    rates = (poses / scale[:, None]).T @ (v / scale[:, None])
     found = carried + free @ accelerations[:, :n]
     rates_of_states = linear.rate_by_pose @ x + linear.rate_by_velocity @ v + linear.rate_by_states @ s
     forced = np.zeros((n_s, len(scale)))
@@ -101,12 +105,11 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
     )
 
 
-def _following(linear: Linearised, missing: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def _following(constraints: _Constraints, missing: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """The smallest velocities, or accelerations, with J times them and what is missing zero; none where nothing is."""
     if not np.any(missing):
         return np.zeros((len(scale), missing.shape[1]))
-    found: np.ndarray = np.linalg.lstsq(linear.velocity * scale, -missing, rcond=DEPENDENT)[0]
-    return scale[:, None] * found
+    return scale[:, None] * constraints.smallest(-missing)
 
 
 def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
@@ -133,10 +136,36 @@ def null_space(matrix: np.ndarray) -> np.ndarray:
     -------
     ndarray, shape (n, n - rank)
     """
-    if not matrix.size:
-        return np.eye(matrix.shape[1])
-    norms = np.linalg.norm(matrix, axis=1)
-    q, r, _ = qr((matrix[norms > 0] / norms[norms > 0, None]).T, pivoting=True)
-    pivots = np.abs(np.diag(r))
-    rank = int(np.sum(pivots > DEPENDENT * pivots[0])) if len(pivots) else 0
-    return np.ascontiguousarray(q[:, rank:])
+    return _Constraints(matrix).null_space
+
+
+class _Constraints:
+    """The equations A x = b, factored: A^T with its rows of length 1, and pivots, is Q R.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (m, n)
+        A.
+    """
+
+    def __init__(self, matrix: np.ndarray) -> None:
+        self._norms = np.linalg.norm(matrix, axis=1)
+        self._rows = np.flatnonzero(self._norms > 0)
+        self._q, self._r, self._order = np.eye(matrix.shape[1]), np.zeros((0, 0)), np.zeros(0, dtype=int)
+        if len(self._rows):
+            self._q, self._r, self._order = qr((matrix[self._rows] / self._norms[self._rows, None]).T, pivoting=True)
+        pivots = np.abs(np.diag(self._r))
+        self._rank = int(np.sum(pivots > DEPENDENT * pivots[0])) if len(pivots) else 0
+
+    @property
+    def null_space(self) -> np.ndarray:
+        """An orthonormal basis of what A takes to zero, shape (n, n - rank)."""
+        return np.ascontiguousarray(self._q[:, self._rank :])
+
+    def smallest(self, right: np.ndarray) -> np.ndarray:
+        """The smallest x with A x = b for columns b that agree with each other where equations depend on others."""
+        first = self._rows[self._order[: self._rank]]
+        inner = solve_triangular(
+            self._r[: self._rank, : self._rank], right[first] / self._norms[first, None], trans="T"
+        )
+        return np.asarray(self._q[:, : self._rank] @ inner)

@@ -1,4 +1,4 @@
-"""Where bodies sit on others that carry them, and how their states follow from those of their carriers."""
+"""Where bodies sit on others that carry them, and how their states follow from those of their parent bodies."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class BodyFixedPoses(Protocol):
         Parameters
         ----------
         parent : ndarray of int, shape (k,)
-            The number of each body's carrier.
+            The number of each body's parent body.
         """
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The states of the bodies from those of their carriers; shapes (..., k, n_q) and (..., k, n_u)."""
+        """The states of the bodies from those of their parent bodies; shapes (..., k, n_q) and (..., k, n_u)."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class PlanarPoses:
     Attributes
     ----------
     point, angle : ndarrays, shapes (k, 2), (k,)
-        Where the centres of mass and axes are in those of the carriers, m, rad.
+        Where the centres of mass and axes are in those of the parent bodies, m, rad.
     """
 
     point: np.ndarray
@@ -51,7 +51,7 @@ class PlanarPoses:
 
     @classmethod
     def none(cls, count: int) -> PlanarPoses:
-        """Of bodies that are where their carriers are."""
+        """Of bodies that are where their parent bodies are."""
         return cls(np.zeros((count, 2)), np.zeros(count))
 
     @classmethod
@@ -70,6 +70,7 @@ class PlanarPoses:
         return self
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Position and velocity of the body that the pose is fixed to, in the plane."""
         arm = _turned(q[..., 2], self.point)
         across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
         place = np.concatenate([q[..., :2] + arm, (q[..., 2] + self.angle)[..., None]], axis=-1)
@@ -83,7 +84,7 @@ class SpatialPoses:
     Attributes
     ----------
     point, turn : ndarrays, shapes (k, 3), (k, 4)
-        Where the centres of mass and principal axes are in those of the carriers, m, quaternions.
+        Where the centres of mass and principal axes are in those of the parent bodies, m, quaternions.
     """
 
     point: np.ndarray
@@ -91,7 +92,7 @@ class SpatialPoses:
 
     @classmethod
     def none(cls, count: int) -> SpatialPoses:
-        """Of bodies that are where their carriers are."""
+        """Of bodies that are where their parent bodies are."""
         return cls(np.zeros((count, 3)), np.tile(IDENTITY, (count, 1)))
 
     @classmethod
@@ -117,6 +118,7 @@ class SpatialPoses:
         return SpatialPoses(self.point, np.where(against[:, None], -self.turn, self.turn))
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Position and velocity of the body that the pose is fixed to, in space."""
         p, w = q[..., 3:], u[..., 3:]
         arm = rotated(p, self.point)
         velocity = u[..., :3] + np.cross(rotated(p, w), arm)

@@ -123,7 +123,7 @@ def _part(group: Group, inside: np.ndarray, place: np.ndarray, new_row: np.ndarr
     return replace(
         group,
         names=tuple(name for name, kept in zip(group.names, inside, strict=True) if kept),
-        elements=tuple(element for element, kept in zip(group.elements, inside, strict=True) if kept),
+        elements=[element for element, kept in zip(group.elements, inside, strict=True) if kept],
         index=index,
         first_row=int(new_row[rows[0]]) if len(rows) else 0,
     )

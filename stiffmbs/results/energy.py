@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.system import System
-from ..solve.storage import blocks, release, room
+from ..solve.storage import allocated, blocks, release
 
 
 def kinetic_energy(system: System, u: np.ndarray) -> np.ndarray:
@@ -15,7 +15,7 @@ def kinetic_energy(system: System, u: np.ndarray) -> np.ndarray:
     ----------
     u : ndarray, shape (n, n_u)
     """
-    energy = room(len(u))
+    energy = allocated(len(u))
     for block in blocks(len(u)):
         energy[block] = 0.5 * u[block] ** 2 @ system.mass
         release(u)
@@ -30,7 +30,7 @@ def potential_energy(system: System, values: np.ndarray) -> np.ndarray:
     values : ndarray, shape (n, values)
         Values of the output terms, one row per instant.
     """
-    energy, source = room(len(values)), system.term("output", "potential").source
+    energy, source = allocated(len(values)), system.term("output", "potential").source
     for block in blocks(len(values)):
         energy[block] = values[block][:, source].sum(axis=1)
         release(values)

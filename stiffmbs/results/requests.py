@@ -15,7 +15,7 @@ from ..describe.model_data import ModelData
 from ..describe.requests.check import ends
 from ..describe.requests.order import in_order
 from ..describe.requests.output import CONTINUOUS_ANGLES, Output, Term, placeholder
-from ..solve.storage import blocks, release, room
+from ..solve.storage import allocated, blocks, release
 from .marker_measures import MAGNITUDES, SCALARS, VECTORS
 from .marker_motion import Channels, Motions
 
@@ -48,7 +48,7 @@ def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: 
         for name, output in outputs.items()
     }
     order = in_order(outputs)
-    found = {name: room(len(time)) for name in outputs}
+    found = {name: allocated(len(time)) for name in outputs}
     for block in blocks(len(time)):
         known: dict[str, np.ndarray] = {name: values[block] for name, values in channels.items()}
         terms = _Terms(model, known, {name: values[block] for name, values in counters.items()}, len(time[block]))
@@ -65,6 +65,7 @@ def _value(output: Output, time: np.ndarray, channels: Channels, terms: _Terms, 
     of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
 
     def names(name: str) -> Any:
+        """The values over time that a name stands for."""
         if name == TIME:
             return time
         if name in output.quantities:

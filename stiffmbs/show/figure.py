@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from ..describe.figure import Figure
 from ..errors import InputError
 from ..results.files import refuse_path, written_whole
 from ..results.solution import Solution
+from .style import dress, legend_below, stroke
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 ENDINGS = (".png", ".svg", ".pdf")
 SIZE = (8, 5)
 TOTAL_ENERGY = Figure(title="total energy", y=("energy.total",))
+MOST_PLOTS = 6
+"""With more units than that, all lines share one plot, and the legend names the units."""
 LARGEST = 1e100
 """Beyond it matplotlib finds no ticks for an axis."""
 
@@ -78,27 +82,59 @@ def _drawable(values: np.ndarray) -> np.ndarray:
 
 def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
     """Draw a figure on an empty sheet of matplotlib's; errors as for `drawn`."""
-    x = solution.time if figure.x == "time" else solution[figure.x]
-    units = {solution.unit(channel) for channel in figure.y}
-    common = units if len(units) == 1 else set()
-    axes: Any = sheet.add_subplot(projection="3d" if figure.z else None)
-    for channel in figure.y:
-        others = [solution[figure.z]] if figure.z else []
-        label = channel if common else _label(solution, channel)
-        axes.plot(*(_drawable(values) for values in (x, solution[channel], *others)), label=label)
-    axes.set_xlabel(_label(solution, figure.x))
-    if figure.z:
-        axes.set_ylabel(_label(solution, figure.y[0]))
-        axes.set_zlabel(_label(solution, figure.z))
-    else:
-        if common:
-            axes.set_ylabel(common.pop())
-        axes.legend()
-    title = figure.title or solution.name
-    axes.set_title(title, parse_math=_is_mathematical(title))
-    if figure.equal:
-        axes.set_aspect("equal")
-    axes.grid(alpha=0.3)
+    draw_runs(sheet, {"": solution}, figure)
+
+
+def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> None:
+    """Draw the same channels of several runs, a plot for each unit, and a legend where it hides nothing.
+
+    Parameters
+    ----------
+    sheet : matplotlib.figure.Figure
+        Empty.
+    runs : mapping of str to Solution
+        By what the legend calls them; a single run may have no name.
+    figure : Figure
+
+    Raises
+    ------
+    InputError
+        When a run has no such channel.
+    """
+    first = next(iter(runs.values()))
+    units = [""] if figure.z else list(dict.fromkeys(first.unit(channel) for channel in figure.y))
+    count = len(units) if len(units) <= MOST_PLOTS else 1
+    plots: Any = sheet.subplots(count, sharex=True, squeeze=False, subplot_kw={"projection": "3d"} if figure.z else {})[
+        :, 0
+    ]
+    lines = [(name, channel) for channel in figure.y for name in runs]
+    for k, (name, channel) in enumerate(lines):
+        unit = first.unit(channel)
+        axes = plots[units.index(unit) if count > 1 else 0]
+        run, label = runs[name], channel if count > 1 or len(units) == 1 else _label(first, channel)
+        others = [run[figure.z]] if figure.z else []
+        x = run.time if figure.x == "time" else run[figure.x]
+        values = (_drawable(part) for part in (x, run[channel], *others))
+        axes.plot(*values, label=f"{label}, {name}" if name else label, **stroke(k))
+    _name_axes(plots, first, figure, units if count > 1 or len(units) == 1 else [""])
+    title = figure.title or first.name
+    plots[0].set_title(title, parse_math=_is_mathematical(title))
+    legend_below(sheet, plots)
+
+
+def _name_axes(plots: Any, solution: Solution, figure: Figure, units: Sequence[str]) -> None:
+    for axes, unit in zip(plots, units, strict=True):
+        if figure.z:
+            axes.set_ylabel(_label(solution, figure.y[0]))
+            axes.set_zlabel(_label(solution, figure.z))
+            axes.grid(alpha=0.3)
+        else:
+            of_unit = [channel for channel in figure.y if solution.unit(channel) == unit]
+            axes.set_ylabel(_label(solution, of_unit[0]) if len(of_unit) == 1 else unit)
+            dress(axes)
+        if figure.equal:
+            axes.set_aspect("equal")
+    plots[-1].set_xlabel(_label(solution, figure.x))
 
 
 def _label(solution: Solution, channel: str) -> str:

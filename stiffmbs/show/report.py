@@ -15,8 +15,9 @@ import numpy as np
 
 from ..describe.figure import Figure
 from ..describe.scene import Scene
-from ..errors import InputError
-from ..jobs.check import check
+from ..errors import InputError, StiffmbsError
+from ..jobs.check import Report, check
+from ..jobs.modes import modes
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import refuse_path, written_whole
@@ -24,14 +25,23 @@ from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from .counters import solver_words
 from .digits import with_bar
+from .drawing.derive import drawing_of
+from .drawing.marks import marks_of
+from .drawing.poses import poses_of
 from .figure import drawn
 from .force_table import SHOWN_AS_ZERO
+from .joint_forces import joint_forces
+from .modes import modes_text
+from .page.data import page_data
+from .page.parts import page_parts
 from .step_history import step_history
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 NEEDED = ("jinja2", "matplotlib")
+MOST_MODES = 40
+"""Lines of modes."""
 MOST_LINES = 5_000
 """Points of a line drawing; with more it is a picture of pixels."""
 ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
@@ -51,7 +61,7 @@ def check_report(path: Path) -> None:
             raise InputError(f"-o {path}: found no {package}, expected it installed: pip install 'stiffmbs[report]'")
 
 
-def write_report(path: Path, scene: Scene, solution: Solution) -> None:
+def write_report(path: Path, scene: Scene, solution: Solution, text: str = "") -> None:
     """Write the page; it appears whole or not at all.
 
     Parameters
@@ -61,30 +71,51 @@ def write_report(path: Path, scene: Scene, solution: Solution) -> None:
         As it was solved.
     solution : Solution
         With error bars where it was verified.
+    text : str
+        Of the scene's file.
     """
-    page = report_page(scene, solution)
+    page = report_page(scene, solution, text)
     written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
 
 
 @np.errstate(all="ignore")  # of a diverged run sums overflow
-def report_page(scene: Scene, solution: Solution) -> str:
+def report_page(scene: Scene, solution: Solution, text: str = "") -> str:
     """The page as HTML, figures and all."""
     from jinja2 import Environment
 
     template = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(
         files(__package__).joinpath("report.html").read_text(encoding="utf-8")
     )
+    report = check(scene)
     figures = [drawn(solution, scene.figure)] if scene.figure else []
     figures.append(drawn(solution, ENERGIES))
     if len(solution.step_times) > 1:
         figures.append(step_history(solution.history))
     points = len(solution.time) + len(solution.step_times)
     return template.render(
-        solution=solution, check=check(scene), settings=_settings(scene), peaks=_peaks(solution),
+        solution=solution, check=report, settings=_settings(scene), peaks=_peaks(solution),
         start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
         counted=solver_words(solution.solver), violation=float(np.nanmax(solution.channels["constraint.position"])),
+        forces=joint_forces(solution), modes=_modes(scene), text=text, moving=_moving(scene, solution, report), **page_parts(),
     )  # fmt: skip
+
+
+def _moving(scene: Scene, solution: Solution, report: Report) -> dict[str, str]:
+    """The mechanism in motion, with its channels."""
+    shown = scene.figure.y if scene.figure else ()
+    drawing = drawing_of(scene, marks_of(report))
+    return page_data(drawing, {"": poses_of(scene, solution.time, solution.channels)}, solution, shown)
+
+
+def _modes(scene: Scene) -> list[str]:
+    """Natural modes about the start as lines of a table, the slowest first, or why there are none."""
+    try:
+        lines = modes_text(modes(scene)).splitlines()
+    except StiffmbsError as error:
+        return [f"no modes: {error}"]
+    left = len(lines) - MOST_MODES
+    return lines if left <= 0 else [*lines[:MOST_MODES], f"and {left} more lines: stiffmbs modes"]
 
 
 def _settings(scene: Scene) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..solve.trajectory import History
+from .style import COLORS, dress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
@@ -21,14 +22,14 @@ def step_history(history: History) -> Sheet:
     lengths = np.diff(history.t)
     rows = sheet.subplots(2 if told else 1, sharex=True, squeeze=False, height_ratios=[2, 1] if told else None)[:, 0]
     shown = lengths > 0
-    rows[0].plot(history.t[1:][shown], lengths[shown], ".", markersize=2)
+    rows[0].plot(history.t[1:][shown], lengths[shown], ".", color=COLORS[0], markersize=2)
     rows[0].set_yscale("log")
     rows[0].set_ylabel("step (s)")
     rows[0].set_title("steps of the solver")
     if told:
-        rows[1].plot(history.t, history.order, ".", markersize=2)
+        rows[1].plot(history.t, history.order, ".", color=COLORS[0], markersize=2)
         rows[1].set_ylabel("order")
     rows[-1].set_xlabel("time (s)")
     for axes in rows:
-        axes.grid(alpha=0.3)
+        dress(axes)
     return sheet

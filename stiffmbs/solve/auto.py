@@ -25,7 +25,7 @@ from .explicit.projected import TRAITS
 from .fastest_rate import fastest_rate
 from .ida.engine import Reached
 from .initial import InitialValues
-from .segments import Leg, joined
+from .segments import Segment, joined
 from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory
 
@@ -41,7 +41,7 @@ BEHIND, FAIR_TRIAL = 1.1, 200
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
 as many times after each further one."""
-MOST_TOLD = 3
+MOST_MESSAGES = 3
 """Changes of hand that the note tells one by one."""
 
 
@@ -90,12 +90,12 @@ class _Shared:
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
-        self._segments: list[Leg] = []
-        self._told: list[str] = []
+        self._segments: list[Segment] = []
+        self._messages: list[str] = []
         self._gave_up = False  # whether explicit steps could not go on
 
     def run(self, start: InitialValues) -> Trajectory:
-        """All legs, put together; all of them again by the implicit integrator where explicit steps could not go on.
+        """All segments, put together; all of them again by the implicit integrator where explicit steps could not go on.
 
         They stop at singular poses, near which no other integrator could start: an integrator passes them on its way.
         """
@@ -116,7 +116,7 @@ class _Shared:
         """Whether BDF is to be tried from the first on."""
         worth, rate = self._worth_a_trial(self._grid.start, start.q, start.u)
         if worth:
-            self._told.append(f"bdf, as the fastest rate is {rate:.3g} 1/s")
+            self._messages.append(f"bdf, as the fastest rate is {rate:.3g} 1/s")
         return worth
 
     def _worth_a_trial(self, t: float, q: np.ndarray, u: np.ndarray) -> tuple[bool, float]:
@@ -139,9 +139,9 @@ class _Shared:
         segment = run.integrate(Leaving(LOOK, self._should_try_implicit))
         if run.left and segment.outcome is Outcome.STOPPED and not has_fault(self._dynamics.system):
             self._gave_up, self._segments = True, []
-            self._told = [f"bdf, as explicit steps {segment.message}"]
+            self._messages = [f"bdf, as explicit steps {segment.message}"]
             return self._grid.start
-        self._segments.append(Leg(replace(segment, solver="projected"), TRAITS["dop853"]))
+        self._segments.append(Segment(replace(segment, solver="projected"), TRAITS["dop853"]))
         if not run.left or segment.outcome is Outcome.STOPPED:
             return None
         self._state = run.work.q.copy(), run.work.u.copy()
@@ -162,7 +162,7 @@ class _Shared:
             return False
         worth, rate = self._worth_a_trial(work.t, work.q, work.u)
         if worth:
-            self._told.append(
+            self._messages.append(
                 f"bdf from t = {work.t:.4g} s on, as stability held back {100 * held:.0f} % of the steps "
                 f"(fastest rate {rate:.3g} 1/s)"
             )
@@ -175,13 +175,15 @@ class _Shared:
         self._pace, self._before = _Pace(t), self._effort()
         pays = None if self._gave_up else self._implicit_pays
         segment = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
-        self._segments.append(Leg(replace(segment, solver="bdf"), bdf.traits(self._settings)))
+        self._segments.append(Segment(replace(segment, solver="bdf"), bdf.traits(self._settings)))
         reached = self._implicit.reached
         if segment.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
         self._state = self._implicit.split(reached.y)
         self._amends = max(AMENDS * self._trial, 2.0 * self._amends)
-        self._told.append(f"projected again from t = {reached.t:.4g} s on, as bdf took shorter steps than they pay for")
+        self._messages.append(
+            f"projected again from t = {reached.t:.4g} s on, as bdf took shorter steps than they pay for"
+        )
         return reached.t
 
     def _implicit_pays(self, reached: Reached) -> bool:
@@ -212,12 +214,12 @@ class _Shared:
         return _Effort(int(counted["steps"]) - small, work - small * self._implicit_step)
 
     def _together(self) -> Trajectory:
-        """The legs as one trajectory, and how it came about."""
-        told = self._told[:MOST_TOLD]
-        if len(self._told) > MOST_TOLD:
-            told += [f"and so on, {len(self._told)} changes in all"]
+        """The segments as one trajectory, and how it came about."""
+        messages = self._messages[:MOST_MESSAGES]
+        if len(self._messages) > MOST_MESSAGES:
+            messages += [f"and so on, {len(self._messages)} changes in all"]
         note = "auto chose " + ", then ".join(
-            told if self._segments[0].traits.implicit else ["projected dop853", *told]
+            messages if self._segments[0].traits.implicit else ["projected dop853", *messages]
         )
         parts = [segment.trajectory for segment in self._segments]
         return replace(

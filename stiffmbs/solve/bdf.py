@@ -175,7 +175,7 @@ class Integrator:
         self.engine.see_inputs(features)
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
-        self._held = MaskedEvents(self.dynamics, chattering)
+        self._masked = MaskedEvents(self.dynamics, chattering)
         for stop in (*grid.with_stops(features.breakpoints).tolist(), grid.end):
             while just_after(t) < stop:
                 refuse_beyond_limits(self.dynamics, t, start.q, start.u)
@@ -192,8 +192,8 @@ class Integrator:
                 before = t = reached.t
                 if t < grid.end:
                     q, u = self.split(reached.y)
-                    if self._held.any:
-                        self._held.note(t, q, u, self.steps(), reached.fired)
+                    if self._masked.any:
+                        self._masked.note(t, q, u, self.steps(), reached.fired)
                     if t >= stop:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
                         t = just_after(t)
                     start = restarted(self.dynamics, t, q, u)
@@ -208,7 +208,7 @@ class Integrator:
 
     def _explained(self, reached: Reached) -> Reached:
         """A failure in the words of the force that causes it, where it jumps back and forth."""
-        jumping = self._held.failed(reached.t, *self.split(reached.y))
+        jumping = self._masked.failed(reached.t, *self.split(reached.y))
         return replace(reached, failure=jumping or reached.failure)
 
     def _segment(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
@@ -244,7 +244,7 @@ class Integrator:
         relax(self.dynamics, self.settings, t)
         stiffness = stiffness_at(self.dynamics, t)
         newton = self.control.newton or newton_tolerance(stiffness, self.settings)
-        self.engine.leave_out(self._held.waits)
+        self.engine.leave_out(self._masked.steps)
         self.engine.begin(t, y, yp, newton, stiffness)
 
     def statistics(self) -> dict[str, int | float | str]:

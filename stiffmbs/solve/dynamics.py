@@ -1,4 +1,4 @@
-"""The mechanics of one system at a state: assembly, projections, accelerations, and what is reported."""
+"""The dynamics of one system at a state: assembly, projections, accelerations, and what is reported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
-from .storage import blocks, release, room
+from .storage import allocated, blocks, release
 
 T = TypeVar("T")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS = together(
@@ -88,7 +88,7 @@ class Dynamics:
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
         self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
         self._kept: dict[str, tuple[object, object]] = {}
-        behind = [system.term("acceleration", name) for name in ("counting", "rate")]
+        behind = [system.term("acceleration", name) for name in ("angle_rate", "rate")]
         source, row = (np.concatenate([getattr(term, part) for term in behind]) for part in ("source", "row"))
         self._behind = source.astype(np.int64), row.astype(np.int64)
         self._features = np.inf, -np.inf, InputFeatures()
@@ -124,6 +124,19 @@ class Dynamics:
             system.forget_pivots()
         if "eliminated" in self.__dict__:
             self.eliminated.forget()
+
+    def forget_inputs(self) -> None:
+        """Have the features of inputs sought anew, as formulas of time were changed in place."""
+        self._features = np.inf, -np.inf, InputFeatures()
+        self._input_end = np.nan, np.nan, None
+
+    def return_to_start(self) -> None:
+        """Put the state to the system's start, as described, without multipliers and relaxation: as it is when new."""
+        state, system = self.state, self.system
+        state.q[:], state.u[:] = system.q, system.u
+        for vector in (state.a, state.lam, state.mu):
+            vector[:] = 0.0
+        state.relax(state.mu, state.lam)
 
     @cached_property
     def eliminated(self) -> Eliminated:
@@ -181,7 +194,7 @@ class Dynamics:
         system, count = self.system, len(t)
         n_output = system.n_values("output")
         widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 3)
-        rows = [room(count, width) for width in widths]
+        rows = [allocated(count, width) for width in widths]
         done = 0
         for block in blocks(count):
             rows[0][block], rows[1][block] = q[block], u[block]

@@ -25,8 +25,8 @@ from ..errors import SolverError
 from .dynamics import Dynamics
 from .failures import FAILURES
 
-MOST_MOVES = 500
-TRANSLATION, ROTATION = 0.25, 0.2
+MOST_MOVES = 2000
+TRANSLATION, ROTATION = 0.25, 0.5
 """Longest move of a body, relative to the mechanism's size, and rad (Adams: EQUILIBRIUM/TLIMIT, ALIMIT)."""
 SLOWEST, STIFFEST = 1e-3, 1e15
 """Bounds of the root of s, rad/s: the least holds free directions where they are."""
@@ -37,7 +37,7 @@ the step, and from which on it is taken back."""
 MOST_CORRECTIONS = 8
 SLOW = 0.5
 """Part that has to be left after one of the last moves for another one."""
-BALANCED, ROUNDING = 1e-11, 8
+BALANCED, ROUNDING = 1e-10, 8
 """Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
 
 

@@ -124,7 +124,7 @@ def _close_open_rates(dynamics: Dynamics, t: float) -> None:
 def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
     """Why there is no consistent start, with the element that is to blame."""
     if status == NO_CONVERGENCE:
-        return _gap_sentence(dynamics, t)
+        return _violation_sentence(dynamics, t)
     if status == SINGULAR:
         return _dependent_sentence(dynamics)
     if status == NO_BALANCE:
@@ -139,7 +139,7 @@ def _balance_sentence(dynamics: Dynamics) -> str:
     return f"the start has no accelerations: {FAILURES[NO_BALANCE]}, expected less of it in {', '.join(rubbing)}"
 
 
-def _gap_sentence(dynamics: Dynamics, t: float) -> str:
+def _violation_sentence(dynamics: Dynamics, t: float) -> str:
     system, state = dynamics.system, dynamics.state
     state.evaluate("position", t)
     gaps = np.abs(state.vector("position", "C"))

@@ -14,7 +14,7 @@ from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .failures import FAILURES
 from .initial import InitialValues
 from .kinematic_states import Instant, states_after
-from .native.statuses import NO_BALANCE, NO_ROOM, NOT_FINITE
+from .native.statuses import NO_BALANCE, NO_MEMORY, NOT_FINITE
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
@@ -186,7 +186,7 @@ class _Motion:
 
     def _stuck(self) -> str:
         """Why even the shortest step fails: the mechanism locks, unless the last try failed for a reason of its own."""
-        if self._status in (NOT_FINITE, NO_BALANCE, NO_ROOM):
+        if self._status in (NOT_FINITE, NO_BALANCE, NO_MEMORY):
             return f"stopped after t = {self.t:.9g} s: {FAILURES[self._status]}"
         return self._locked()
 

@@ -1,4 +1,4 @@
-"""The legs of a run that switched between two integrators, as one trajectory."""
+"""The segments of a run that switched between two integrators, as one trajectory."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from .trajectory import History, Trajectory, summed
 
 
 @dataclass(frozen=True)
-class Leg:
+class Segment:
     """A part of a run, and what solved it."""
 
     trajectory: Trajectory
     traits: Traits
 
 
-def joined(segments: Sequence[Leg]) -> Trajectory:
-    """Legs as one trajectory; each begins with the row at which the last one ended."""
+def joined(segments: Sequence[Segment]) -> Trajectory:
+    """Segments as one trajectory; each begins with the row at which the last one ended."""
     parts = [segment.trajectory for segment in segments]
     t, q, u = (
         np.concatenate([getattr(part, name)[int(k > 0) :] for k, part in enumerate(parts)]) for name in ("t", "q", "u")
@@ -29,8 +29,8 @@ def joined(segments: Sequence[Leg]) -> Trajectory:
     return replace(parts[-1], t=t, q=q, u=u, statistics=_summed(parts, counted), history=_history(counted))
 
 
-def _last_of_each_kind(segments: Sequence[Leg]) -> list[Trajectory]:
-    """Every explicit leg, and the last implicit one: its integrator counts from its first start on."""
+def _last_of_each_kind(segments: Sequence[Segment]) -> list[Trajectory]:
+    """Every explicit segment, and the last implicit one: its integrator counts from its first start on."""
     explicit = [segment.trajectory for segment in segments if not segment.traits.implicit]
     return explicit + [segment.trajectory for segment in segments if segment.traits.implicit][-1:]
 
@@ -42,6 +42,6 @@ def _summed(segments: Sequence[Trajectory], counted: Sequence[Trajectory]) -> di
 
 
 def _history(counted: Sequence[Trajectory]) -> History:
-    """The steps of all legs; orders where all are known."""
+    """The steps of all segments; orders where all are known."""
     t = np.concatenate([segment.history.t for segment in counted])
     return History(np.sort(t), np.empty(0, dtype=int))

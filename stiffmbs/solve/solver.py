@@ -23,7 +23,7 @@ class Traits:
     reads : tuple of str
         The settings that it follows, besides those for all solvers.
     implicit : bool
-        Whether it takes implicit steps; their mechanics leave out coordinates that others determine.
+        Whether it takes implicit steps; their dynamics leave out coordinates that others determine.
     fixed_steps : bool
         Whether all its steps have the length `step`, whatever the error.
     exact : bool

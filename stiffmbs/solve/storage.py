@@ -1,4 +1,4 @@
-"""Room for results: in memory, and in a temporary file where they are large."""
+"""Memory for results: in memory, and in a temporary file where they are large."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BLOCK = 100_000
 """Rows that are written or read before memory is let go of."""
 
 
-def room(*shape: int) -> np.ndarray:
+def allocated(*shape: int) -> np.ndarray:
     """An array of floats of any content.
 
     Where it is large it lies in a file that vanishes with it: the system keeps in memory what it has space for.

@@ -13,7 +13,7 @@ from ..presolve.presolve import Part
 from .dynamics import Dynamics
 from .events.restart import restarted
 from .initial import InitialValues
-from .storage import room
+from .storage import allocated
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
 
@@ -35,7 +35,7 @@ class Subsystem:
 
 
 def subsystem_of(part: Part, start: InitialValues, t: float) -> Subsystem:
-    """A part's mechanics and start, from the start of the whole.
+    """A subsystem's dynamics and start, from the start of the whole.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def _share(watch: ProgressCallback, grid: Grid, k: int, count: int) -> ProgressC
 def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], start: InitialValues) -> Trajectory:
     """The motion of the whole, up to the last instant that all have reached; what was not solved stays at the start."""
     rows = min(len(trajectory.t) for trajectory in found) if len(found) == len(subsystems) else 1
-    q, u = room(rows, len(start.q)), room(rows, len(start.u))
+    q, u = allocated(rows, len(start.q)), allocated(rows, len(start.u))
     q[:], u[:] = start.q, start.u
     for subsystem, trajectory in zip(subsystems, found, strict=False):
         subsystem.part.put(trajectory.q[:rows], trajectory.u[:rows], q, u)

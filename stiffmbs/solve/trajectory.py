@@ -1,9 +1,9 @@
 """What an integrator is given and what it gives back: the contract of all solvers.
 
-A solver is a function in a file of its own: `solve(mechanics, start, grid, settings, watch) -> Trajectory`.  What else
+A solver is a function in a file of its own: `solve(dynamics, start, grid, settings, watch) -> Trajectory`.  What else
 others need to know of it are its traits (`stiffmbs.solve.solver`).
 
-1. It starts from consistent initial values and works on the mechanics' state; it knows no kinds of element.
+1. It starts from consistent initial values and works on the dynamics' state; it knows no kinds of element.
 2. It returns the state at every instant of `grid`, or at its own steps where the grid's `times` is None.
 3. It calls `watch(t)` often enough for a progress bar (a few times a second at the least).
 4. It never loses what it has: when it cannot go on, or is interrupted, it returns the rows up to there with the
@@ -22,7 +22,7 @@ import numpy as np
 
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from .storage import BLOCK, release, room
+from .storage import BLOCK, allocated, release
 
 if TYPE_CHECKING:
     from .dynamics import Dynamics
@@ -165,18 +165,18 @@ class Rows:
     """Growing storage for states: appended to row by row, whatever their number."""
 
     def __init__(self, n_q: int, n_u: int, expected: int = 1024) -> None:
-        self._t, self._q, self._u = room(expected), room(expected, n_q), room(expected, n_u)
+        self._t, self._q, self._u = allocated(expected), allocated(expected, n_q), allocated(expected, n_u)
         self._count = self._released = 0
 
     def append(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Store one state."""
-        self._make_room(1)
+        self._enlarge(1)
         self._t[self._count], self._q[self._count], self._u[self._count] = t, q, u
         self._count += 1
 
     def extend(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> None:
         """Store states, one in each row."""
-        self._make_room(len(t))
+        self._enlarge(len(t))
         added = slice(self._count, self._count + len(t))
         self._t[added], self._q[added], self._u[added] = t, q, u
         self._count += len(t)
@@ -184,7 +184,7 @@ class Rows:
             release(self._t, self._q, self._u)
             self._released = self._count
 
-    def _make_room(self, count: int) -> None:
+    def _enlarge(self, count: int) -> None:
         while self._count + count > len(self._t):
             self._t, self._q, self._u = (_doubled(array) for array in (self._t, self._q, self._u))
 
@@ -195,6 +195,6 @@ class Rows:
 
 
 def _doubled(array: np.ndarray) -> np.ndarray:
-    larger = room(2 * len(array), *array.shape[1:])
+    larger = allocated(2 * len(array), *array.shape[1:])
     larger[: len(array)] = array
     return larger

@@ -31,6 +31,7 @@ def angles(t: np.ndarray, length: float = 1.0, masses: tuple[float, float] = (1.
     g = GRAVITY / length
 
     def rates(_: float, y: np.ndarray) -> list[float]:
+        """The rates of both angles and of their speeds."""
         a, b, v, w = y
         c, s = np.cos(a - b), np.sin(a - b)
         mass = np.array([[m / 3 + n, n / 2 * c], [n / 2 * c, n / 3]])

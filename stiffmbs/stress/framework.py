@@ -161,6 +161,7 @@ def _nodal(framework: Framework) -> Callable[[np.ndarray, np.ndarray], np.ndarra
     columns = (width * np.stack([a, b], 1)[:, :, None] + np.arange(width)).ravel()
 
     def accelerations(x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Accelerations of the free nodes."""
         way, rate = (part.reshape(n, width)[a] - part.reshape(n, width)[b] for part in (x, v))
         values = np.stack([way, -way], 1).ravel()
         jacobian = csc_array((values, (rows, columns)), (len(rods), n * width))[:, free]

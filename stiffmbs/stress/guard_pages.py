@@ -100,16 +100,16 @@ class GuardPages:
 
     def new(self, size: int, content: int = NEVER_WRITTEN) -> int | None:
         """The address of so many bytes; None where there is no memory."""
-        room = -(-max(size, 1) // _WORD) * _WORD
-        pages = -(-room // mmap.PAGESIZE) * mmap.PAGESIZE
+        rounded = -(-max(size, 1) // _WORD) * _WORD
+        pages = -(-rounded // mmap.PAGESIZE) * mmap.PAGESIZE
         flags = mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS
         base = self._c.mmap(None, pages + mmap.PAGESIZE, mmap.PROT_READ | mmap.PROT_WRITE, flags, -1, 0)
         if base in (None, ctypes.c_void_p(-1).value):
             return None
         self._c.mprotect(base + pages, mmap.PAGESIZE, 0)
-        at = base + pages - room
-        ctypes.memset(base, PATTERN, pages - room)
-        ctypes.memset(at + size, PATTERN, room - size)
+        at = base + pages - rounded
+        ctypes.memset(base, PATTERN, pages - rounded)
+        ctypes.memset(at + size, PATTERN, rounded - size)
         if content:
             ctypes.memset(at, content, size)
         self._blocks[at] = _Block(base, pages + mmap.PAGESIZE, size)

@@ -73,7 +73,7 @@ def _add_body(rng: np.random.Generator, scene: RandomScene, name: str) -> None:
 
 
 def _add_joint(rng: np.random.Generator, scene: RandomScene, joint: str, kind: str, body: str, other: str) -> None:
-    """A joint that fits the bodies as they are drawn; every second one in the body's centre of mass."""
+    """A joint that fits the bodies at their initial pose; every second one in the body's centre of mass."""
     at = scene.poses[body][:2] + (rng.random() < 0.5) * rng.uniform(-0.5, 0.5, 2)
     angle = float(rng.choice([0.0, np.pi / 2, scene.poses[body][2], rng.uniform(-3, 3)]))
     fields: dict[str, Any] = {}

@@ -47,7 +47,7 @@ def random_space_constraints(rng: np.random.Generator) -> dict[str, Any]:
 def _joint(
     rng: np.random.Generator, content: dict[str, Any], poses: dict[str, Pose], kind: str, body: str, other: str
 ) -> dict[str, Any]:
-    """A joint that fits the bodies as they are drawn; every second one in the body's centre of mass."""
+    """A joint that fits the bodies at their initial pose; every second one in the body's centre of mass."""
     at = poses[body][0] + (rng.random() < 0.5) * rng.uniform(-0.5, 0.5, 3)
     axes = (UPRIGHT, poses[body][1], _orientation(rng))[int(rng.integers(3))]
     own, fields, there = axes, dict[str, Any](), at

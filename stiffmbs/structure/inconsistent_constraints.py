@@ -108,15 +108,15 @@ def _disagreement(equations: LoopEquations, redundant: list[Redundant], pose: Po
     if not pose.J.finite:
         return "", {}
     if pose.gap <= AGREES:
-        return "velocity", _off(equations, _velocity_gaps(pose, kept), DISAGREES * np.abs(pose.rates).max())
-    return "position", _off(equations, _position_gaps(equations, pose, kept), AGREES)
+        return "velocity", _off(equations, _velocity_violations(pose, kept), DISAGREES * np.abs(pose.rates).max())
+    return "position", _off(equations, _position_violations(equations, pose, kept), AGREES)
 
 
 def _nearby(equations: LoopEquations, redundant: list[Redundant], pose: Pose) -> dict[int, float]:
     """The rows that do not hold where those hold that are independent for sure; the others hold nearly the same."""
     first = np.ones(len(pose.C), dtype=bool)
     first[[r.row for r in redundant]] = False
-    return _off(equations, _position_gaps(equations, pose, _clearly_independent(pose, first)), AGREES)
+    return _off(equations, _position_violations(equations, pose, _clearly_independent(pose, first)), AGREES)
 
 
 def _off(equations: LoopEquations, gaps: np.ndarray, most: float) -> dict[int, float]:
@@ -125,7 +125,7 @@ def _off(equations: LoopEquations, gaps: np.ndarray, most: float) -> dict[int, f
     return {row: float(gaps[row] / equations.row_scale[row]) for row in worst}
 
 
-def _velocity_gaps(pose: Pose, kept: np.ndarray) -> np.ndarray:
+def _velocity_violations(pose: Pose, kept: np.ndarray) -> np.ndarray:
     """What the rows left out miss by at the velocities of those kept: nothing where all rates are zero."""
     if not np.any(pose.rates):
         return np.zeros(len(pose.rates))
@@ -134,7 +134,7 @@ def _velocity_gaps(pose: Pose, kept: np.ndarray) -> np.ndarray:
     return gaps
 
 
-def _position_gaps(equations: LoopEquations, pose: Pose, kept: np.ndarray) -> np.ndarray:
+def _position_violations(equations: LoopEquations, pose: Pose, kept: np.ndarray) -> np.ndarray:
     """What the rows left out miss by nearby, where those kept hold; nothing where these do not close either."""
     alone = equations.assembled(pose.q, pose.t, kept)
     closes = np.abs(alone.C[kept]).max(initial=0.0) <= CLOSED and equations.distance(pose, alone) < NEAR * pose.gap

@@ -30,7 +30,7 @@ MOST_VALUES = 3e7
 
 
 @dataclass(frozen=True)
-class Between:
+class DenseSamples:
     """What lies between output instants.
 
     Attributes
@@ -61,15 +61,15 @@ def more_instants(first: Solution, features: InputFeatures) -> np.ndarray:
     Where the inputs have features narrower than the time between output instants, a few instants in each besides.
     """
     reported, own = first.time, first.step_times
-    room = int(MOST_VALUES / len(first))
+    most = int(MOST_VALUES / len(first))
     found = reported
     start, end = float(reported[0]), float(reported[-1])
-    narrow = features.instants(start, end, float(np.max(np.diff(reported))), min(room // 4, MOST_OF_INPUTS))
+    narrow = features.instants(start, end, float(np.max(np.diff(reported))), min(most // 4, MOST_OF_INPUTS))
     ends = own[(own > reported[0]) & (own < reported[-1])]
-    if len(found) + len(ends) <= room:
+    if len(found) + len(ends) <= most:
         found = np.union1d(found, apart(ends, found))
     parts = PARTS_OF_IMPLICIT_STEPS if len(first.history.order) else PARTS
-    if parts * len(found) <= room:
+    if parts * len(found) <= most:
         within = found[:-1, None] + np.diff(found)[:, None] * np.arange(1, parts) / parts
         found = np.union1d(found, apart(within.ravel(), found))
     return np.union1d(found, apart(narrow, found))
@@ -82,7 +82,7 @@ def apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:
     return more[nearest > AT_ONCE * (found[-1] - found[0]) / len(found)]
 
 
-def looked_between(job: Job, run: Again, sizes: Mapping[str, float], allowed: float) -> Between | None:
+def dense_samples(job: Job, run: Again, sizes: Mapping[str, float], allowed: float) -> DenseSamples | None:
     """What a run at many instants shows between the reported ones; None where it did not come to the end, nor this in time.
 
     Where accelerations and reactions are far beyond those at output instants, the pose may be singular: there they are
@@ -117,7 +117,7 @@ def looked_between(job: Job, run: Again, sizes: Mapping[str, float], allowed: fl
         sound |= reported
         seen |= peaks
     kept = np.flatnonzero(sound)
-    return Between(solution, sound, np.searchsorted(kept, run.at), tuple(solution.time[~sound]))
+    return DenseSamples(solution, sound, np.searchsorted(kept, run.at), tuple(solution.time[~sound]))
 
 
 def _peaks(

@@ -15,7 +15,7 @@ from ..jobs.run import Job
 from ..results.error_bars import ErrorBar, Fine
 from ..results.solution import Solution
 from ..solve import traits_of
-from .dense_sampling import Between
+from .dense_sampling import DenseSamples
 from .divergence import SENSITIVE, Divergence, distance, divergence
 from .poses import poses_of
 from .solve_again import Again
@@ -43,7 +43,7 @@ class Comparison:
         By the same solver, the tightest last.
     other : Again or None
         By the other solver.
-    between : Between or None
+    between : DenseSamples or None
         What lies between output instants.
     bars : mapping of str to ErrorBar
     sizes : mapping of str to float
@@ -54,7 +54,7 @@ class Comparison:
     first: Solution
     tighter: tuple[Again, ...]
     other: Again | None
-    between: Between | None
+    between: DenseSamples | None
     bars: Mapping[str, ErrorBar]
     sizes: Mapping[str, float]
 
@@ -95,7 +95,7 @@ class Comparison:
         return bool(self.uncertain) or any(self.divergences())
 
 
-def doubts(comparison: Comparison) -> Iterator[str]:
+def diagnostics(comparison: Comparison) -> Iterator[str]:
     """Everything that the runs give reason to doubt, a sentence each; nothing where they agree as they should."""
     divergences = comparison.divergences()
     met = [found for found in divergences if found is not None]

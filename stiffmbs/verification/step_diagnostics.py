@@ -16,7 +16,7 @@ CERTAIN = 3.0
 """Times what the quadrature resolves by which the energy balance must be open."""
 
 
-def doubts_of_steps(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[str]:
+def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[str]:
     """A sentence on what steps went over, or else on runs with shorter steps that differ, or on an open energy balance.
 
     Parameters

@@ -161,10 +161,10 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
     q, u = np.tile(job.start.q, (TIMED, 1)), np.tile(job.start.u, (TIMED, 1))
     job.dynamics.report(np.full(TIMED, start), q, u, True)
     each = (time.perf_counter() - begun) / TIMED
-    room = int(np.clip(allowed / each, 2, SAMPLES))
+    most = int(np.clip(allowed / each, 2, SAMPLES))
     found = np.union1d(reported_at, apart(steps[(steps > start) & (steps < end)], reported_at))
-    spread = np.linspace(start, end, room)[1:-1]
-    return np.union1d(found, apart(spread, found)) if room > 2 else found
+    spread = np.linspace(start, end, most)[1:-1]
+    return np.union1d(found, apart(spread, found)) if most > 2 else found
 
 
 def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[SteppedOver]:

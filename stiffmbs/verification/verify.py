@@ -1,4 +1,4 @@
-"""Trust in one run: the scene is solved again, tighter and in another way, and what differs becomes error bars and doubts.
+"""Trust in one run: the scene is solved again, tighter and in another way, and what differs becomes error bars and diagnostics.
 
 1. With the same solver at a hundredth of the tolerance (half the step of fixed schemes), reported at the first run's own
    steps besides its output instants, so that peaks between these are seen.
@@ -35,12 +35,12 @@ from ..results.solution import Solution
 from ..solve import traits_of
 from ..solve.settings import changed
 from ..solve.trajectory import Outcome, ProgressCallback
-from .dense_sampling import Between, looked_between, more_instants
-from .diagnostics import Comparison, doubts
+from .dense_sampling import DenseSamples, dense_samples, more_instants
+from .diagnostics import Comparison, diagnostics
 from .divergence import distance, divergence
 from .settings_again import levels_of, other_integrator, shorter_step, tolerances
 from .solve_again import Again, solve_again
-from .step_diagnostics import by_luck, doubts_of_steps
+from .step_diagnostics import by_luck, step_diagnostics
 from .stepped_over import Along, SteppedOver, looked_along
 
 MOST_EFFORT, PATIENCE = 3.0, 1.0
@@ -104,7 +104,7 @@ class _Verification:
         self._sizes = scales(first.channels, job.dynamics.system.size, first.requested)
         self._traits = traits_of(job.settings)
         self._exact = self._traits.exact
-        self._between: Between | None = None
+        self._dense: DenseSamples | None = None
         self._tighter: dict[int, Again] = {}
         self._other: Again | None = None
         self._along = Along(None)
@@ -119,16 +119,16 @@ class _Verification:
         except KeyboardInterrupt:
             self._skipped.append("verification interrupted by the user")
         comparison = self._comparison()
-        of_steps = tuple(doubts_of_steps(comparison, self._along, self._shorter))
+        of_steps = tuple(step_diagnostics(comparison, self._along, self._shorter))
         steps_decide = self._along.stretches or by_luck(comparison, self._shorter)
-        told = () if steps_decide else tuple(doubts(comparison))  # these know no remedy but the tolerance
+        messages = () if steps_decide else tuple(diagnostics(comparison))  # these know no remedy but the tolerance
         return replace(
-            self._first, errors=comparison.bars, verification=tuple(self._told()),
-            notes=(*self._first.notes, *told, *of_steps), balance=self._along.balance or self._first.balance,
+            self._first, errors=comparison.bars, verification=tuple(self._messages()),
+            notes=(*self._first.notes, *messages, *of_steps), balance=self._along.balance or self._first.balance,
         )  # fmt: skip
 
     def _solve(self) -> None:
-        self._look_between()
+        self._sample_densely()
         if self._exact:
             return
         self._ask_the_other()
@@ -162,8 +162,8 @@ class _Verification:
             self._tighter[level] = self._looked_along(run, self._tighter_settings(level)[1], allowed)
         if self._other is not None and _judges(self._other):
             self._other = self._looked_along(self._other, self._other_settings(), allowed)
-        if self._between is not None and any(run.blind for run in self._tighter.values()):
-            self._between = None
+        if self._dense is not None and any(run.blind for run in self._tighter.values()):
+            self._dense = None
 
     def _looked_along(self, run: Again, changes: dict[str, Any], allowed: float) -> Again:
         """A run, with what its steps go over."""
@@ -183,14 +183,14 @@ class _Verification:
             run, blind=f"its steps go over {whose} at t = {found.stretches[0].at:.6g} s, which this run has seen"
         )
 
-    def _look_between(self) -> None:
+    def _sample_densely(self) -> None:
         """The first tighter run, also at instants between those of the output; the next one where it does not end."""
         start, end = float(self._first.time[0]), float(self._first.time[-1])
         times = more_instants(self._first, self._job.dynamics.input_features(start, end))
         at = np.searchsorted(times, self._first.time)
         for level in self._levels():
             run = self._run(level, times, at)
-            self._between = looked_between(self._job, run, self._sizes, max(self._left(), PATIENCE))
+            self._dense = dense_samples(self._job, run, self._sizes, max(self._left(), PATIENCE))
             if not run.obstacle:
                 return
 
@@ -251,35 +251,35 @@ class _Verification:
             for name in self._first
             if name not in self._first.not_unique and not name.startswith("constraint.")
         }
-        return Comparison(self._job, self._first, tighter, other, self._between, bars, self._sizes)
+        return Comparison(self._job, self._first, tighter, other, self._dense, bars, self._sizes)
 
     def _bar(self, name: str, runs: list[Again]) -> ErrorBar:
-        fine = self._between.fine(name) if self._between else None
+        fine = self._dense.fine(name) if self._dense else None
         return error_bar(
             self._first[name], [run.reported(name) for run in runs], fine, CHANNEL_ROUNDING * self._sizes[name]
         )
 
-    def _told(self) -> list[str]:
+    def _messages(self) -> list[str]:
         """What was compared with, and what could not be."""
         runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
         done = [
             run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
         ]
-        told = [f"solved again with {' and '.join(done)}"] if done else []
+        found = [f"solved again with {' and '.join(done)}"] if done else []
         if self._exact:
-            told = ["kinematic: positions follow from the drives alone, exact but for rounding; bars are of sampling"]
-        told += [f"{run.name}: {run.obstacle}" for run in runs if run.obstacle]
-        told += [f"{run.name}, not counted: {run.blind}" for run in runs if run.blind]
+            found = ["kinematic: positions follow from the drives alone, exact but for rounding; bars are of sampling"]
+        found += [f"{run.name}: {run.obstacle}" for run in runs if run.obstacle]
+        found += [f"{run.name}, not counted: {run.blind}" for run in runs if run.blind]
         if self._other is not None and self._other.remark:
-            told.append(f"{self._other.name}, not counted: {self._other.remark}")
-        if self._between is None:
-            told.append("nothing is known between the output instants")
-        elif self._between.singular:
-            told.append(
-                f"at t = {self._between.singular[0]:.6g} s the pose is singular: accelerations and reactions have no value "
+            found.append(f"{self._other.name}, not counted: {self._other.remark}")
+        if self._dense is None:
+            found.append("nothing is known between the output instants")
+        elif self._dense.singular:
+            found.append(
+                f"at t = {self._dense.singular[0]:.6g} s the pose is singular: accelerations and reactions have no value "
                 "there, and their peaks are those of other instants"
             )
-        return [*told, *self._skipped]
+        return [*found, *self._skipped]
 
 
 def _judges(other: Again | None) -> bool:

@@ -173,8 +173,8 @@ def test_power_is_what_a_force_brings_into_the_energy(state):
 def test_counters_have_the_rates_of_their_angles(state):
     if not state.system.n_counters:
         return
-    turning = derivative(lambda: term(state, "position", "counted"), state.q) @ rates(state)
-    assert_close(term(state, "acceleration", "counting"), turning)
+    turning = derivative(lambda: term(state, "position", "continuous_angle"), state.q) @ rates(state)
+    assert_close(term(state, "acceleration", "angle_rate"), turning)
     assert np.any(turning)
 
 

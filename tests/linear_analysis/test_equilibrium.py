@@ -15,7 +15,7 @@ from stiffmbs.stress.random_tree import random_tree
 from ..conftest import EXAMPLES
 
 
-@pytest.mark.parametrize("height", [-0.05, 0.0, 0.1, 0.2])
+@pytest.mark.parametrize("height", [-0.2, -0.05, 0.0, 0.1, 0.2])
 def test_the_half_car_settles_from_any_height(height):
     scene = stiffmbs.load_scene(EXAMPLES / "half_car.yaml")
     bodies = {

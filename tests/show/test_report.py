@@ -55,7 +55,9 @@ def page_of(tmp_path):
 
 def test_a_page_holds_check_peaks_figures_and_settings(page_of):
     page = page_of("cart_pendulum", "--rtol", "1e-7")
-    assert page.headings == ["Check", "Verification", "Figures", "Peaks", "Solver", "Settings"]
+    assert page.headings == [
+        "Motion", "Joint forces", "Check", "Verification", "Figures", "Peaks", "Solver", "Modes", "Settings", "Scene",
+    ]  # fmt: skip
     assert not page.open
     text = "\n".join(page.texts)
     for part in (

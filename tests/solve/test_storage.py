@@ -15,7 +15,7 @@ from stiffmbs.solve import storage
 
 def test_large_arrays_lie_in_files_and_keep_what_they_hold(monkeypatch):
     monkeypatch.setattr(storage, "LARGEST_IN_MEMORY", 1000)
-    small, large = storage.room(10, 2), storage.room(300, 4)
+    small, large = storage.allocated(10, 2), storage.allocated(300, 4)
     large[:] = np.arange(1200.0).reshape(300, 4)
     storage.release(small, large, large[5:9, 1])
     np.testing.assert_array_equal(large, np.arange(1200.0).reshape(300, 4))
@@ -29,7 +29,7 @@ def test_a_full_disk_is_told_before_anything_is_written(monkeypatch):
     monkeypatch.setattr(storage, "LARGEST_IN_MEMORY", 1000)
     monkeypatch.setattr(os, "posix_fallocate", full)
     with pytest.raises(stiffmbs.InputError, match="too little space"):
-        storage.room(300, 4)
+        storage.allocated(300, 4)
 
 
 def test_results_in_files_are_those_in_memory(examples, monkeypatch, tmp_path):

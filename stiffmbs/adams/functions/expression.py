@@ -92,6 +92,7 @@ class _WithoutPowersOfNumbers(ast.NodeTransformer):
         self._text = text
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        """A power of numbers, in floating point."""
         self.generic_visit(node)
         if not isinstance(node.op, ast.Pow):
             return node

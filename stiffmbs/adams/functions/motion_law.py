@@ -13,7 +13,7 @@ from .trees import number, times, total
 
 ORDERS = ("position", "velocity")
 SAME_START = 1e-9
-"""How far an initial displacement may be from the drawn one to be the same, m or rad."""
+"""How far an initial displacement may be from the initial pose's to be the same, m or rad."""
 
 
 PATIENCE = 10.0
@@ -75,21 +75,21 @@ class Law:
         self._start = None if start is None else start * self._length
         self._velocity = (velocity or 0.0) * self._length / units.time
 
-    def over_time(self, drawn: float) -> dict[str, str]:
+    def over_time(self, initial: float) -> dict[str, str]:
         """The position or the velocity that a drive prescribes, by its name in the scene.
 
-        A velocity is prescribed as such where the motion starts as the parts are drawn; otherwise, and an acceleration,
+        A velocity is prescribed as such where the motion starts at the initial pose; otherwise, and an acceleration,
         as the position that it integrates to.
 
         Parameters
         ----------
-        drawn : float
-            The displacement as the parts are drawn, m or rad.
+        initial : float
+            The displacement at the initial pose, m or rad.
         """
         order = self._motion.order
-        if order == 0 or (order == 1 and (self._start is None or abs(self._start - drawn) <= SAME_START)):
+        if order == 0 or (order == 1 and (self._start is None or abs(self._start - initial) <= SAME_START)):
             return {ORDERS[order]: self._formula()}
-        start = drawn if self._start is None else self._start
+        start = initial if self._start is None else self._start
         terms = [number(start)] if start else []
         if order == 2 and self._velocity:
             terms.append(times(ast.Name("t"), self._velocity))

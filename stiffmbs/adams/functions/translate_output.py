@@ -43,6 +43,7 @@ class OutputTranslation(Translation):
     def call(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
     ) -> ast.expr:
+        """The expression that a function of a request stands for."""
         if name in (*ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ANGLES):
             return self._measure(name, arguments, function)
         if name == "ORIENT":

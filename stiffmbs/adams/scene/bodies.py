@@ -35,13 +35,17 @@ def ground_markers(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _body(mechanism: Mechanism, part: Part) -> dict[str, Any]:
-    drawn = mechanism.center(part).within(part.frame)
-    body: dict[str, Any] = {"mass": plain(part.mass), "inertia": _inertia(mechanism, part), **_pose("position", drawn)}
+    initial = mechanism.center(part).within(part.frame)
+    body: dict[str, Any] = {
+        "mass": plain(part.mass),
+        "inertia": _inertia(mechanism, part),
+        **_pose("position", initial),
+    }
     if part.velocity is not None:
         body["velocity"] = vector(in_ground(mechanism, part, part.velocity, part.velocity_marker, IDENTITY))
     if part.omega is not None:
-        omega = in_ground(mechanism, part, part.omega, part.omega_marker, drawn.axes)
-        body["omega"] = vector(drawn.axes.T @ omega)
+        omega = in_ground(mechanism, part, part.omega, part.omega_marker, initial.axes)
+        body["omega"] = vector(initial.axes.T @ omega)
     if mechanism.moves_at_start:
         body |= _left_open(part)
     markers = dict(_markers(mechanism, part))
@@ -74,7 +78,7 @@ def _inertia(mechanism: Mechanism, part: Part) -> list[Any]:
         return vector([POINT_INERTIA * part.mass] * 3)
     tensor = _tensor(mechanism, part)
     if lacks_inertia(tensor):
-        places = (mechanism.placed(marker).drawn.point for marker in mechanism.dataset.markers.values())
+        places = (mechanism.placed(marker).initial.point for marker in mechanism.dataset.markers.values())
         tensor = filled(tensor, massless_moment(mechanism.least, places))
     _check(part, tensor)
     if np.array_equal(tensor, np.diag(np.diag(tensor))):

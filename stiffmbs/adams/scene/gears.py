@@ -47,12 +47,12 @@ def meshed(user: Numbered, joints: tuple[int, int], contact: Place, mechanism: M
     """
     one, other = (_Wheel(user, ident, contact, mechanism) for ident in joints)
     gap = [one.displacement(), times(other.displacement(), -1.0)]
-    drawn = one.drawn() - other.drawn()
+    initial = one.initial() - other.initial()
     return {
         "type": "equation",
         "i": one.own.reference,
         "j": other.own.reference,
-        "zero": ast.unparse(total([*gap, number(-drawn)] if drawn else gap)),
+        "zero": ast.unparse(total([*gap, number(-initial)] if initial else gap)),
     }
 
 
@@ -71,8 +71,8 @@ class _Wheel:
             )
         self.own, self.seat = (i, j) if contact.body == j.body else (j, i)
         self._contact, self._mechanism = contact, mechanism
-        self._along = self.seat.drawn.axes.T @ contact.drawn.axes[:, 2]
-        self._arm = self.seat.drawn.axes.T @ (contact.drawn.point - self.own.drawn.point)
+        self._along = self.seat.initial.axes.T @ contact.initial.axes[:, 2]
+        self._arm = self.seat.initial.axes.T @ (contact.initial.point - self.own.initial.point)
         self._massless = HELD * float(np.linalg.norm(self._arm))
         self._slides = SORTS.get(joint.kind) != ROTATIONAL
         self._check(user, joint)
@@ -111,9 +111,9 @@ class _Wheel:
         ]
         return (*changed, number(lever[2]) if abs(lever[2]) > self._massless else None)
 
-    def drawn(self) -> float:
-        """The displacement as the parts are drawn."""
-        slid = self.own.drawn.point - self.seat.drawn.point
+    def initial(self) -> float:
+        """The displacement at the initial pose."""
+        slid = self.own.initial.point - self.seat.initial.point
         levers = np.cross(self._arm, self._along)
         angle = initial_displacement(ROTATIONAL, self.own, self.seat)
-        return float(slid @ self._contact.drawn.axes[:, 2] + levers[2] * angle)
+        return float(slid @ self._contact.initial.axes[:, 2] + levers[2] * angle)

@@ -77,10 +77,10 @@ def _states(part: Part) -> bool:
 
 def _stated(mechanism: Mechanism, part: Part) -> Twist:
     """What a part states of its motion, zero for what it does not."""
-    drawn = mechanism.center(part).within(part.frame)
+    initial = mechanism.center(part).within(part.frame)
     return (
         in_ground(mechanism, part, part.velocity, part.velocity_marker, IDENTITY),
-        in_ground(mechanism, part, part.omega, part.omega_marker, drawn.axes),
+        in_ground(mechanism, part, part.omega, part.omega_marker, initial.axes),
     )
 
 
@@ -95,7 +95,7 @@ def _move(mechanism: Mechanism, joint: Joint, known: dict[Key, Twist]) -> None:
     """Add the motion of one part of a joint to those that are known, or check that both are as the joint states."""
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     one, other = _joined(mechanism, joint)
-    axis = j.drawn.axes[:, 2]
+    axis = j.initial.axes[:, 2]
     rates = {sort == ROTATIONAL: velocity or 0.0 for sort, _, velocity in joint.start}
     sliding, turning = rates.get(False, 0.0) * axis, rates.get(True, 0.0) * axis
     if one in known and other in known:
@@ -104,7 +104,7 @@ def _move(mechanism: Mechanism, joint: Joint, known: dict[Key, Twist]) -> None:
     if one in known:
         omega = known[one][1] - turning
         at_i = _at(mechanism, one, known[one], i)
-        velocity = at_i - sliding - np.cross(omega, i.drawn.point - j.drawn.point)
+        velocity = at_i - sliding - np.cross(omega, i.initial.point - j.initial.point)
         known[other] = _of_center(mechanism, other, velocity, omega, j)
         return
     at_i = _at(mechanism, other, known[other], i) + sliding
@@ -119,12 +119,12 @@ def _center(mechanism: Mechanism, key: Key) -> np.ndarray:
 def _at(mechanism: Mechanism, key: Key, twist: Twist, place: Place) -> np.ndarray:
     """Velocity of a part where a marker is, m/s."""
     velocity, omega = twist
-    return np.asarray(velocity + np.cross(omega, place.drawn.point - _center(mechanism, key)))
+    return np.asarray(velocity + np.cross(omega, place.initial.point - _center(mechanism, key)))
 
 
 def _of_center(mechanism: Mechanism, key: Key, velocity: np.ndarray, omega: np.ndarray, place: Place) -> Twist:
     """The motion of a part by the velocity of its marker."""
-    return velocity + np.cross(omega, _center(mechanism, key) - place.drawn.point), omega
+    return velocity + np.cross(omega, _center(mechanism, key) - place.initial.point), omega
 
 
 def _moving(mechanism: Mechanism, part: Part, twist: Twist) -> Part:
@@ -142,7 +142,7 @@ def _check_displacements(mechanism: Mechanism, joint: Joint) -> None:
 
 def _check_velocities(mechanism: Mechanism, joint: Joint, i: Place, j: Place, known: dict[Key, Twist]) -> None:
     one, other = _joined(mechanism, joint)
-    axis = j.drawn.axes[:, 2]
+    axis = j.initial.axes[:, 2]
     for sort, _, stated in joint.start:
         if stated is None:
             continue
@@ -163,8 +163,8 @@ def _compare(joint: Joint, sort: str, name: str, stated: float, found: float) ->
 
 
 def initial_displacement(sort: str, i: Place, j: Place) -> float:
-    """The displacement of a joint as the parts are drawn, m or rad."""
-    a, b = i.drawn, j.drawn
+    """The displacement of a joint at the initial pose, m or rad."""
+    a, b = i.initial, j.initial
     if sort != ROTATIONAL:
         return float((a.point - b.point) @ b.axes[:, 2])
     x = a.axes[:, 0]
@@ -177,4 +177,4 @@ def in_ground(
     """Velocities that are given in a marker's axes (or in `axes`, without one) in ground axes; zero without any."""
     if rates is None:
         return np.zeros(3)
-    return (axes if marker is None else mechanism.place(marker, part, "VM or WM").drawn.axes) @ np.array(rates)
+    return (axes if marker is None else mechanism.place(marker, part, "VM or WM").initial.axes) @ np.array(rates)

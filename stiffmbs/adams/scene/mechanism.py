@@ -37,14 +37,14 @@ class Place:
         Its own name on that body.
     on_body : Frame
         In the body's axes.
-    drawn : Frame
+    initial : Frame
         In ground axes, at the start.
     """
 
     body: str
     name: str
     on_body: Frame
-    drawn: Frame
+    initial: Frame
 
     @property
     def reference(self) -> str:
@@ -108,13 +108,13 @@ class Mechanism:
 
         With it formulas measure that axis: ``dx(tip, marker, other)`` is its component along the x axis of the other.
         """
-        return self.moved(place, f"{place.name}_z", place.drawn.axes[:, 2]).reference
+        return self.moved(place, f"{place.name}_z", place.initial.axes[:, 2]).reference
 
     def moved(self, place: Place, name: str, way: np.ndarray) -> Place:
         """A further marker of the scene: another one, moved on its body by a way in ground axes (m) at the start."""
-        seen = place.drawn.axes.T @ way
+        seen = place.initial.axes.T @ way
         found = Place(
-            place.body, name, *(Frame(seen, IDENTITY).within(frame) for frame in (place.on_body, place.drawn))
+            place.body, name, *(Frame(seen, IDENTITY).within(frame) for frame in (place.on_body, place.initial))
         )
         self.further[found.reference] = found
         return found

@@ -33,8 +33,8 @@ def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) ->
     sort = _sort(motion, joint)
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     law = Law(motion, translation, sort)
-    drawn = initial_displacement(sort, i, j)
-    return {"type": "drive", "joint": coordinate(joint, sort), **law.over_time(drawn)}
+    initial = initial_displacement(sort, i, j)
+    return {"type": "drive", "joint": coordinate(joint, sort), **law.over_time(initial)}
 
 
 def _sort(motion: Motion, joint: Joint) -> str:
@@ -53,15 +53,15 @@ def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translat
     """A component between two markers, along the axes of J or by the angles of three turns about x, y and z."""
     assert motion.i is not None and motion.j is not None and motion.component is not None
     i, j = mechanism.place(motion.i, motion, "I"), mechanism.place(motion.j, motion, "J")
-    relative = i.drawn.seen_from(j.drawn)
+    relative = i.initial.seen_from(j.initial)
     component = motion.component
     drive = {"type": "drive", "i": i.reference, "j": j.reference}
     if component in LENGTHS:
         way = f"d{component.lower()}({i.reference}, {j.reference}, {j.reference})"
-        drawn = float(relative.point[LENGTHS.index(component)])
-        return {**drive, "coordinate": way, **Law(motion, translation, TRANSLATIONAL).over_time(drawn)}
+        initial = float(relative.point[LENGTHS.index(component)])
+        return {**drive, "coordinate": way, **Law(motion, translation, TRANSLATIONAL).over_time(initial)}
     A = relative.axes  # Rx(b1) Ry(b2) Rz(b3): AX gives b1, and AZ of J against I gives -b3
-    angle, drawn = {
+    angle, initial = {
         "B1": (f"ax({i.reference}, {j.reference})", float(np.arctan2(-A[1, 2], A[2, 2]))),
         "B2": (
             f"asin(dx({mechanism.tip(i)}, {i.reference}, {j.reference}))",
@@ -69,4 +69,4 @@ def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translat
         ),
         "B3": (f"-az({j.reference}, {i.reference})", float(np.arctan2(-A[0, 1], A[0, 0]))),
     }[component]
-    return {**drive, "coordinate": angle, **Law(motion, translation, ROTATIONAL).over_time(drawn)}
+    return {**drive, "coordinate": angle, **Law(motion, translation, ROTATIONAL).over_time(initial)}

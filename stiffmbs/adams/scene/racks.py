@@ -44,9 +44,9 @@ def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
     carried = _carried(joint, i, j, mechanism)
     if carried is not None:
         hinge, guide, seat = carried
-        along, line = j.drawn.axes[:, 2], j.drawn.point + off * outward
-        touched = line + ((i.drawn.point - line) @ along) * along
-        contact = mechanism.moved(seat, f"{seat.name}_teeth_{joint.ident}", touched - seat.drawn.point)
+        along, line = j.initial.axes[:, 2], j.initial.point + off * outward
+        touched = line + ((i.initial.point - line) @ along) * along
+        contact = mechanism.moved(seat, f"{seat.name}_teeth_{joint.ident}", touched - seat.initial.point)
         return meshed(joint, (hinge.ident, guide.ident), contact, mechanism) | {"i": i.reference, "j": j.reference}
     line_marker = (
         mechanism.moved(j, f"{j.name}_pitch", off * outward) if abs(off) > ON_PITCH_LINE * abs(joint.diameter) else j
@@ -63,10 +63,10 @@ def _carried(joint: Joint, i: Place, j: Place, mechanism: Mechanism) -> tuple[Jo
     hinges = {
         seat.body: other
         for other, own, seat in _joints_of(i.body, "REVOLUTE", mechanism)
-        if _alike(own.drawn.axes[:, 2], i.drawn.axes[:, 2])
+        if _alike(own.initial.axes[:, 2], i.initial.axes[:, 2])
     }
     for guide, own, seat in _joints_of(j.body, "TRANSLATIONAL", mechanism):
-        if seat.body in hinges and _alike(own.drawn.axes[:, 2], j.drawn.axes[:, 2]):
+        if seat.body in hinges and _alike(own.initial.axes[:, 2], j.initial.axes[:, 2]):
             return hinges[seat.body], guide, seat
     return None
 
@@ -88,7 +88,7 @@ def _joints_of(body: str, kind: str, mechanism: Mechanism) -> Iterator[tuple[Joi
 
 def _axis(i: Place, j: Place) -> np.ndarray | None:
     """The pinion's axis across the rack; None where marker I is not turned as the pinion is."""
-    along, axis = j.drawn.axes[:, 2], i.drawn.axes[:, 2]
+    along, axis = j.initial.axes[:, 2], i.initial.axes[:, 2]
     if abs(along @ axis) > SKEWED:
         return None
     axis = axis - (along @ axis) * along
@@ -97,7 +97,7 @@ def _axis(i: Place, j: Place) -> np.ndarray | None:
 
 def _beside(i: Place, j: Place) -> np.ndarray:
     """The way from the pinion's axis to the rack's line across both, m; from marker I where it is not on the axis."""
-    along, axis, gap = j.drawn.axes[:, 2], _axis(i, j), j.drawn.point - i.drawn.point
+    along, axis, gap = j.initial.axes[:, 2], _axis(i, j), j.initial.point - i.initial.point
     gap = gap - (gap @ along) * along
     return np.asarray(gap if axis is None else gap - (gap @ axis) * axis)
 
@@ -111,13 +111,13 @@ def _outward(joint: Joint, i: Place, j: Place) -> np.ndarray:
     gap = _beside(i, j)
     if not _crosses(joint, gap):
         return np.asarray(gap / np.linalg.norm(gap))
-    axis, along = _axis(i, j), float(i.drawn.axes[:, 0] @ j.drawn.axes[:, 2])
+    axis, along = _axis(i, j), float(i.initial.axes[:, 0] @ j.initial.axes[:, 2])
     if axis is None or abs(along) < 0.5:
         raise joint.fault(
             "found the rack's line (the z axis of J) across the pinion's axis (the z axis of I) and not along its x axis, "
             "expected it half the pitch diameter beside the axis, or along the x axis of I"
         )
-    return -np.sign(along) * np.cross(axis, j.drawn.axes[:, 2])
+    return -np.sign(along) * np.cross(axis, j.initial.axes[:, 2])
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:

@@ -28,7 +28,7 @@ def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: Mechanism) -> dict[str, Any]:
-    """A coupler of two joints; for more an equation between their displacements, which holds as the parts are drawn."""
+    """A coupler of two joints; for more an equation between their displacements, which holds at the initial pose."""
     if len(tied) == 2:
         first, second = (coordinate(joint, sort) for joint, sort in zip(tied, sorts, strict=True))
         return {"type": "coupler", "joint_1": first, "joint_2": second, "scale": plain(-scales[1])}

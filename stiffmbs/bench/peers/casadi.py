@@ -103,7 +103,7 @@ def integration(equations: dict[str, Any], m: Mechanism, task: Task, rtol: float
         options |= {"abstolv": tolerances.tolist(), "calc_ic": False, "init_xdot": rates.tolist()}
     plugin = "idas" if joined else "cvodes"
     segments = [
-        (ca.integrator("leg", plugin, equations, times[0], times[1:].tolist(), options), count)
+        (ca.integrator("segment", plugin, equations, times[0], times[1:].tolist(), options), count)
         for times, count in segments_of(task.times, task.breakpoints)
     ]
 

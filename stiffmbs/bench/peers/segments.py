@@ -8,7 +8,7 @@ import numpy as np
 
 
 def segments_of(times: np.ndarray, breakpoints: tuple[float, ...]) -> Iterator[tuple[np.ndarray, int]]:
-    """For each leg its times, ends included, and how many of them are output times after its begin."""
+    """For each segment its times, ends included, and how many of them are output times after its begin."""
     begun = times[0]
     for end in (*breakpoints, times[-1]):
         inside = times[(times > begun) & (times <= end)]

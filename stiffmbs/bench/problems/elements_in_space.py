@@ -43,7 +43,7 @@ def _copied(system: System, element: str) -> System:
     at, count = group.names.index(element), group.record.n_equations
     numbers = group.numbers.copy()
     copies = Group(
-        group.kind, group.record, group.of_body, (element,) * COPIES, (group.elements[at],) * COPIES,
+        group.kind, group.record, group.of_body, (element,) * COPIES, [group.elements[at]] * COPIES,
         np.repeat(group.index[at : at + 1], COPIES, axis=0), numbers, 0,
     )  # fmt: skip
     equations = ((element, "copy"),) * (COPIES * count)

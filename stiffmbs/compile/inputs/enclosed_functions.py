@@ -38,6 +38,7 @@ def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
     """cosh or sinh; their derivatives are each other."""
 
     def of(x: Enclosure) -> Enclosure:
+        """The enclosure of the function at an enclosed argument."""
         """The function of an enclosure."""
 
         def outer(k: int) -> Range:

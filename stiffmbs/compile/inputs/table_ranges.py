@@ -90,6 +90,7 @@ class TableRanges:
         beyond = (b <= x[0]) | (a >= x[-1])
 
         def outer(k: int) -> Range:
+            """The range of the k-th Taylor coefficient."""
             found = hull(self._of_pieces(first, z_first, k), self._of_pieces(last, z_last, k))
             between = last > first + 1
             found = np.where(

@@ -49,11 +49,11 @@ EQUATIONS: Layout = {
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
 FACTORS: Layout = {
-    "n": INT, "room": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS,
+    "n": INT, "expected_entries": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS,
     "order": INTS, "l_start": INTS, "l_row": OWN_INTS, "l": OWN_FLOATS, "u_start": INTS, "u_row": OWN_INTS, "u": OWN_FLOATS,
     "pivot": INTS, "work": FLOATS, "b": FLOATS, "previous": FLOATS, "stack": INTS, "x": FLOATS,
 }  # fmt: skip
-"""A sparse matrix by columns, its factors and work space (`stiffmbs.compile.machine.native.factors`).  `room` is the number of
+"""A sparse matrix by columns, its factors and work space (`stiffmbs.compile.machine.native.factors`).  `expected_entries` is the number of
 entries that each factor is expected to have at the most, `capacity` the number for which there is memory."""
 
 FIXED_ORDER: Layout = {
@@ -85,7 +85,7 @@ depends on multipliers."""
 
 
 IDA: Layout = {
-    "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "sides": FLOATS, "waits": INTS,
+    "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
 }  # fmt: skip
 """What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array.  They
@@ -118,19 +118,19 @@ EXPLICIT: Layout = {
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
-    "n_event_functions": INT, "n_events": INT, "sides": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
+    "n_event_functions": INT, "n_events": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
-    "room": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
+    "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 }  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
-event functions' values there, the stages k, the counters, the output times (none: every step), and room for the rows and ends
+event functions' values there, the stages k, the counters, the output times (none: every step), and memory for the rows and ends
 of steps that one call stores."""
 
 NATIVE_IDA: Layout = {
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
-    "n_event_functions": INT, "sides": FLOATS, "waits": INTS,
+    "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
@@ -190,7 +190,7 @@ which estimates are filtered; the order of the last step."""
 
 
 EVENT_SEARCH: Layout = {
-    "n": INT, "n_event_functions": INT, "waits": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
+    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,

@@ -33,7 +33,7 @@ def counter(k: int) -> sp.Symbol:
     return sp.Symbol(f"counted{k}", real=True)
 
 
-def counting_rate(angle: ContinuousAngle, e: Any) -> sp.Expr:
+def angle_rate(angle: ContinuousAngle, e: Any) -> sp.Expr:
     """The rate of a counter: that of its angle, (c s' - s c')/(s^2 + c^2), bounded where s and c both vanish.
 
     The eighth power leaves the rate as it is outside of the pole: half a turn too much or too little, gathered over any number

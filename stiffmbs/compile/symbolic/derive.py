@@ -19,7 +19,7 @@ from ...describe.requests.angle_counter import AngleCounter
 from ...describe.states.equation import Reported, StateEquation
 from ...errors import InputError
 from ..kind import Kind
-from .continuous_angle import counting_rate
+from .continuous_angle import angle_rate
 from .frames import SymbolicElement
 from .losses import power_of_force, power_of_joint
 from .stated import Stated, stated_by_force, stated_by_joint
@@ -211,8 +211,13 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
     first = e.n_coordinates
-    angles, rates = sp.Matrix(e.angles), sp.Matrix([counting_rate(angle, e) for angle in e.angles])
-    terms = {"counted": angles, "counting": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
+    angles, rates = sp.Matrix(e.angles), sp.Matrix([angle_rate(angle, e) for angle in e.angles])
+    terms = {
+        "continuous_angle": angles,
+        "angle_rate": rates,
+        "Z": e.by_velocities(rates),
+        "Z_q": e.by_coordinates(rates),
+    }
     return {
         name: [Entry(entry.expression, first + entry.row, entry.column) for entry in _entries(matrix)]
         for name, matrix in terms.items()

@@ -12,7 +12,7 @@ from ...errors import InputError
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
 from .read import read
-from .relative_rotation import Tilt, Turn, product
+from .relative_rotation import RelativeRotation, ShortestRotation, product
 from .spline import integral
 
 COINCIDENT = sp.Float("1e-200")
@@ -26,7 +26,7 @@ OF_ELEMENTS = (
     "states",
     "breakpoints",
     "derivatives",
-    "_turns",
+    "_rotations",
     "kind",
     "_joint",
     "_coordinate",
@@ -67,7 +67,7 @@ class SymbolicElement:
         self.angles: list[sp.Expr] = []
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
-        self._turns: dict[tuple[Any, Any], Turn] = {}
+        self._rotations: dict[tuple[Any, Any], RelativeRotation] = {}
         self.__dict__.update(fields)
 
     def __getattr__(self, name: str) -> Any:
@@ -120,19 +120,19 @@ class SymbolicElement:
             return x.applyfunc(self.named)
         return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(self.read(x))
 
-    def turn(self, i: Any, j: Any) -> Turn:
+    def relative_rotation(self, i: Any, j: Any) -> RelativeRotation:
         """How a marker is turned against another one, of another body in space."""
-        if (i, j) not in self._turns:
-            self._turns[i, j] = self._new_turn(i, j)
-        return self._turns[i, j]
+        if (i, j) not in self._rotations:
+            self._rotations[i, j] = self._new_rotation(i, j)
+        return self._rotations[i, j]
 
-    def _new_turn(self, i: Any, j: Any) -> Turn:
-        """Names for the parts of a turn, with the derivatives that `Turn` states instead of those of what they stand for."""
+    def _new_rotation(self, i: Any, j: Any) -> RelativeRotation:
+        """Names for the parts of a turn, with the derivatives that `RelativeRotation` states instead of those of what they stand for."""
         back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
         inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
         meaning = product(back, self.named(i.quaternion)) * self.named(inverse_length)
-        parts = [sp.Symbol(f"turn{len(self._turns)}_{k}", real=True) for k in range(4)]
-        turn = Turn(parts[0], sp.Matrix(parts[1:]))
+        parts = [sp.Symbol(f"turn{len(self._rotations)}_{k}", real=True) for k in range(4)]
+        turn = RelativeRotation(parts[0], sp.Matrix(parts[1:]))
         halves = [turn.rates(self.named(sp.Matrix([axis[k] for axis in j.axes]) / 2)) for k in range(3)]
         for part, stands_for, changes in zip(parts, meaning, zip(*halves, strict=True), strict=True):
             by = dict(zip(i.body.phi, changes, strict=True))
@@ -140,10 +140,10 @@ class SymbolicElement:
             self.derivatives.define(part, by | against, stands_for)
         return turn
 
-    def tilt(self, i: Any, j: Any, axis: int) -> Tilt:
+    def shortest_rotation(self, i: Any, j: Any, axis: int) -> ShortestRotation:
         """How an axis (0, 1, 2 for x, y, z) of a marker is tilted against that of another one in space."""
         own = self.named([i.x, i.y, i.z][axis])
-        return Tilt(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
+        return ShortestRotation(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
 
     @property
     def meanings(self) -> dict[sp.Symbol, sp.Expr]:

@@ -32,6 +32,7 @@ def python_law(address: sp.Symbol, read: Callable[[Any], sp.Expr]) -> Callable[.
     """The function that equations call: ``e.law(x, y)`` for one value, ``e.law(x, y, count=3)`` for a list of them."""
 
     def law(*arguments: Any, count: int | None = None) -> Any:
+        """The values of the function, as symbols of its call."""
         if not arguments:
             raise InputError("found a Python function without arguments, expected one at least")
         given = [read(argument) for argument in arguments]

@@ -25,7 +25,7 @@ COSINE = sp.Float(math.sqrt(0.5))
 
 
 @dataclass(frozen=True)
-class Turn:
+class RelativeRotation:
     """The rotation that takes the axes of one marker into those of another, as a unit quaternion.
 
     The quaternion is that of the bodies' motion, which knows whole turns: its angle goes on smoothly past half a turn,
@@ -43,7 +43,7 @@ class Turn:
     vector: sp.Matrix
 
     @property
-    def room(self) -> sp.Expr:
+    def margin(self) -> sp.Expr:
         """Above zero up to three quarters of a turn, a quarter before the rotation vector has no direction."""
         return self.scalar + COSINE
 
@@ -71,7 +71,7 @@ class Turn:
 
 
 @dataclass(frozen=True)
-class Tilt:
+class ShortestRotation:
     """The shortest rotation that takes an axis of one marker into that of another, whatever the turn about the axis is.
 
     Attributes
@@ -86,7 +86,7 @@ class Tilt:
     direction: sp.Matrix
 
     @property
-    def room(self) -> sp.Expr:
+    def margin(self) -> sp.Expr:
         """Above zero up to 135 degrees, 45 before the tilt has no direction."""
         return self.direction[self.axis] + COSINE
 

@@ -191,6 +191,7 @@ class _Builder:
 
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
             def value(word: str) -> sp.Expr:
+                """The symbol or expression that a name stands for."""
                 owner, _, coordinate = word.partition(".")
                 if coordinate:
                     return self.frames[int(owner[1:])].coordinate(coordinate)
@@ -209,6 +210,7 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
+            """The formula at an expression."""
             functions = self.functions() | tables
             expression = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
             if expression.has(sp.Abs):  # which SymPy makes of sqrt(x^2)

@@ -70,7 +70,7 @@ def _keys(place: Any, path: str) -> list[str]:
     return keys
 
 
-def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, str]]) -> None:
+def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]]) -> None:
     """Refuse to add a parameter that no other change uses: misspelt, it would change nothing and nobody would know.
 
     Raises
@@ -82,7 +82,7 @@ def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str,
     for path, _ in changes:
         section, _, name = path.partition(".")
         alone = rf"(?<![\w.]){re.escape(name)}(?![\w.])"
-        used = any(re.search(alone, text) for other, text in changes if other != path)
+        used = any(re.search(alone, str(text)) for other, text in changes if other != path)
         if section == "parameters" and name and name not in known and not used:
             raise InputError(
                 f"--set {path}: found no such parameter, expected one of {', '.join(map(str, known)) or 'none'}"
@@ -124,7 +124,7 @@ def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) 
     return parameters
 
 
-def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, str]]) -> dict[str, Quantity]:
+def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]]) -> dict[str, Quantity]:
     """The parameters that changes replace, as the scene has them; none where it cannot be read."""
     changed = {path.removeprefix("parameters.") for path, _ in changes}
     try:

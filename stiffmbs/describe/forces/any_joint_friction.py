@@ -28,7 +28,7 @@ class AnyJointFriction(Friction):
     radius: si.LengthOrZero = Field(0.0, description="R of a pin or ball, m")
     length: si.PositiveLength | None = Field(None, description="of a guide or bearing, for its moment, m")
 
-    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         joint = joints[self.joint.joint]
         if type(joint).loads is Joint.loads:
             *others, last = self.rubbing()

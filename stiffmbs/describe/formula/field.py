@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from numbers import Real
 from typing import Annotated, Any
 
@@ -73,16 +74,21 @@ class Formula:
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
-        for node in reading_order(self.tree):
-            match node:
-                case ast.Attribute(ast.Name(body), coordinate) if body != UNIT:
-                    yield body, coordinate
+        yield from self._coordinates
+
+    @cached_property
+    def _coordinates(self) -> list[tuple[str, str]]:
+        attributes = [node for node in reading_order(self.tree) if isinstance(node, ast.Attribute)]
+        return [(x.value.id, x.attr) for x in attributes if isinstance(x.value, ast.Name) and x.value.id != UNIT]
 
     def measures(self) -> Iterator[tuple[str, tuple[MarkerReference, ...]]]:
         """The measures that it uses with their markers, in reading order."""
-        for node in reading_order(self.tree):
-            if is_measure(node):
-                yield node.func.id, measured_markers(node)  # type: ignore[attr-defined]
+        yield from self._measures
+
+    @cached_property
+    def _measures(self) -> list[tuple[str, tuple[MarkerReference, ...]]]:
+        calls = [node for node in reading_order(self.tree) if is_measure(node)]
+        return [(node.func.id, measured_markers(node)) for node in calls]  # type: ignore[attr-defined]
 
     def reactions(self) -> Iterator[tuple[str, str]]:
         """The components of reactions that it uses, with their joints, in reading order."""

@@ -33,7 +33,7 @@ class FormulaNames:
     velocity_measures: tuple[str, ...]
     along_axes: tuple[str, ...]
 
-    def refused(self, formula: Formula) -> Iterator[str]:
+    def validation_errors(self, formula: Formula) -> Iterator[str]:
         """Why a formula has no meaning in the family: names of the other one, velocities where positions are wanted."""
         of_body = self.positions + (self.velocities if formula.velocities else ())
         for body, coordinate in formula.coordinates():

@@ -80,6 +80,7 @@ class _Owners(ast.NodeTransformer):
     """Makes one name of all but the last of ``front.left.arm.x``, so that an owner is a name, with dots or without."""
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """A dotted name as one name."""
         words, owner = [], node.value
         while isinstance(owner, ast.Attribute):
             words.append(owner.attr)

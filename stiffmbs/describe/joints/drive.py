@@ -85,7 +85,7 @@ class Drive(Joint):
         exactly_one(("position", self.prescribed_position), ("velocity", self.prescribed_velocity))
         return self
 
-    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         unfit = list(unfit_joints(self, joints))
         yield from unfit or self._of_another_dimension(joints)
 

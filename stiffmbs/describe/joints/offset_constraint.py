@@ -1,11 +1,11 @@
-"""One equation that holds from the drawn poses on."""
+"""One equation that holds from the initial poses on."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
 from ..element import Joint, Symbolic
-from ..initial_pose import drawn
+from ..initial_pose import initial_element
 from ..units import si
 
 if TYPE_CHECKING:
@@ -33,5 +33,5 @@ class OffsetConstraint(Joint):
     def at_initial_pose(self, model: ModelData) -> Self:
         if self.offset is not None:
             return self
-        at_start = self.relation(drawn(self.model_copy(update={"offset": 0.0}), model))
+        at_start = self.relation(initial_element(self.model_copy(update={"offset": 0.0}), model))
         return self.model_copy(update={"offset": float(at_start)})

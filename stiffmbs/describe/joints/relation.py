@@ -24,7 +24,7 @@ class Relation(OffsetConstraint):
     wanted: ClassVar[Mapping[str, str]] = {}
     carried: ClassVar[bool] = False
 
-    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         """Joints without such a coordinate, one coordinate named twice, two joints without a common carrier."""
         yield from unfit_joints(self, joints, self.wanted)
         (_, first), (field, second) = self.parts(JointName)

@@ -33,6 +33,7 @@ class MirroredNames(ast.NodeTransformer):
         self.frame, self.inside = frame, inside
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """A coordinate of the mirror image, with its sign."""
         body = node.value.id  # type: ignore[attr-defined]
         if body == UNIT:
             return node
@@ -52,6 +53,7 @@ class MirroredNames(ast.NodeTransformer):
         )
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
+        """A measure of the mirror image, with its sign."""
         if not is_measure(node):
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
         name: str = node.func.id  # type: ignore[attr-defined]

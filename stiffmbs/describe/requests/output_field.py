@@ -32,6 +32,7 @@ class _Terms(ast.NodeTransformer):
         self.found: list[Term] = []
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
+        """A placeholder for a measure or an action; other functions stay."""
         name = node.func.id  # type: ignore[attr-defined]
         if name in self._names.measures:
             term = self._measure(name, node)
@@ -147,6 +148,7 @@ class RequestField(OutputField):
     """Marks a field as the formula of a request, or formulas by the names of their components."""
 
     def read(self, found: Any, context: Mapping[str, Any]) -> Any:
+        """One formula, or several by name."""
         if not isinstance(found, Mapping):
             return super().read(found, context)
         if not found:

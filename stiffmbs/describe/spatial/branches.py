@@ -24,7 +24,7 @@ HALF_TURNS = tuple(np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, 
 
 
 def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a joint that keeps the axes z of two markers parallel or opposite cannot be assembled from the drawn poses."""
+    """Why a joint that keeps the axes z of two markers parallel or opposite cannot be assembled from the initial poses."""
     angle = _between_axes(model, i, j)
     if min(angle, 180 - angle) >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -44,7 +44,7 @@ def initially_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[s
 
 
 def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a joint that keeps the axes z of two markers at right angles cannot be assembled from the drawn poses."""
+    """Why a joint that keeps the axes z of two markers at right angles cannot be assembled from the initial poses."""
     angle = _between_axes(model, i, j)
     if abs(angle - 90) >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -54,7 +54,7 @@ def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 
 
 def initially_rotated(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a joint that keeps all axes of two markers parallel cannot be assembled from the drawn poses."""
+    """Why a joint that keeps all axes of two markers parallel cannot be assembled from the initial poses."""
     angle = _angle(_between_frames(model, i, j))
     if angle >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -93,13 +93,13 @@ def initially_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 
 
 def _between_axes(model: ModelData, i: Marker, j: Marker) -> float:
-    """The angle between the axes z as drawn, deg."""
+    """The angle between the axes z at the initial pose, deg."""
     a, b = model.initial_marker(i), model.initial_marker(j)
     return math.degrees(math.acos(np.clip(a.z @ b.z, -1, 1)))
 
 
 def _between_frames(model: ModelData, i: Marker, j: Marker) -> np.ndarray:
-    """The rotation matrix from marker j to marker i as drawn."""
+    """The rotation matrix from marker j to marker i at the initial pose."""
     a, b = model.initial_marker(i), model.initial_marker(j)
     return b.axes.T @ a.axes
 

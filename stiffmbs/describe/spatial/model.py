@@ -69,7 +69,7 @@ class SpatialData(ModelData):
         yield from turnings(bodies)
 
     def initial_marker(self, marker: MarkerReference) -> InitialMarker:
-        """A marker with numbers, in ground axes, as the bodies are drawn."""
+        """A marker with numbers, in ground axes, at the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialMarker(np.array(placed.point), matrix(placed.orientation))

@@ -149,7 +149,7 @@ def check_states(
             check_reactions(where, formula, joints)
             if known is not None:
                 check_states_of(where, formula, known)
-            for reason in names.refused(formula):
+            for reason in names.validation_errors(formula):
                 raise ValueError(f"{where}: {reason}")
 
 

@@ -14,6 +14,7 @@ from ...describe.marker import GROUND, MarkerReference
 from ...describe.model_data import ModelData
 from ...errors import InputError
 from .frames import rotation
+from .scene_graph import Anchor
 
 Channels = Mapping[str, np.ndarray]
 
@@ -52,6 +53,40 @@ class Poses:
             for part in (self.points, self.orientations, self.forces)
         ]
         return Poses(self.time[rows], *pick)
+
+    def resampled(self, time: np.ndarray) -> Poses:
+        """The poses at other instants, between those that are known: points and forces by straight lines, turns the shorter way."""
+        known = np.isfinite(np.column_stack([self.time, *self.points.values()])).all(axis=1)
+        rows = self.at(np.flatnonzero(known)) if not known.all() else self
+        after = np.clip(np.searchsorted(rows.time, time, side="right"), 1, max(len(rows.time) - 1, 1))
+        before = after - 1
+        after = np.minimum(after, len(rows.time) - 1)
+        span = rows.time[after] - rows.time[before]
+        part = np.clip(np.where(span > 0, (time - rows.time[before]) / np.where(span > 0, span, 1.0), 0.0), 0.0, 1.0)[
+            :, None
+        ]
+
+        def between(values: np.ndarray) -> np.ndarray:
+            return np.asarray(values[before] + part * (values[after] - values[before]))
+
+        def turned(p: np.ndarray) -> np.ndarray:
+            sign = np.where(np.sum(p[before] * p[after], axis=1) < 0, -1.0, 1.0)[:, None]
+            found = p[before] + part * (sign * p[after] - p[before])
+            return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+
+        return Poses(
+            time,
+            {name: between(values) for name, values in rows.points.items()},
+            {name: turned(values) for name, values in rows.orientations.items()},
+            {name: between(values) for name, values in rows.forces.items()},
+        )
+
+    def path(self, anchor: Anchor) -> np.ndarray:
+        """Where a point of a body is over time, in ground axes, shape (n, 3)."""
+        if anchor.body == GROUND:
+            return np.tile(anchor.point, (len(self.time), 1))
+        turned = rotation(self.orientations[anchor.body]) @ anchor.point
+        return np.asarray(self.points[anchor.body] + turned)
 
 
 def placed(data: ModelData, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:

@@ -143,7 +143,7 @@ def _side(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> _Side:
 
 
 def _values(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """The event functions at a state, which the mechanics' own becomes."""
+    """The event functions at a state, which the dynamics' own becomes."""
     state = dynamics.state
     state.q[:], state.u[:] = q, u
     state.evaluate("event_function", t)

@@ -18,7 +18,7 @@ class EventSearch:
     Parameters
     ----------
     state : State
-    waits : ndarray of int, shape (n_switches,), optional
+    masked : ndarray of int, shape (n_switches,), optional
         An event function that waits (above zero) is not looked at.
 
     Attributes
@@ -29,7 +29,7 @@ class EventSearch:
         1 for the functions of the last event, 0 for others.
     """
 
-    def __init__(self, state: State, waits: np.ndarray | None = None) -> None:
+    def __init__(self, state: State, masked: np.ndarray | None = None) -> None:
         system = state.system
         state.load("event_function")
         n, n_event_functions, n_state = (
@@ -49,7 +49,7 @@ class EventSearch:
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high")  # fmt: skip
         self._arrays = {
-            "n": n, "n_event_functions": n_event_functions, "waits": np.zeros(n_event_functions, dtype=np.int64) if waits is None else waits,
+            "n": n, "n_event_functions": n_event_functions, "masked": np.zeros(n_event_functions, dtype=np.int64) if masked is None else masked,
             "first_edge": first_edge, "edges": edges, "period": period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
             "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,

@@ -34,30 +34,30 @@ class MaskedEvents:
 
     Attributes
     ----------
-    waits : ndarray of int
+    steps : ndarray of int
         Steps from the next start on for which each event_function is not to be looked at.
     """
 
     def __init__(self, dynamics: Dynamics, chattering: Chattering) -> None:
         self._dynamics, self._chattering = dynamics, chattering
         n = dynamics.system.n_event_functions
-        self.waits, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
+        self.steps, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         self._steps = 0
 
     @property
     def any(self) -> bool:
         """Whether the system has event functions."""
-        return bool(len(self.waits))
+        return bool(len(self.steps))
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
-        """Take note of the end of a leg, after so many steps of the run, by the event functions that have fired.
+        """Take note of the end of a segment, after so many steps of the run, by the event functions that have fired.
 
         Raises
         ------
         SolverError
             Where a force keeps jumping back and forth; names the element.
         """
-        left_behind = steps - self._steps > TIMES_THE_WAIT * self.waits + FEW_STEPS
+        left_behind = steps - self._steps > TIMES_THE_WAIT * self.steps + FEW_STEPS
         self._steps = steps
         self._in_succession[left_behind] = 0
         again = np.array(
@@ -67,9 +67,9 @@ class MaskedEvents:
         telling = again[self._in_succession[again] >= TELLING]
         if len(telling):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
-        self.waits = np.where(self._in_succession, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 1, 0), 0)
+        self.steps = np.where(self._in_succession, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 1, 0), 0)
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Why the integrator could not go on, where a force that jumps is the reason; empty for other reasons."""
-        found = jumping(self._dynamics, t, q, u) if self.any else self.waits
+        found = jumping(self._dynamics, t, q, u) if self.any else self.steps
         return jump_sentence(self._dynamics, int(found[0])) if len(found) else ""

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..dynamics import Dynamics
 
-MOST_TOLD = 3
+MOST_MESSAGES = 3
 """Jumps that are told one by one."""
 WORTH_TELLING = 1e-2
 """Change of a velocity at a breakpoint, relative to the largest, that no error of an integrator explains."""
@@ -22,25 +22,25 @@ class VelocityJumps:
 
     def __init__(self, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
-        self._told: list[str] = []
+        self._messages: list[str] = []
 
     def note(self, t: float, change: np.ndarray) -> None:
-        """Note a change of velocities at a breakpoint; the mechanics' state is the one behind it."""
+        """Note a change of velocities at a breakpoint; the dynamics' state is the one behind it."""
         if not change.any():
             return
         k = int(np.argmax(np.abs(change)))
         if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self._dynamics.state.u)))):
             system = self._dynamics.system
             name = system.name_of(k, system.of_body.velocities)
-            self._told.append(
+            self._messages.append(
                 f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); no force shows that blow"
             )
 
     def clear(self) -> None:
         """Forget them, for another run."""
-        self._told.clear()
+        self._messages.clear()
 
     def sentence(self) -> str:
         """What the user should know; empty for nothing."""
-        more = len(self._told) - MOST_TOLD
-        return "; ".join([*self._told[:MOST_TOLD], *([f"and {more} more such jumps"] if more > 0 else [])])
+        more = len(self._messages) - MOST_MESSAGES
+        return "; ".join([*self._messages[:MOST_MESSAGES], *([f"and {more} more such jumps"] if more > 0 else [])])

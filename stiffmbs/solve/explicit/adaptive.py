@@ -29,14 +29,14 @@ WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
 MOST_LOOKS_APART = 16
 SOON_AGAIN, NOW_AND_THEN = 4, 8
-"""Steps of a leg up to which its end is looked at for a force that jumps back and forth, and events of which one is in any case."""
+"""Steps of a segment up to which its end is looked at for a force that jumps back and forth, and events of which one is in any case."""
 SOON = 8
 """A look comes sooner where stability holds back one in so many of the steps until then."""
 
 
 @dataclass(frozen=True)
 class Leaving:
-    """When a run is to be left to another solver: asked after so many steps of a leg, then after a few times as many."""
+    """When a run is to be left to another solver: asked after so many steps of a segment, then after a few times as many."""
 
     first: int
     pays: Callable[[Integration], bool]
@@ -64,7 +64,7 @@ class AdaptiveRun:
         self.left = False
         self._scheme, self._dynamics, self._start, self._grid = scheme, dynamics, start, grid
         self._settings, self._watch = settings, watch
-        self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.room + 1)
+        self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.capacity + 1)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
         features = dynamics.input_features(grid.start, grid.end)
@@ -73,7 +73,7 @@ class AdaptiveRun:
         self._tolerances = settings.rtol, work.atol
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
-        self._begun = 0  # steps before the present leg
+        self._begun = 0  # steps before the present segment
 
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:
         """Integrate to the end, or to where the run is left; the contract is in `stiffmbs.solve.trajectory`."""
@@ -102,7 +102,7 @@ class AdaptiveRun:
     def _segment(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
         work, advance, status = self.work, ADVANCE.load(), PAUSED
-        most = min(leaving.first, work.room) if leaving else work.room
+        most = min(leaving.first, work.capacity) if leaving else work.capacity
         work.h = first_step(self._scheme, self._dynamics, self._start, work.t, self._grid.end, self._tolerances)
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
@@ -116,7 +116,7 @@ class AdaptiveRun:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
-            most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.room) if leaving else most
+            most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.capacity) if leaving else most
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
                 self._store_rows()

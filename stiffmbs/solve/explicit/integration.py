@@ -23,11 +23,11 @@ MOST_STEPS, MOST_VALUES = 1024, 300_000
 
 
 class Integration:
-    """State, stages and counters of one integration, and room for the rows that one call stores.
+    """State, stages and counters of one integration, and memory for the rows that one call stores.
 
     Attributes
     ----------
-    room : int
+    capacity : int
         Most steps, and most rows, of one call.
     step_times : list of ndarray
         Ends of the steps of each call.
@@ -41,7 +41,7 @@ class Integration:
     ) -> None:
         self._n_q = len(start.q)
         n = self._n_q + len(start.u)
-        self.room = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
+        self.capacity = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been taken over
         self._dynamics = dynamics
@@ -61,13 +61,13 @@ class Integration:
             "longest": settings.max_step or np.inf, "step_bound": self.step_bound.table,
             "shortest": SHORTEST_PART * (grid.end - grid.start),
             "t": grid.start, "t_before": grid.start, "h": settings.step,
-            "n_event_functions": n_event_functions, "n_events": dynamics.system.n_values("event_function"), "sides": np.zeros(n_event_functions),
+            "n_event_functions": n_event_functions, "n_events": dynamics.system.n_values("event_function"), "signs": np.zeros(n_event_functions),
             "watch": self._watch.table,
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": len(times), "times": times,
-            "room": self.room, "row_t": np.empty(self.room), "row_y": np.empty((self.room, n)),
-            "ends": np.empty(self.room),
+            "capacity": self.capacity, "row_t": np.empty(self.capacity), "row_y": np.empty((self.capacity, n)),
+            "ends": np.empty(self.capacity),
         }  # fmt: skip
         self._table = packed(EXPLICIT, self._arrays)
         self._cells = cells(self._table, EXPLICIT)
@@ -112,11 +112,11 @@ class Integration:
         rates = self._dynamics.position_rates(start.q, start.u)
         self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
         self._cells["last_error"], self._cells["at_event"] = 0.0, 0
-        state, sides = self._dynamics.state, self._arrays["sides"]
+        state, signs = self._dynamics.state, self._arrays["signs"]
         state.q[:], state.u[:] = start.q, start.u
         state.evaluate("event_function", self.t)
-        sides[:] = state.values["event_function"][: len(sides)]
-        met = np.flatnonzero(self._watch.found[: len(sides)])
+        signs[:] = state.values["event_function"][: len(signs)]
+        met = np.flatnonzero(self._watch.found[: len(signs)])
         self._watch.begin()
         return int(met[0]) if len(met) else -1
 
@@ -125,10 +125,10 @@ class Integration:
         return int(self._cells[name])
 
     def collect(self, rows: Rows) -> None:
-        """Take over the rows and ends of steps that the last call stored, and make room for the next."""
+        """Take over the rows and ends of steps that the last call stored, and leave their memory to the next."""
         count, before = self.count("rows"), self._collected
         y = self._arrays["row_y"][:count]
         rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :])
         self._cells["rows"] = 0
         self._collected = self.count("steps")
-        self.step_times.append(self._arrays["ends"][np.arange(before, self._collected) % self.room])
+        self.step_times.append(self._arrays["ends"][np.arange(before, self._collected) % self.capacity])

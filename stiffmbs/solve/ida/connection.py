@@ -51,7 +51,7 @@ class Connection:
     error_norm : ErrorNorm
     step_bound : StepBound
     n_event_functions : int
-    sides, waits : ndarrays, shape (n_switches,)
+    signs, masked : ndarrays, shape (n_switches,)
         As in `stiffmbs.solve.native.event_signs`.
     watch : EventSearch
     history : StepLog
@@ -75,8 +75,8 @@ class Connection:
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
         self.n_event_functions = equations.system.n_event_functions
-        self.sides, self.waits = np.zeros(self.n_event_functions), np.zeros(self.n_event_functions, dtype=np.int64)
-        self.watch = EventSearch(state, self.waits)
+        self.signs, self.masked = np.zeros(self.n_event_functions), np.zeros(self.n_event_functions, dtype=np.int64)
+        self.watch = EventSearch(state, self.masked)
         for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "event_function"):
             state.load(term_set)
         self._table = self._packed()
@@ -96,7 +96,7 @@ class Connection:
                 "state": self._state_table, "equations": self._equations_table,
                 "array_of": address("N_VGetArrayPointer"),
                 "matrix": self._assembled.values, "pattern": self._assembled.pattern,
-                "n_event_functions": self.n_event_functions, "sides": self.sides, "waits": self.waits,
+                "n_event_functions": self.n_event_functions, "signs": self.signs, "masked": self.masked,
                 "memory": self.memory, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
                 "n_reported": len(self.reported), "reported": self.reported,
@@ -104,7 +104,7 @@ class Connection:
                 "time_of": address("IDAGetCurrentTime"), "order_of": address("IDAGetLastOrder"),
                 "step_of": address("IDAGetLastStep"), "stop_at": address("IDASetStopTime"),
                 "next_step_of": address("IDAGetCurrentStep"), "step_bound": self.step_bound.table,
-                "history": self.history.room(MOST_STEPS), "samples": self.samples,
+                "history": self.history.rows(MOST_STEPS), "samples": self.samples,
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table, "probe": self._probe,
             },
         )  # fmt: skip
@@ -156,7 +156,7 @@ class Connection:
         for cell, value in (("returned", t), ("internal", t), ("size", 0.0), ("tiny", 0), ("since_sample", 0)):
             self.cells[cell] = value
         self.samples[:] = np.nan
-        self.sides[:] = 0.0
+        self.signs[:] = 0.0
         self.watch.begin()
         self.iteration.begin()
         self.history.begin(t)
@@ -173,7 +173,7 @@ class Connection:
         self.ask("IDASetId", self._session.vector(self._id))
         self.ask("IDASetSuppressAlg", 1)
 
-    def doubt_rates(self) -> None:
+    def take_own_convergence_test(self) -> None:
         """Have Newton's iteration judged by a convergence rate that worsens with the age of the iteration matrix."""
         solver = self.iteration.solver(self._session, self.memory, self.y_vector)
         self.ask("IDASetNonlinearSolver", solver)

@@ -48,7 +48,7 @@ class Engine(Protocol):
     def see_inputs(self, features: InputFeatures) -> None:
         """Take no step that might miss what the inputs do, from the next start on."""
 
-    def leave_out(self, waits: np.ndarray) -> None:
+    def leave_out(self, masked: np.ndarray) -> None:
         """Do not look at each event function for so many steps from the next start on."""
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:

@@ -126,7 +126,7 @@ class NativeIda:
         if growth is not None:
             ida.ask("IDASetEtaFixedStepBounds", 1.0, growth)
         if predicted_residual:
-            ida.doubt_rates()
+            ida.take_own_convergence_test()
 
     @property
     def t(self) -> float:
@@ -153,9 +153,9 @@ class NativeIda:
         """Have the next call of `advance` or `steps` return after so many steps at the latest."""
         self._look = max(steps, 1)
 
-    def leave_out(self, waits: np.ndarray) -> None:
+    def leave_out(self, masked: np.ndarray) -> None:
         """Do not look at each event function for so many steps from the next beginning on."""
-        self._ida.waits[:] = waits
+        self._ida.masked[:] = masked
 
     def see_inputs(self, features: InputFeatures) -> None:
         """Take no step that might miss what the inputs do."""
@@ -275,7 +275,7 @@ class NativeIda:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
         found = np.zeros(self.n_event_functions, dtype=np.intc)
         self._ida.ask("IDAGetRootInfo", found.ctypes.data)
-        return found * self._ida.sides.astype(np.intc)
+        return found * self._ida.signs.astype(np.intc)
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
         """The solution, or one of its derivatives up to the last order, at a time within the last step.

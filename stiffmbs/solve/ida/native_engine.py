@@ -13,7 +13,7 @@ from ...describe.settings import RunSettings
 from ..error_control.error_test import ErrorControl
 from ..error_control.newton import NUMBERS_END, Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
-from ..storage import blocks, release, room
+from ..storage import allocated, blocks, release
 from ..trajectory import History
 from .engine import Reached
 from .ida import NativeIda
@@ -69,9 +69,9 @@ class NativeEngine:
         """Take no step that might miss what the inputs do."""
         self._ida.see_inputs(features)
 
-    def leave_out(self, waits: np.ndarray) -> None:
+    def leave_out(self, masked: np.ndarray) -> None:
         """Do not look at each event function for so many steps."""
-        self._ida.leave_out(waits)
+        self._ida.leave_out(masked)
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
         """Start, or start anew, at consistent values."""
@@ -107,7 +107,7 @@ class NativeEngine:
         status, served = Status.GOING, 0
         while status is Status.GOING:
             times = times[served:]
-            rows = room(len(times), self._width)
+            rows = allocated(len(times), self._width)
             served, status = self._ida.advance(times, stop, rows)
             *earlier, last = list(blocks(served)) or [slice(0, 0)]
             for block in earlier:

@@ -19,14 +19,14 @@ class StepLog:
     """
 
     def __init__(self) -> None:
-        self._room = np.empty((0, WIDTH))
+        self._rows = np.empty((0, WIDTH))
         self._chunks: list[np.ndarray] = []
         self.count = self._kept = 0
 
-    def room(self, steps: int) -> np.ndarray:
+    def rows(self, steps: int) -> np.ndarray:
         """Memory for the steps of one call, one row each: time of the end, order, size."""
-        self._room = np.empty((steps, WIDTH))
-        return self._room
+        self._rows = np.empty((steps, WIDTH))
+        return self._rows
 
     def forget(self) -> None:
         """Drop all steps."""
@@ -42,11 +42,11 @@ class StepLog:
                 last[0] = t
 
     def add(self, steps: int) -> None:
-        """Keep the first rows of the room."""
+        """Keep the first rows."""
         self.count += steps
         kept = min(steps, MOST_KEPT - self._kept)
         if kept > 0:
-            self._chunks.append(self._room[:kept].copy())
+            self._chunks.append(self._rows[:kept].copy())
             self._kept += kept
 
     def _all(self) -> np.ndarray:

@@ -49,7 +49,7 @@ class Callbacks:
 
     Attributes
     ----------
-    waits : ndarray of int
+    masked : ndarray of int
         For how many steps each event function is still left out (`stiffmbs.solve.native.event_signs`).
     """
 
@@ -61,11 +61,11 @@ class Callbacks:
         slots = rows * equations.n + columns if dense else None
         self._ends = np.zeros(MOST_ENDS)
         n_event_functions = state.system.n_event_functions
-        self._sides, self.waits = np.zeros(n_event_functions), np.zeros(n_event_functions, dtype=np.int64)
+        self._signs, self.masked = np.zeros(n_event_functions), np.zeros(n_event_functions, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
             "state": state.table, "equations": self._equations_table, "n_ends": MOST_ENDS, "ends": self._ends,
-            "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "sides": self._sides, "waits": self.waits,
+            "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "signs": self._signs, "masked": self.masked,
         }  # fmt: skip
         table = packed(IDA, fields)
         self._kept, self._cells = (state, equations, slot_of_entry, table), cells(table, IDA)
@@ -104,9 +104,9 @@ class Callbacks:
         return event_functions
 
     def begin(self, t: float) -> None:
-        """Go on with the history from an instant at which IDA starts anew, and look at the event functions' sides again."""
+        """Go on with the history from an instant at which IDA starts anew, and look at the event functions' signs again."""
         self._cells["last_time"] = t
-        self._sides[:] = 0.0
+        self._signs[:] = 0.0
 
     @property
     def steps(self) -> int:
@@ -180,9 +180,9 @@ class SundaeEngine:
         """Stop where a longer step might miss what the inputs do; IDA goes on from there with its history."""
         self._features = features
 
-    def leave_out(self, waits: np.ndarray) -> None:
+    def leave_out(self, masked: np.ndarray) -> None:
         """Do not look at each event function for so many steps."""
-        self.callbacks.waits[:] = waits
+        self.callbacks.masked[:] = masked
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
         """Start, or start anew, at consistent values; scikit-sundae keeps IDA's own tolerance of Newton's iteration."""

@@ -24,7 +24,7 @@ from stiffmbs.compile.machine.native.evaluate import (
 )
 from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
 from stiffmbs.compile.machine.native.orientation import take_unit_length
-from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_ROOM, NOT_FINITE, SINGULAR
+from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NOT_FINITE, SINGULAR
 
 MOST_MOVES = 20
 """Newton's moves back to the constraints, from a state that was near them."""
@@ -63,7 +63,7 @@ def largest_open(s, violation):
 
 
 @compiled
-def _largest_gap(s, violation):
+def _largest_violation(s, violation):
     """The largest violation of a joint: the norm over its equations (for a pin the distance of its two points)."""
     largest = 0.0
     for joint in range(s.n_joints):
@@ -82,7 +82,7 @@ def _solved(s, equations, factors, values):
     add_entries(e, values, 0.0, matrix.a)
     outcome = factored(factors)
     if outcome == FULL:
-        return NO_ROOM
+        return NO_MEMORY
     if outcome != DONE:
         return SINGULAR if isfinite(largest_of(matrix.a, matrix.a_start[matrix.n])) else NOT_FINITE
     f = factors_view(factors)  # the memory may have grown
@@ -96,10 +96,10 @@ def to_position_constraints(s, m, t, tolerance, most):
     """Newton's smallest moves until |C| <= tolerance, or rounding; the number of moves, or a negative status."""
     for move in range(most):
         values = evaluate(s, POSITION, t)
-        gap = largest_open(s, values)
-        if gap <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose)):
+        violation = largest_open(s, values)
+        if violation <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose)):
             return move
-        if not isfinite(gap):
+        if not isfinite(violation):
             return NOT_FINITE
         status = _solved(s, m.positions, m.position_factors, values)
         if status < 0:
@@ -188,12 +188,12 @@ def accelerate(t, acceleration, dynamics):
 
 
 @compiled
-def _led_astray(s, q, gap):
+def _led_astray(s, q, violation):
     """Whether a projection has moved a coordinate from q by far more than the violation asks for."""
     moved = 0.0
     for k in range(s.n_q):
         moved = max(moved, abs(s.q[k] - q[k]))
-    return moved > AMPLIFIED * gap and moved > MOVED * largest_of(s.q, s.n_q)
+    return moved > AMPLIFIED * violation and moved > MOVED * largest_of(s.q, s.n_q)
 
 
 @compiled
@@ -204,7 +204,7 @@ def _output_point(s, m, t, q, project, tolerance, largest):
     for k in range(s.n_q):
         q[k] = s.q[k]
     if project:
-        largest[2] = _largest_gap(s, evaluate(s, POSITION, t))
+        largest[2] = _largest_violation(s, evaluate(s, POSITION, t))
         status = to_position_constraints(s, m, t, tolerance, MOST_MOVES)
         if status < 0:
             return status
@@ -214,8 +214,8 @@ def _output_point(s, m, t, q, project, tolerance, largest):
         if status < 0:
             return status
     values = evaluate(s, MOTION, t)
-    largest[0] = _largest_gap(s, values)
-    largest[1] = _largest_gap(s, shifted(values, s.n_c))
+    largest[0] = _largest_violation(s, values)
+    largest[1] = _largest_violation(s, shifted(values, s.n_c))
     status = to_accelerations(s, m, t)
     if status < 0:
         return status
@@ -229,7 +229,7 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
     q and u (rows of n_q, n_u) are brought back to the constraints where `project` asks for it; written are u', lam,
     the values of the output terms, and in `largest` three numbers a row: the violations of positions and of
     velocities (largest of a joint), and of positions before the projection.  Where an instant has no solution, the
-    mechanics' `status` holds why.
+    dynamics' `status` holds why.
     """
     m = dynamics_view(dynamics)
     s = state_view(m.state)

@@ -117,12 +117,12 @@ def eliminated_accelerations(r, s, t):
 
 
 @compiled
-def smallest_move(r, s, gaps):
-    """In r.a, the smallest change of velocities in the mass matrix, or move of the pose, that closes small gaps; by J and the
+def smallest_move(r, s, violations):
+    """In r.a, the smallest change of velocities in the mass matrix, or move of the pose, that closes small violations; by J and the
     factors of the last accelerations."""
     for k in range(s.n_c):
         if r.at_lam[k] >= 0:
-            r.b[r.at_lam[k]] = gaps[k]
+            r.b[r.at_lam[k]] = violations[k]
     _forward(r)
     _backward(r)
     for k in range(r.n_u):

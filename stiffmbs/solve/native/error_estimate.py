@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.stages import add_stages, load_state
 from stiffmbs.solve.native.within_step import event_search_view, noted, zone
 
-DOUBTED = 1e3
+UNTRUSTED = 1e3
 """The error that a step counts for which cannot be trusted."""
 UNSEEN = 1e-2
 """Estimated error, relative to how far the last stage is from the end, below which the schemes say nothing of it."""
@@ -63,8 +63,8 @@ def _sees_other_laws(x, h):
 
 
 @compiled
-def error_or_doubt(x, c, h):
-    """The estimated error over the tolerance, or at least `DOUBTED` where the stages have gone astray.
+def trusted_error(x, c, h):
+    """The estimated error over the tolerance, or at least `UNTRUSTED` where the stages have gone astray.
 
     Stages that leave a stiff contact at its far side see no force there; all differences between schemes then cancel, and
     the estimate is zero for a step that is nonsense.  The last stage, at the step's end, is then further from the end
@@ -82,4 +82,4 @@ def error_or_doubt(x, c, h):
     if not (astray > way and astray > x.n):
         return error
     unseen = c.n_errors == 2 or error * error * x.n < UNSEEN * UNSEEN * astray
-    return max(error, DOUBTED) if unseen or _sees_other_laws(x, h) else error
+    return max(error, UNTRUSTED) if unseen or _sees_other_laws(x, h) else error

@@ -5,7 +5,7 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
-from stiffmbs.solve.native.error_estimate import DOUBTED, error_or_doubt
+from stiffmbs.solve.native.error_estimate import UNTRUSTED, trusted_error
 from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state, weighted
 from stiffmbs.solve.native.within_step import (
@@ -37,7 +37,7 @@ def _values(x, s, y, t):
 @compiled
 def _has_changed(x, values, k):
     """Whether an event function has left the side on which it was at the step's start; from zero it may go either way."""
-    return x.sides[k] * values[k] < 0.0 or (values[k] == 0.0 and x.sides[k] != 0.0)
+    return x.signs[k] * values[k] < 0.0 or (values[k] == 0.0 and x.signs[k] != 0.0)
 
 
 @compiled
@@ -69,7 +69,7 @@ def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
 
 
 @compiled
-def _look_between(x, c, s):
+def _look_within(x, c, s):
     """Values of all event functions at `LOOKED_AT`, on the cubic through states and rates at both ends."""
     w = event_search_view(x.watch)
     h, theta = x.span, LOOKED_AT
@@ -107,7 +107,7 @@ def _event_within(x, c, s, m, until):
     small = DIFFERENCE * h
     _note_event_functions(x, s, x.y_before, x.k, x.t_before, small, w.value_before, w.rate_before)
     _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
-    _look_between(x, c, s)
+    _look_within(x, c, s)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
     if _stages_have_changed(x, c, s, until):
@@ -212,11 +212,11 @@ def end_at_event(x, c, s, m):
     behind = max(BEHIND * h, ROUNDINGS * abs(x.t))
     status = _taken_to_event(x, c, s, m, h, behind)
     if status == NO_EVENT:
-        copied(x.sides, _values(x, s, x.y, x.t), x.n_event_functions)
+        copied(x.signs, _values(x, s, x.y, x.t), x.n_event_functions)
         return 0
     if status < 0:
         return status
-    error = error_or_doubt(x, c, x.span) if status == 0 else DOUBTED
+    error = trusted_error(x, c, x.span) if status == 0 else UNTRUSTED
     if not error <= MOST_ERROR:
         return _left(x, c, error)
     _go_past(x, c, s, 2.0 * behind)

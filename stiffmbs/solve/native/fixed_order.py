@@ -34,7 +34,7 @@ def _count_updates(f):
 
 
 @compiled
-def _room_for_list(table, f):
+def _list_memory(table, f):
     """Memory for the factors in `f` and the list of their updates; whether there is some."""
     off_diagonal = f.l_start[f.n] + f.u_start[f.n] - 2 * f.n
     length = 3 * _count_updates(f)
@@ -138,7 +138,7 @@ def setup(solver, matrix):
         return int32(OK)
     known.ready = 0
     outcome = factored_anew(known.factors, known.weight)
-    if outcome == DONE and not _room_for_list(table, factors_view(known.factors)):
+    if outcome == DONE and not _list_memory(table, factors_view(known.factors)):
         outcome = FULL
     known.last_flag = outcome  # SUNLinSolLastFlag gives it
     if outcome != DONE:

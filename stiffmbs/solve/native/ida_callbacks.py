@@ -53,4 +53,4 @@ def event_functions(t, y, yp, values, ida):
     s = state_view(c.state)
     load(s, equations_view(c.equations), _data(y, c.array_header), _data(yp, c.array_header))
     found = evaluate(s, SWITCH, t)
-    watched(found, c.sides, c.waits, _data(values, c.array_header), c.n_event_functions)
+    watched(found, c.signs, c.masked, _data(values, c.array_header), c.n_event_functions)

@@ -95,7 +95,7 @@ def event_functions(t, yy, yp, g, user_data):
     s = state_view(c.state)
     load(s, equations_view(c.equations), _array(c, yy), _array(c, yp))
     values = evaluate(s, SWITCH, t)
-    watched(values, c.sides, c.waits, g, c.n_event_functions)
+    watched(values, c.signs, c.masked, g, c.n_event_functions)
     return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
 
 
@@ -266,7 +266,7 @@ def _served(c, times, count, y_out, yp_out):
 
 
 def advance(count, times, stop, most, y_out, yp_out, ida):
-    """At most `most` steps, and as many as there is room for, towards `stop`, serving output times on the way; returns IDA's last flag.
+    """At most `most` steps, and as many as the history holds, towards `stop`, serving output times on the way; returns IDA's last flag.
 
     The first step's size follows from the distance to the first output time, as in IDA's own mode for them.
     """
@@ -279,18 +279,18 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
             break
         flag = _stepped(c, times[c.served] if c.served < count else stop, stop)
         if flag >= 0:
-            told = _served(c, times, count, y_out, yp_out)
-            flag = told if told < 0 else flag
+            outcome = _served(c, times, count, y_out, yp_out)
+            flag = outcome if outcome < 0 else flag
     return int32(flag)
 
 
-def steps(room, stop, t_out, y_out, ida):
-    """At most `room` steps towards `stop`, each of them reported; returns IDA's last flag."""
+def steps(most, stop, t_out, y_out, ida):
+    """At most `most` steps towards `stop`, each of them reported; returns IDA's last flag."""
     c = native_ida_view(ida)
     c.served = 0
     c.recorded = 0
     flag = int32(OK)
-    while flag == OK and c.served < min(room, MOST_STEPS):
+    while flag == OK and c.served < min(most, MOST_STEPS):
         flag = _stepped(c, stop, stop)
         if flag >= 0:
             k = c.served

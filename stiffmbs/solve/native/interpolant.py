@@ -83,9 +83,9 @@ def interpolated(x, c, theta, target):
 
 @compiled
 def store_rows(x, c, s, m):
-    """Store the states at all output times up to now; 1 when that is done, 0 when the room is full, or a status."""
+    """Store the states at all output times up to now; 1 when that is done, 0 when the memory for rows is full, or a status."""
     while x.next_time < x.n_times and x.times[x.next_time] <= x.t:
-        if x.rows == x.room:
+        if x.rows == x.capacity:
             return 0
         time = x.times[x.next_time]
         target = shifted(x.row_y, x.rows * x.n)

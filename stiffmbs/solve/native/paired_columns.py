@@ -131,7 +131,7 @@ def _upper_items(s, f, item):
 
 
 @compiled
-def _room_for_list(table, f):
+def _list_memory(table, f):
     """Memory for the factors in `f` and their items, of which each has an entry at least; whether there is some."""
     off_diagonal = f.l_start[f.n] + f.u_start[f.n] - 2 * f.n
     if 2 * off_diagonal + f.n > MOST_INDICES:
@@ -222,7 +222,7 @@ def setup(solver, matrix):
         return int32(OK)
     known.ready = 0
     outcome = factored_anew(known.factors, known.weight)
-    if outcome == DONE and not _room_for_list(table, factors_view(known.factors)):
+    if outcome == DONE and not _list_memory(table, factors_view(known.factors)):
         outcome = FULL
     known.last_flag = outcome  # SUNLinSolLastFlag gives it
     if outcome != DONE:

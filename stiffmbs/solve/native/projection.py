@@ -25,15 +25,15 @@ def _by_frozen_factors(r, s, t, tolerance):
 
     Velocities take one move: what it leaves of their violation is as small as the change of J since.
     """
-    gaps = evaluate(s, POSITION, t)
+    violations = evaluate(s, POSITION, t)
     close = max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose))
     for _ in range(MOST_FROZEN_MOVES):
-        if largest_open(s, gaps) > close:
-            smallest_move(r, s, gaps)
+        if largest_open(s, violations) > close:
+            smallest_move(r, s, violations)
             add_rates(s, r.a, 1.0, s.q)
-        gaps = evaluate(s, MOTION, t)
-        if largest_open(s, gaps) <= close:
-            smallest_move(r, s, shifted(gaps, s.n_c))
+        violations = evaluate(s, MOTION, t)
+        if largest_open(s, violations) <= close:
+            smallest_move(r, s, shifted(violations, s.n_c))
             for k in range(s.n_u):
                 s.u[k] += r.a[k]
             take_unit_length(s)

@@ -13,7 +13,7 @@ from stiffmbs.compile.machine.native.access import (
     state_view,
 )
 from stiffmbs.solve.native.attempt import arrive, attempt
-from stiffmbs.solve.native.error_estimate import error_or_doubt
+from stiffmbs.solve.native.error_estimate import trusted_error
 from stiffmbs.solve.native.events import RETRIED, end_at_event
 from stiffmbs.solve.native.interpolant import store_rows, store_step
 from stiffmbs.solve.native.stages import copied
@@ -87,7 +87,7 @@ def _step(x, c, s, m, end):
             copied(x.y, x.y_before, x.n)
             return STEP_TOO_SMALL
         status = attempt(x, c, s, m, h)
-        error = error_or_doubt(x, c, h) if status == 0 else 0.0
+        error = trusted_error(x, c, h) if status == 0 else 0.0
         if not isfinite(error):
             status = NOT_FINITE
         if status == 0 and error <= 1.0:
@@ -115,7 +115,7 @@ def _step(x, c, s, m, end):
 
 
 def advance(end, steps, held, own_steps, explicit):
-    """Integrate towards `end`, for so many steps, until stability has held back `held` of them, or the room for rows is full.
+    """Integrate towards `end`, for so many steps, until stability has held back `held` of them, or the memory for rows is full.
 
     AT_END, AT_EVENT (a force has changed its law there), PAUSED (call again to go on), or a negative status.
     """
@@ -125,7 +125,7 @@ def advance(end, steps, held, own_steps, explicit):
     s = state_view(m.state)
     held += x.stiff_steps
     for _ in range(steps):
-        if x.stiff_steps >= held or (own_steps and x.rows >= x.room):
+        if x.stiff_steps >= held or (own_steps and x.rows >= x.capacity):
             return PAUSED
         stored = store_rows(x, c, s, m)
         if stored < 1:
@@ -141,7 +141,7 @@ def advance(end, steps, held, own_steps, explicit):
             return status
         if status == RETRIED:
             continue
-        x.ends[x.steps % x.room] = x.t
+        x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
         if own_steps:
             store_step(x)

@@ -11,7 +11,7 @@ NOT_FINITE = -3
 """An equation or a solution is not a finite number."""
 NO_BALANCE = -6
 """Friction and the reactions that press it have no unique common solution, or the iteration does not find it."""
-NO_ROOM = -7
+NO_MEMORY = -7
 """There is too little memory for the factors of a block system."""
 
 STEP_TOO_SMALL, STIFF = -4, -5

@@ -99,10 +99,10 @@ def noted_rates(rate, value, nearby, ahead, count):
 
 @compiled
 def _left_out(w, k):
-    """Whether a function is not looked at: it waits, or has no number."""
+    """Whether a function is not looked at: it is masked, or has no number."""
     if not isfinite(w.value_before[k] - w.value_after[k]):
         return True
-    return k < w.n_event_functions and (w.waits[k] > 0 or w.value_before[k] == 0.0)
+    return k < w.n_event_functions and (w.masked[k] > 0 or w.value_before[k] == 0.0)
 
 
 @compiled
@@ -182,7 +182,7 @@ def _cubic(start, start_rate, end, end_rate, x):
 
 @compiled
 def suspicious(w, h, q_before, q_after):
-    """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, leave room for an event."""
+    """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, allow an event."""
     if _turned(w, q_before, q_after, TURNED):
         return True
     for k in range(w.n):

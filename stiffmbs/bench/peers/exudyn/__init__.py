@@ -69,6 +69,7 @@ def marching(built: Bodies | Tree, method: Any, times: np.ndarray, step: float, 
     settings.solution.sensors.writePeriod = max(step, float(times[1] - times[0]))
 
     def solve() -> np.ndarray:
+        """Solve once; the rows of the results."""
         try:
             done = built.mbs.SolveDynamic(settings, solverType=method, showHints=False)
         except Exception as error:  # exudyn raises its own kinds, all of which mean that the solver gave up

@@ -60,10 +60,10 @@ def _reach(f, column):
 
 
 @compiled
-def _more_room(table):
+def _more_memory(table):
     """Memory for the entries that the factors are expected to have, or twice as many as before; whether there is some."""
     f = factors_view(table)
-    capacity = max(f.room, 2 * f.capacity)
+    capacity = max(f.expected_entries, 2 * f.capacity)
     if not (holds(table, L_ROW, capacity, INT) and holds(table, L, capacity, FLOAT)):
         return False
     if not (holds(table, U_ROW, capacity, INT) and holds(table, U, capacity, FLOAT)):
@@ -77,7 +77,7 @@ def factor(table):
     """Find pivots and factors of the matrix, in as much memory as they take; returns DONE, SINGULAR or FULL."""
     while True:
         outcome = _factored_within(factors_view(table))
-        if outcome != FULL or not _more_room(table):
+        if outcome != FULL or not _more_memory(table):
             return outcome
 
 

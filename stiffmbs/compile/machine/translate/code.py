@@ -94,14 +94,14 @@ class Code:
         self.reached = False
 
     def variable(self, kind: str) -> Value:
-        """Room for a value; the optimiser turns it into registers."""
+        """Memory for a value; the optimiser turns it into registers."""
         name = f"%{self.name('at')}"
         self._entry.append(f"{name} = alloca {LLVM_TYPES[kind]}")
         return Value(kind, name)
 
-    def room(self, count: int) -> Value:
-        """Room for some doubles, as long as the function runs."""
-        name = f"%{self.name('room')}"
+    def array(self, count: int) -> Value:
+        """Memory for some doubles, as long as the function runs."""
+        name = f"%{self.name('array')}"
         self._entry.append(f"{name} = alloca [{count} x double]")
         return Value("floats", name)
 

@@ -28,19 +28,19 @@ def torque(element: Any, angles: Angles) -> Written:
 
 def torsion_spring(element: Any, angles: Angles) -> Written:
     """Its angle counted from where it is drawn, where that is far from zero."""
-    drawn = angles.drawn(element.i, element.j)
-    if abs(drawn) <= QUARTER:
+    initial = angles.initial(element.i, element.j)
+    if abs(initial) <= QUARTER:
         return same(element, angles)
-    i = oriented(element.i, angles, lambda angle: turned(angle - drawn))
-    return same(element, angles, i=i, free_angle=element.free_angle - drawn)
+    i = oriented(element.i, angles, lambda angle: turned(angle - initial))
+    return same(element, angles, i=i, free_angle=element.free_angle - initial)
 
 
 def bushing(element: Any, angles: Angles) -> Written:
     """Six components, of which three have neither stiffness nor damping."""
-    drawn = angles.drawn(element.i, element.j)
-    if (element.stiffness[2][2] or element.law_angle is not None) and abs(drawn) >= math.pi:
+    initial = angles.initial(element.i, element.j)
+    if (element.stiffness[2][2] or element.law_angle is not None) and abs(initial) >= math.pi:
         raise InputError(
-            f"found its markers drawn {math.degrees(drawn):.4g} degrees apart, expected less than half a turn in space"
+            f"found its markers drawn {math.degrees(initial):.4g} degrees apart, expected less than half a turn in space"
         )
     law = element.law_angle
     return same(

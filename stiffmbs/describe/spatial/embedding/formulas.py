@@ -49,6 +49,7 @@ class _Renamed(ast.NodeTransformer):
         self.any = False
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """A coordinate of the plane as one in space."""
         owner, data = node.value.id, self._angles.data  # type: ignore[attr-defined]
         if owner in data.requests or owner == UNIT:
             return node
@@ -64,6 +65,7 @@ class _Renamed(ast.NodeTransformer):
         return node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
+        """A measure of the plane as one in space."""
         called = node.func.id  # type: ignore[attr-defined]
         if called not in (*OF_PLANE.measures, *OF_PLANE.actions):
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])

@@ -7,7 +7,7 @@ from typing import Any
 
 from ....errors import InputError
 from ...element import JointName
-from ...initial_pose import drawn
+from ...initial_pose import initial_element
 from ...joints.relation import Relation
 from ..branches import FARTHEST
 from .angles import TURN, Angles
@@ -17,7 +17,7 @@ from .markers import Written, along
 
 def prismatic(joint: Any, angles: Angles) -> Written:
     """Along z of markers that are turned; the one in space would keep a half turn that it is drawn with."""
-    apart = math.degrees(abs(math.remainder(angles.drawn(joint.i, joint.j), TURN)))
+    apart = math.degrees(abs(math.remainder(angles.initial(joint.i, joint.j), TURN)))
     if apart >= FARTHEST:
         raise InputError(f"found its markers drawn {apart:.4g} degrees apart, expected less than {FARTHEST:g} in space")
     return point_on_line(joint, angles)
@@ -33,7 +33,7 @@ def relation(joint: Relation, angles: Angles) -> Written:
     if joint.offset is None:
         return same(joint, angles)
     data = angles.data
-    e = drawn(joint.model_copy(update={"offset": 0.0}), data)
+    e = initial_element(joint.model_copy(update={"offset": 0.0}), data)
     for field, name in joint.parts(JointName):
         coordinate = getattr(e, field)
         counted = name.coordinate_of(data.joints[name.joint]) == "angle"

@@ -120,7 +120,11 @@ class Elastic(Force):
     def turned(cls, e: Symbolic) -> Any:
         """How marker i is turned, or only tilted, against marker j."""
         resisted = cls.resisted(e)
-        return e.tilt(e.i, e.j, resisted.index(False)) if resisted.count(False) == 1 else e.turn(e.i, e.j)
+        return (
+            e.shortest_rotation(e.i, e.j, resisted.index(False))
+            if resisted.count(False) == 1
+            else e.relative_rotation(e.i, e.j)
+        )
 
     @classmethod
     def deformation(cls, e: Symbolic) -> list[Any]:
@@ -163,7 +167,7 @@ class Elastic(Force):
     @classmethod
     def limits(cls, e: Symbolic) -> Any:
         """How far the bodies may turn, where moments depend on it."""
-        return [cls.turned(e).room] if any(cls.resisted(e)) else []
+        return [cls.turned(e).margin] if any(cls.resisted(e)) else []
 
 
 class Connection(Elastic):

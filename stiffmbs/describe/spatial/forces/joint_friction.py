@@ -47,8 +47,8 @@ class JointFriction(AnyJointFriction):
         None, description="at which a prismatic joint's guide takes the moment about its line, m"
     )
 
-    def refused(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        yield from super().refused(joints)
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        yield from super().validation_errors(joints)
         joint = joints[self.joint.joint]
         for field, sorts in (("thrust_radius", (PIN,)), ("torsion_radius", (GUIDE,)), ("length", (PIN, SLEEVE, GUIDE))):
             if getattr(self, field) is not None and joint.coordinates not in sorts:

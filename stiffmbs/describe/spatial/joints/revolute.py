@@ -48,6 +48,7 @@ class Revolute(Joint):
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
+        """Force across and along the axis, and the moment across it."""
         from sympy import Matrix
 
         force, z = Matrix(e.lam[:3]), e.j.z

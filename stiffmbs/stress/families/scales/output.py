@@ -16,7 +16,7 @@ from .long_runs import bar_pendulum
 
 
 def _angle(solution: Solution) -> float:
-    """In blocks, as ten million angles take their room."""
+    """In blocks, as ten million angles take much memory."""
     worst = 0.0
     for first in range(0, len(solution.t), 100_000):
         part = slice(first, first + 100_000)

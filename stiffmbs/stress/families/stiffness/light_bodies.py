@@ -53,6 +53,7 @@ def _hanging(t: np.ndarray, count: int) -> np.ndarray:
     share = count - np.maximum.outer(np.arange(count), np.arange(count))
 
     def rates(_: float, y: np.ndarray) -> np.ndarray:
+        """The rates of all angles and of their speeds."""
         phi, w = y[:count], y[count:]
         apart = np.subtract.outer(phi, phi)
         mass = 0.25 * share * np.cos(apart)

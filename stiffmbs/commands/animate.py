@@ -1,0 +1,81 @@
+"""The command ``stiffmbs animate``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..errors import StiffmbsError
+from ..jobs.load_scene import load_scene
+from .runs import loaded_runs
+from .scene import STOPPED_EARLY, changes_of, file_beside, refuse, refuse_own_input, solve_scene, solving_options
+
+
+@click.command(short_help="A mechanism in motion: a film or a page.")
+@click.argument("scene")
+@click.argument("results", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Where to write: .gif, .mp4 or .html; SCENE.html without it.",
+)
+@click.option(
+    "--view", default="", help="front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees."
+)
+@click.option(
+    "--speed", type=float, default=1.0, show_default=True, help="Seconds of the model in one second of a film."
+)
+@click.option("--rate", type=float, default=25.0, show_default=True, help="Pictures in one second of a film.")
+@click.option(
+    "--trace",
+    "traces",
+    multiple=True,
+    help="A marker, such as coupler.tip, or a body whose path is drawn; any number of times.",
+)
+@click.option("--names/--no-names", default=False, show_default=True, help="Whether a film shows names.")
+@click.option("--forces/--no-forces", default=True, show_default=True, help="Whether a film shows forces, to scale.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was written.")
+@solving_options
+def animate(
+    scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float, rate: float, traces: tuple[str, ...],
+    names: bool, forces: bool, as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Show SCENE in motion: its run, or RESULTS (.npz) of runs and of mode shapes, drawn over each other.
+
+    Exit status: 0 done, 1 stopped early (what was solved is shown) or not written, 2 the input is wrong.
+    """
+    from ..show.drawing.animate import check_animation, check_pace, traced, write_animation
+    from ..show.drawing.film import Pace
+    from ..show.drawing.picture import Shown
+    from ..show.drawing.view import check_view
+
+    path, pace = output or file_beside(scene, ".html"), Pace(speed, rate)
+    try:
+        check_animation(path)
+        check_pace(pace)
+        check_view(view)
+        for read in (scene, *map(str, results)):
+            refuse_own_input("-o", read, path)
+        loaded = load_scene(scene, changes_of(options))
+        traced(loaded, traces)
+        runs = loaded_runs(results) if results else {"": solve_scene(scene, loaded, False)}
+        write_animation(path, loaded, runs, view, pace, Shown(names, forces), traces)
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    except OSError as error:
+        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
+        sys.exit(STOPPED_EARLY)
+    first = next(iter(runs.values()))
+    told = {
+        "scene": scene,
+        "output": str(path),
+        "runs": list(runs),
+        "time": {"start": float(first.time[0]), "end": float(first.time[-1])},
+    }
+    click.echo(json.dumps(told) if as_json else f"animation: {path}")
+    sys.exit(0 if all(run.outcome.name == "DONE" for run in runs.values()) else STOPPED_EARLY)

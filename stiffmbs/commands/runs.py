@@ -1,0 +1,53 @@
+"""Runs that a command shows: a scene that is solved, or files of results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from ..jobs.load_scene import load_scene
+from .scene import changes_of, solve_scene
+
+if TYPE_CHECKING:
+    from ..results.solution import Solution
+
+RESULTS = ".npz"
+"""How the name of a file of results ends."""
+
+
+def loaded_runs(paths: Sequence[Path]) -> dict[str, Solution]:
+    """Runs from files of results, by names that tell them apart.
+
+    Raises
+    ------
+    InputError
+    """
+    from ..results.solution import Solution
+
+    return {_name(path, paths): Solution.load(path) for path in paths}
+
+
+def _name(path: Path, paths: Sequence[Path]) -> str:
+    """The file's name without its endings; all of its path where another one has the same."""
+    stem = path.name.removesuffix(RESULTS).removesuffix(".results")
+    return stem if [other.name for other in paths].count(path.name) == 1 else str(path)
+
+
+def runs_of(source: str, others: Sequence[Path], options: dict[str, Any]) -> dict[str, Solution]:
+    """The run of a scene, or of a file of results, and other runs from files; a run alone has no name.
+
+    Raises
+    ------
+    InputError, AssemblyError, SolverError
+    """
+    if source.endswith(RESULTS):
+        changed = changes_of(options)
+        if changed:
+            raise InputError(f"{source}: found results beside --{changed[0][0]}, expected a scene to solve")
+        paths = [Path(source), *others]
+        runs = loaded_runs(paths)
+        return runs if others else {"": next(iter(runs.values()))}
+    solution = solve_scene(source, load_scene(source, changes_of(options)), False)
+    return {"solved": solution, **loaded_runs(others)} if others else {"": solution}

@@ -1,0 +1,88 @@
+"""Entries of a scene that stay as they are when it is read again with other values.
+
+An entry is the same where its text is the same and names nothing whose value has changed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+
+REUSED = ("bodies", "joints", "forces")
+"""Sections whose entries may be given as what they are once validated."""
+_NAME = re.compile(r"[A-Za-z_]\w*")
+
+
+class Unchanged:
+    """What was validated in the scene that was read first."""
+
+    def __init__(self) -> None:
+        self._scene: Scene | None = None
+        self._raw: Mapping[str, Any] = {}
+        self._context: Mapping[str, Any] = {}
+        self._names: dict[tuple[str, str], frozenset[str]] = {}
+
+    def keep(self, raw: Mapping[str, Any], context: Mapping[str, Any], scene: Scene) -> None:
+        """Remember a scene with its entries before they were validated; only the first one is."""
+        if self._scene is not None:
+            return
+        self._scene, self._raw, self._context = scene, raw, context
+        self._names = {
+            (section, name): frozenset(_names(entry))
+            for section in (*REUSED, "variables")
+            for name, entry in (raw.get(section) or {}).items()
+        }
+
+    def put_into(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+        """The entries of another reading, those that have stayed the same as what they are once validated."""
+        scene = self._scene
+        if scene is None or context["names"] != self._context["names"] or raw.get("dimensions") != self._raw.get("dimensions"):  # fmt: skip
+            return dict(raw)
+        changed = self._changed_names(raw, context)
+        found = dict(raw)
+        for section in REUSED:
+            if isinstance(raw.get(section), dict):
+                found[section] = {
+                    name: getattr(scene, section)[name] if self._same(section, name, entry, changed) else entry
+                    for name, entry in raw[section].items()
+                }
+        return found
+
+    def _same(self, section: str, name: str, entry: Any, changed: set[str]) -> bool:
+        names = self._names.get((section, name))
+        if names is None or names & changed:
+            return False
+        before = self._raw[section][name]
+        return isinstance(entry, dict) and bool(entry == before)
+
+    def _changed_names(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> set[str]:
+        """Parameters, tables and variables that have other values, or whose variables have."""
+        changed: set[str] = set()
+        for kind in ("parameters", "tables"):
+            new, old = context[kind], self._context[kind]
+            changed |= {name for name in {*new, *old} if name not in new or name not in old or new[name] != old[name]}
+        new, old = (found.get("variables") or {} for found in (raw, self._raw))
+        changed |= {name for name in {*new, *old} if new.get(name) != old.get(name)}
+        while True:
+            more = {name for name in new if name not in changed and self._names["variables", name] & changed}
+            if not more:
+                return changed
+            changed |= more
+
+
+def _names(entry: Any) -> Iterator[str]:
+    """Every word in the texts of an entry."""
+    match entry:
+        case str():
+            yield from _NAME.findall(entry)
+        case dict():
+            for key, value in entry.items():
+                yield from _names(key)
+                yield from _names(value)
+        case list() | tuple():
+            for value in entry:
+                yield from _names(value)

@@ -1,0 +1,30 @@
+"""What a scene was read from, so that it can be read again with other values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class WrittenScene:
+    """The content of a scene's file, and what was changed of it.
+
+    Attributes
+    ----------
+    content : mapping
+        As it stands in the file, with what it includes; not to be changed.
+    changes : tuple of (path, value)
+        Values put in place of the file's.
+    source : str
+        What messages call it.
+    folder : Path or None
+        Where meshes are looked for.
+    """
+
+    content: Mapping[str, Any]
+    changes: tuple[tuple[str, Any], ...]
+    source: str
+    folder: Path | None

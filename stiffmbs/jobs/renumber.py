@@ -1,0 +1,123 @@
+"""A prepared job with the numbers of another model of the same structure, changed in place."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..compile.group import Group
+from ..compile.kind import sorted_out
+from ..compile.system import System
+from ..describe.element import Element
+from ..describe.formula.field import TIME, Formula
+from ..describe.model_data import ModelData
+from ..describe.scene import Scene
+from ..describe.table import Table
+from .run import Job, start_of_job
+
+HELD = ("dimensions", "gravity", "markers", "bodies", "joints")
+"""What must be the same: it decides about coordinates, rank and the start."""
+
+
+def renumbered(job: Job, data: ModelData) -> Job | None:
+    """The job of a model that differs by numbers in forces alone; None where the model must be prepared anew.
+
+    The compiled system is changed in place: `job` must not be integrated again.  The start is assembled anew, so that a run
+    gives the same numbers as one of the model prepared by itself.
+
+    Parameters
+    ----------
+    job : Job
+    data : ModelData
+        The other model.
+
+    Raises
+    ------
+    AssemblyError
+        When the other model has no consistent start.
+    """
+    if job.subsystems or not _same_structure(job.data, data):
+        return None
+    system = job.dynamics.system
+    written = []
+    for name, force in _changed(job.data, data):
+        change = _change(system, name, force, data)
+        if change is None:
+            return None
+        written.append(change)
+    old = [change.group.elements[change.number] for change in written]
+    for change in written:
+        change.write()
+    job.dynamics.forget_pivots()  # so that a run does not depend on those before it
+    if any(map(_may_be_input, [*old, *(change.element for change in written)])):
+        job.dynamics.forget_inputs()
+    changed = replace(job, data=data)
+    return replace(changed, start=start_of_job(changed))
+
+
+def _same_structure(before: ModelData, after: ModelData) -> bool:
+    if type(before) is not type(after) or list(before.forces) != list(after.forces):
+        return False
+    if dict(before.angle_counters()).keys() != dict(after.angle_counters()).keys():
+        return False
+    if isinstance(before, Scene) and isinstance(after, Scene) and before.start != after.start:
+        return False
+    return all(_same(getattr(before, section), getattr(after, section)) for section in HELD)
+
+
+def _same(before: object, after: object) -> bool:
+    if isinstance(before, dict) and isinstance(after, dict):
+        return list(before) == list(after) and all(_same(before[name], after[name]) for name in before)
+    return before is after or bool(before == after)
+
+
+def _changed(before: ModelData, after: ModelData) -> Iterator[tuple[str, Element]]:
+    for name, force in after.forces.items():
+        if force is not before.forces[name]:
+            yield name, force.at_initial_pose(after)
+
+
+def _may_be_input(element: Element) -> bool:
+    """Whether an element has a table, or a formula with time in it."""
+    if next(element.parts(Table), None):
+        return True
+    return any(
+        part.id == TIME
+        for _, formula in element.parts(Formula)
+        for part in ast.walk(formula.tree)
+        if isinstance(part, ast.Name)
+    )
+
+
+@dataclass(frozen=True)
+class _Change:
+    """An element of a group that takes the place of one with other numbers."""
+
+    group: Group
+    number: int
+    element: Element
+    first: int
+    values: np.ndarray
+
+    def write(self) -> None:
+        self.group.numbers[self.first : self.first + len(self.values)] = self.values
+        self.group.elements[self.number] = self.element
+
+
+def _change(system: System, name: str, force: Element, data: ModelData) -> _Change | None:
+    """A force with its new numbers; None where it has other equations, bodies or tables of another length."""
+    kind, found = sorted_out(force, data)
+    group = next((group for group in system.groups if name in group.names), None)
+    if group is None or kind != group.kind:
+        return None
+    element = group.names.index(name)
+    index, values = group.index[element], found.flat()
+    first = int(index[2 * kind.n_bodies])
+    starts = np.append(group.index[:, 2 * kind.n_bodies], len(group.numbers) - 1)
+    bodies = [system.bodies[k] if k < len(system.bodies) else "ground" for k in group.bodies[element]]
+    if len(values) != starts[element + 1] - first or bodies != found.bodies:
+        return None
+    return _Change(group, element, force, first, values)

@@ -1,0 +1,157 @@
+"""Mechanisms in motion as files: .gif, .mp4, or a page .html."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...describe.marker import MarkerReference
+from ...describe.model_data import ModelData
+from ...errors import InputError
+from ...jobs.run import data_of, run
+from ...results.files import refuse_path, written_whole
+from ...results.solution import Solution
+from ..page.data import page_data
+from ..page.moving import moving_page
+from .derive import drawing_of
+from .draw import need_matplotlib
+from .film import Pace, need_encoder, pictures, write_gif, write_mp4
+from .picture import Shown
+from .poses import placed, poses_of
+from .scene_graph import Anchor
+from .view import check_view, view_named
+
+FILMS: dict[str, Callable[..., None]] = {".gif": write_gif, ".mp4": write_mp4}
+
+
+def check_animation(path: Path) -> None:
+    """Refuse, before anything is solved, an animation that could not be written.
+
+    Raises
+    ------
+    InputError
+        For an unknown ending, a missing folder, or what is missing to write it.
+    """
+    refuse_path("-o", path, (*FILMS, ".html"))
+    if path.suffix == ".html":
+        if find_spec("jinja2") is None:
+            raise InputError(f"-o {path}: found no jinja2, expected it installed: pip install 'stiffmbs[report]'")
+        return
+    need_matplotlib(f"-o {path}")
+    need_encoder(path)
+
+
+def check_pace(pace: Pace) -> None:
+    """Refuse a film that does not move on.
+
+    Raises
+    ------
+    InputError
+    """
+    for option, value in (("--speed", pace.speed), ("--rate", pace.rate)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{option}: found {value:g}, expected a number greater than 0")
+
+
+def traced(data: ModelData, names: Sequence[str]) -> list[Anchor]:
+    """The points that names of markers, such as ``coupler.tip``, or of bodies stand for.
+
+    Raises
+    ------
+    InputError
+    """
+    found = []
+    for name in names:
+        body, _, marker = (name, "", "") if name in data.bodies else name.rpartition(".")
+        known = data.bodies[body].markers if body in data.bodies else {}
+        if body not in data.bodies or (marker and marker not in known):
+            expected = ", ".join(f"{body}.{one}" for one in known) or ", ".join(data.bodies)
+            raise InputError(f"--trace: found '{name}', expected a body or a marker of one such as {expected}")
+        point, _ = placed(data, MarkerReference(body=body, marker=marker or None))
+        found.append(Anchor(body, point if marker else np.zeros(3)))
+    return found
+
+
+def write_animation(
+    path: Path, data: ModelData, runs: Mapping[str, Solution], view: str = "", pace: Pace = Pace(),  # noqa: B008
+    shown: Shown = Shown(), traces: Sequence[str] = (),  # noqa: B008
+) -> None:  # fmt: skip
+    """Write runs of a model in motion, drawn over each other; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        .gif, .mp4 or .html.
+    data : ModelData
+    runs : mapping of str to Solution
+        By what the legend calls them; the first one is drawn in full colors.
+    view, pace, shown
+        Of a film; a page can be turned by hand.
+    traces : sequence of str
+        Markers or bodies whose paths are drawn.
+
+    Raises
+    ------
+    InputError
+        When a run is of another model, or a marker is not known.
+    """
+    drawing = drawing_of(data)
+    poses = {name: poses_of(data, run.time, run.channels) for name, run in runs.items()}
+    anchors = traced(data, traces)
+    if path.suffix == ".html":
+        first = next(iter(runs.values()))
+        figure = first.figure.y if first.figure else ()
+        page = moving_page(drawing.name, page_data(drawing, poses, first, figure, anchors))
+        written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
+        return
+    seen = view_named(view, drawing.dimensions, drawing.gravity)
+    frames = pictures(drawing, poses, seen, pace, shown, anchors)
+    written_whole(path, lambda part: FILMS[path.suffix](part, frames, pace.rate))
+
+
+def animate(
+    model: Any, path: str | Path, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float = 1.0,
+    rate: float = 25.0, names: bool = False, forces: bool = True, traces: Sequence[str] = (), **changes: Any,
+) -> None:  # fmt: skip
+    """Show a model in motion, as a film or a page.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
+    path : str or Path
+        Where to write: .gif, .mp4, or .html for a page that needs no network.
+    runs : Solution or mapping of str to Solution, optional
+        Runs of the model, drawn over each other by their names; the model is run without them.
+    view : str
+        As for `stiffmbs.draw`.
+    speed : float
+        Seconds of the model in one second of a film.
+    rate : float
+        Pictures in one second of a film.
+    names, forces : bool
+        Whether a film shows names, and arrows for the forces of joints and force elements.
+    traces : sequence of str
+        Markers, such as ``coupler.tip``, or bodies, whose paths are drawn.
+    **changes
+        Fields of the run's settings to change.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`, and for a file that cannot be written.
+    """
+    pace = Pace(speed, rate)
+    check_animation(Path(path))
+    check_pace(pace)
+    check_view(view)
+    data = data_of(model)
+    traced(data, traces)
+    if runs is None:
+        runs = run(data, **changes)
+    found = {"": runs} if isinstance(runs, Solution) else runs
+    write_animation(Path(path), data, found, view, pace, Shown(names, forces), traces)

@@ -1,0 +1,211 @@
+"""A mechanism in motion: pictures one after the other, as .gif (needs Pillow) or .mp4 (needs ffmpeg)."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import InputError
+from ..style import COLORS
+from .painted import Patch, extent, largest_force, painted
+from .picture import Shown, empty_sheet, explain, paint, write_names
+from .poses import Poses
+from .scene_graph import Anchor, Drawing
+from .view import View
+
+MOST_FRAMES = 3_000
+FAINT = 0.4
+"""Opacity of the bodies of other runs."""
+INCH = 90
+"""Dots of a film's picture."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How a film shows time.
+
+    Attributes
+    ----------
+    speed : float
+        Seconds of the model in one second of the film.
+    rate : float
+        Pictures in one second of the film.
+    """
+
+    speed: float = 1.0
+    rate: float = 25.0
+
+    def instants(self, start: float, end: float) -> np.ndarray:
+        """The instants of all pictures, s.
+
+        Raises
+        ------
+        InputError
+            For more pictures than anyone looks at.
+        """
+        count = int((end - start) / self.speed * self.rate) + 1
+        if count > MOST_FRAMES:
+            raise InputError(
+                f"animate: found {count} pictures, expected at most {MOST_FRAMES}: a higher --speed, or fewer pictures by --rate"
+            )
+        return start + np.arange(max(count, 2)) * self.speed / self.rate
+
+
+def need_encoder(path: Path) -> None:
+    """Refuse, before anything is solved, a film that could not be written.
+
+    Raises
+    ------
+    InputError
+    """
+    if path.suffix == ".gif" and find_spec("PIL") is None:
+        raise InputError(f"-o {path}: found no Pillow, expected it installed: pip install 'stiffmbs[plot]'")
+    if path.suffix == ".mp4" and _ffmpeg() is None:
+        raise InputError(
+            f"-o {path}: found no ffmpeg, expected it on the path, or imageio-ffmpeg: pip install 'stiffmbs[film]'"
+        )
+
+
+def _ffmpeg() -> str | None:
+    found = shutil.which("ffmpeg")
+    if found is None and find_spec("imageio_ffmpeg") is not None:
+        import imageio_ffmpeg
+
+        return str(imageio_ffmpeg.get_ffmpeg_exe())
+    return found
+
+
+def pictures(
+    drawing: Drawing, runs: Mapping[str, Poses], view: View, pace: Pace, shown: Shown, traces: Sequence[Anchor]
+) -> Iterator[np.ndarray]:
+    """The pictures of a film, shape (height, width, 3), bytes.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    runs : mapping of str to Poses
+        Drawn over each other, by the names in the legend; the first one in full colors.
+    view : View
+    pace : Pace
+    shown : Shown
+    traces : sequence of Anchor
+        Points whose paths are drawn.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    known = {name: poses.resampled(poses.time) for name, poses in runs.items()}
+    first = next(iter(known.values()))
+    instants = pace.instants(first.time[0], max(poses.time[-1] for poses in known.values()))
+    largest = largest_force(drawing, first) if shown.forces else 0.0
+    corners = [extent(drawing, poses, view, largest if poses is first else 0.0) for poses in known.values()]
+    low, high = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
+    margin = 0.05 * float(np.linalg.norm(high - low))
+    low, high = _wide(low - margin, high + margin)
+    sheet, axes = empty_sheet(low, high)
+    canvas: Any = FigureCanvasAgg(sheet)
+    axes.set_title(drawing.name or "mechanism", fontsize=11, parse_math=False)
+    clock = axes.text(0.01, 0.01, "", transform=axes.transAxes, fontsize=9, family="monospace")
+    sheet.set_dpi(INCH)
+    _name_runs(axes, drawing, list(known), largest)
+    for number, (poses, anchor) in enumerate((poses, anchor) for anchor in traces for poses in known.values()):
+        path = view.seen(poses.path(anchor))
+        axes.plot(path[:, 0], path[:, 1], color=COLORS[number % len(COLORS)], linewidth=1.0, alpha=0.8, zorder=1)
+    samples = [poses.resampled(instants) for poses in known.values()]
+    for k in range(len(instants)):
+        artists = _frame(axes, drawing, samples, k, view, largest)
+        if shown.names:
+            artists += write_names(axes, drawing, samples[0], k, view)
+        clock.set_text(f"t = {instants[k]:.3f} s")
+        canvas.draw()
+        yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+        for artist in artists:
+            artist.remove()
+
+
+def _wide(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    middle, half = (low + high) / 2, (high - low) / 2
+    half = np.maximum(half, 0.35 * half.max())
+    return middle - half, middle + half
+
+
+def _frame(axes: Any, drawing: Drawing, samples: Sequence[Poses], k: int, view: View, largest: float) -> list[Any]:
+    """One instant: the other runs faint in colors of their own, the first run over them."""
+    artists = []
+    for number in range(len(samples) - 1, 0, -1):
+        artists += paint(
+            axes, _in_one_color(painted(drawing, samples[number], k, view), COLORS[number % len(COLORS)]), FAINT
+        )
+    over = paint(axes, painted(drawing, samples[0], k, view, largest))
+    for artist in over:
+        artist.set_zorder(artist.get_zorder() + 2)
+    return artists + over
+
+
+def _in_one_color(patches: Sequence[Patch], color: str) -> list[Patch]:
+    return [
+        replace(patch, face=color if patch.face else "", edge="#333333" if patch.face else color) for patch in patches
+    ]
+
+
+def _name_runs(axes: Any, drawing: Drawing, names: Sequence[str], largest: float) -> None:
+    explain(axes, drawing, largest)
+    if len(names) > 1:
+        from matplotlib.patches import Patch as Key
+
+        colors = ["#56b4e9", *(COLORS[k % len(COLORS)] for k in range(1, len(names)))]
+        keys = [
+            Key(facecolor=color, alpha=FAINT if k else 1.0, label=name)
+            for k, (color, name) in enumerate(zip(colors, names, strict=True))
+        ]
+        axes.figure.legend(handles=keys, loc="outside upper center", ncols=4, frameon=False, fontsize=8)
+
+
+def write_gif(path: Path, frames: Iterator[np.ndarray], rate: float) -> None:
+    """Write pictures as a film that repeats for ever; colors are those of all pictures together."""
+    from PIL import Image
+
+    images = [Image.fromarray(frame) for frame in frames]
+    few = [
+        images[k].resize((images[k].width // 2, images[k].height // 2))
+        for k in np.linspace(0, len(images) - 1, 4).astype(int)
+    ]
+    mosaic = Image.new("RGB", (few[0].width * len(few), few[0].height))
+    for k, image in enumerate(few):
+        mosaic.paste(image, (k * few[0].width, 0))
+    palette = mosaic.quantize(128)
+    reduced = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    reduced[0].save(path, save_all=True, append_images=reduced[1:], duration=1000 / rate, loop=0, optimize=False)
+
+
+def write_mp4(path: Path, frames: Iterator[np.ndarray], rate: float) -> None:
+    """Write pictures as H.264, which every browser plays.
+
+    Raises
+    ------
+    InputError
+        When ffmpeg cannot encode it.
+    """
+    first = next(frames)
+    height, width = first.shape[0] // 2 * 2, first.shape[1] // 2 * 2
+    command = [
+        _ffmpeg() or "ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
+        "-r", f"{rate:g}", "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", str(path),
+    ]  # fmt: skip
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
+        assert encoder.stdin is not None and encoder.stderr is not None
+        try:
+            for frame in (first, *frames):
+                encoder.stdin.write(np.ascontiguousarray(frame[:height, :width]).tobytes())
+            encoder.stdin.close()
+        except BrokenPipeError:
+            pass
+        reason = encoder.stderr.read().decode(errors="replace").strip().splitlines()
+        if encoder.wait():
+            raise InputError(f"-o {path}: ffmpeg could not encode it: {reason[-1] if reason else 'no reason given'}")

@@ -1,0 +1,65 @@
+"""The largest force and torque of each joint and force element of a run, with its instant and error bar."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..compile.bodies import PLANE, SPACE
+from ..describe.parts.names import owner_of
+from ..results.error_bars import UNKNOWN
+from ..results.solution import Solution
+from .digits import with_bar
+
+ROUNDING = 1e-11
+"""Part of the largest force, or torque, of all elements below which one is zero."""
+
+
+def joint_forces(solution: Solution) -> list[dict[str, str]]:
+    """A row for each element's force, and for its torque where it has one or it is not unique: ``name what peak at unique``.
+
+    The peak is the largest magnitude at the output instants.  Its bar is the magnitude of the components' bars, as the
+    magnitude of a vector errs by no more than the vector does.
+    """
+    own = [name for name in solution.channels if name not in solution.requested]
+    in_space = any(name.endswith(".tz") for name in own)
+    components = (SPACE if in_space else PLANE).reactions
+    forces, torques = [c for c in components if c[0] == "f"], [c for c in components if c[0] == "t"]
+    elements = list(dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{components[-1]}")))
+    noise = {
+        unit: ROUNDING * max((_peak(solution, element, parts)[0] for element in elements), default=0.0)
+        for unit, parts in (("N", forces), ("N m", torques))
+    }
+    rows: list[dict[str, str]] = []
+    for element in elements:
+        for unit, parts in (("N", forces), ("N m", torques)):
+            peak, at = _peak(solution, element, parts)
+            names = [f"{element}.{part}" for part in parts]
+            if unit == "N" or peak > noise[unit] or any(name in solution.not_unique for name in names):
+                rows.append(_row(solution, element, names, unit, peak, at, noise[unit]))
+    return rows
+
+
+def _row(
+    solution: Solution, element: str, names: Sequence[str], unit: str, peak: float, at: float, noise: float
+) -> dict[str, str]:
+    bars = [solution.errors.get(name, UNKNOWN) for name in names]
+    half = math.hypot(*(float(np.max([bar.over_time, bar.least, bar.greatest])) for bar in bars))
+    value = 0.0 if peak <= noise else peak
+    shown = with_bar(value, half, noise) if any(name in solution.errors for name in names) else f"{value:.6g}"
+    unique = not any(name in solution.not_unique for name in names)
+    return {
+        "name": element, "what": "force" if unit == "N" else "torque", "peak": shown, "unit": unit, "at": f"{at:.6g}",
+        "unique": "yes" if unique else "no",
+    }  # fmt: skip
+
+
+def _peak(solution: Solution, element: str, parts: Sequence[str]) -> tuple[float, float]:
+    """The largest magnitude and its instant; zero where nothing is known."""
+    sizes = np.sqrt(sum(np.square(solution.channels[f"{element}.{part}"]) for part in parts))
+    if np.isnan(sizes).all():
+        return 0.0, float(solution.time[0])
+    k = int(np.nanargmax(sizes))
+    return float(sizes[k]), float(solution.time[k])

@@ -1,0 +1,1 @@
+"""Pages with a mechanism that moves: the data they hold, and the scripts that show it."""

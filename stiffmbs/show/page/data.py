@@ -1,0 +1,123 @@
+"""What a page holds of runs: the drawing, poses, forces and channels, packed so that it stays small."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...results.solution import Solution
+from ..drawing.as_json import drawing_json
+from ..drawing.painted import LONGEST, largest_force
+from ..drawing.poses import Poses
+from ..drawing.scene_graph import Anchor, Drawing
+
+MOST_POSES = 1200
+POSES_A_SECOND = 60
+POSE_VALUES = 400_000
+"""Numbers of poses and forces of all runs together, at most."""
+CHANNEL_VALUES = 700_000
+"""Numbers of channels, at most."""
+MOST_INSTANTS = 2000
+LEVELS = 65535
+
+
+@dataclass
+class Packed:
+    """Numbers one after the other, 16 bits each: a column as differences of its steps between its least and greatest value."""
+
+    columns: list[np.ndarray] = field(default_factory=list)
+    length: int = 0
+
+    def add(self, values: np.ndarray) -> dict[str, float]:
+        """Pack a column; returns where it is: its start, length, least value and step.  A value that is missing is the last level."""
+        known = np.isfinite(values)
+        low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 0.0)
+        step = (high - low) / (LEVELS - 1)
+        levels = np.full(len(values), LEVELS, dtype=np.int64)
+        levels[known] = np.round((values[known] - low) / step) if step > 0 else 0
+        self.columns.append(np.diff(levels, prepend=0).astype(np.uint16))
+        start, self.length = self.length, self.length + len(values)
+        return {"start": start, "length": len(values), "low": low, "step": step}
+
+    def text(self) -> str:
+        """All columns, compressed, as text."""
+        content = np.concatenate(self.columns) if self.columns else np.zeros(0, dtype=np.uint16)
+        return packed_text(content.astype("<u2").tobytes())
+
+
+def packed_text(content: bytes) -> str:
+    """Bytes, compressed, as text that is harmless in a page."""
+    return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
+
+
+def page_data(
+    drawing: Drawing, runs: Mapping[str, Poses], solution: Solution | None = None, shown: Sequence[str] = (),
+    traces: Sequence[Anchor] = (),
+) -> dict[str, str]:  # fmt: skip
+    """The two texts that a page holds: ``head``, JSON, and ``numbers``, both compressed.
+
+    Parameters
+    ----------
+    drawing : Drawing
+    runs : mapping of str to Poses
+        Drawn over each other, by the names in the legend; the first one in full colors.
+    solution : Solution, optional
+        Whose channels can be plotted.
+    shown : sequence of str
+        Channels that are plotted first.
+    traces : sequence of Anchor
+        Points whose paths are drawn first.
+    """
+    packed = Packed()
+    width = sum(7 * len(poses.points) + 3 * len(poses.forces) for poses in runs.values()) or 1
+    most = max(50, min(MOST_POSES, POSE_VALUES // width))
+    first = next(iter(runs.values()))
+    head: dict[str, Any] = {
+        "drawing": drawing_json(drawing),
+        "longest": {"force": largest_force(drawing, first), "length": LONGEST * drawing.size},
+        "runs": [{"name": name, **_motion(poses, packed, most)} for name, poses in runs.items()],
+        "traces": [{"body": anchor.body, "point": anchor.point.tolist()} for anchor in traces],
+        "channels": _channels(solution, packed, shown) if solution is not None else None,
+    }
+    return {"head": packed_text(json.dumps(head, allow_nan=False).encode()), "numbers": packed.text()}
+
+
+def _motion(poses: Poses, packed: Packed, most: int) -> dict[str, Any]:
+    """A run at equal steps of time, as many as a film needs."""
+    start, end = float(poses.time[0]), float(poses.time[-1])
+    count = int(np.clip((end - start) * POSES_A_SECOND, min(len(poses.time), most), most))
+    sample = poses.resampled(np.linspace(start, end, max(count, 2)))
+    return {
+        "start": start, "end": end, "count": len(sample.time),
+        "bodies": {
+            name: [packed.add(column) for column in (*sample.points[name].T, *_continuous(sample.orientations[name]).T)]
+            for name in sample.points
+        },
+        "forces": {name: [packed.add(column) for column in values.T] for name, values in sample.forces.items()},
+    }  # fmt: skip
+
+
+def _continuous(p: np.ndarray) -> np.ndarray:
+    """Quaternions with signs that do not jump from one instant to the next."""
+    turns = np.cumprod(np.concatenate([[1.0], np.where(np.sum(p[1:] * p[:-1], axis=1) < 0, -1.0, 1.0)]))
+    return p * turns[:, None]
+
+
+def _channels(solution: Solution, packed: Packed, shown: Sequence[str]) -> dict[str, Any]:
+    """Every channel, at so many of the output instants that the page stays small."""
+    most = max(100, min(MOST_INSTANTS, CHANNEL_VALUES // max(len(solution.channels), 1)))
+    rows = np.unique(np.linspace(0, len(solution.time) - 1, min(len(solution.time), most)).astype(int))
+    return {
+        "time": solution.time[rows].tolist(), "thinned": len(rows) < len(solution.time), "of": len(solution.time),
+        "shown": [name for name in shown if name in solution.channels],
+        "columns": [
+            {"name": name, "unit": solution.unit(name), "unique": name not in solution.not_unique, **packed.add(values[rows])}
+            for name, values in solution.channels.items()
+        ],
+    }  # fmt: skip

@@ -1,0 +1,12 @@
+"""The scripts and styles of pages, as text to put into them."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+NAMES = {"three": "three.min.js", "viewer": "viewer.js", "style": "viewer.css"}
+
+
+def page_parts() -> dict[str, str]:
+    """What a page with a moving mechanism holds besides its data."""
+    return {name: files(__package__).joinpath(file).read_text(encoding="utf-8") for name, file in NAMES.items()}

@@ -1,0 +1,2 @@
+export { Scene, OrthographicCamera, PerspectiveCamera, WebGLRenderer, Group, Mesh, BufferGeometry, BufferAttribute, Float32BufferAttribute, MeshLambertMaterial, MeshBasicMaterial, LineBasicMaterial, LineDashedMaterial, Line, LineSegments, Vector3, Quaternion, Color, AmbientLight, HemisphereLight, DirectionalLight, CylinderGeometry, ConeGeometry, GridHelper, DoubleSide, FrontSide, Box3 } from 'three';
+export { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';

@@ -1,0 +1,167 @@
+"""Solving the cases of a study one after the other: read, compiled and assembled once for each structure."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..describe.files.unchanged import Unchanged
+from ..describe.files.written_scene import WrittenScene
+from ..describe.scene import Scene, made_scene
+from ..errors import InputError, StiffmbsError
+from ..jobs.renumber import renumbered
+from ..jobs.run import Job, prepare, solved
+from ..results.channels import channels_of
+from ..results.solution import Solution
+from ..solve.trajectory import Outcome
+from .outputs import Output
+
+MOST_STRUCTURES = 8
+"""Jobs of different structures that are kept at a time."""
+MOST_WORDS = 1000
+"""Characters that are kept of what there is to say of a case."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What all cases of a study share; it can be pickled.
+
+    Attributes
+    ----------
+    scene : WrittenScene
+    names : tuple of str
+        What is varied, as `stiffmbs.load_scene` changes it.
+    settings : mapping
+        Settings of the run that all cases share.
+    outputs : tuple of Output
+    """
+
+    scene: WrittenScene
+    names: tuple[str, ...]
+    settings: Mapping[str, Any]
+    outputs: tuple[Output, ...]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A case that has been solved, or could not be.
+
+    Attributes
+    ----------
+    case : int
+        Its number.
+    status : str
+        ``done``, ``stopped`` early, or ``error``.
+    message : str
+        What went wrong, and what the run has to say besides.
+    values : tuple of float or ndarray
+        The outputs, numbers or series; numbers are nan where the run was not done.
+    """
+
+    case: int
+    status: str
+    message: str
+    values: tuple[float | np.ndarray, ...]
+
+
+class CaseSolver:
+    """Solves cases in one thread; another one has a solver of its own.
+
+    Parameters
+    ----------
+    task : Task
+    """
+
+    def __init__(self, task: Task) -> None:
+        self._task = task
+        self._unchanged = Unchanged()
+        self._jobs: list[Job] = []
+
+    def scene(self, values: Sequence[Any]) -> Scene:
+        """The scene of a case.
+
+        Raises
+        ------
+        InputError
+            When a value does not fit.
+        """
+        written, names = self._task.scene, self._task.names
+        content = copy.deepcopy(dict(written.content))
+        changes = (*written.changes, *zip(names, values, strict=True))
+        return made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+
+    def solution(self, values: Sequence[Any]) -> Solution:
+        """The solution of a case; errors as for `stiffmbs.run`."""
+        return solved(self.job(self.scene(values)))
+
+    def channels(self, values: Sequence[Any]) -> tuple[str, ...]:
+        """The names of the channels of a case; errors as for `stiffmbs.run`."""
+        job = self.job(self.scene(values))
+        start = job.start
+        rows = job.dynamics.report(np.array([job.grid.start]), start.q[None], start.u[None], project=False)
+        return tuple(channels_of(job.data, job.dynamics.system, rows))
+
+    def row(self, case: int, values: Sequence[Any]) -> Row:
+        """A case with its outputs, or with what went wrong."""
+        try:
+            solution = self.solution(values)
+            done = solution.outcome is Outcome.DONE
+            outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
+        except StiffmbsError as error:
+            return Row(case, "error", str(error)[:MOST_WORDS], (np.nan,) * len(self._task.outputs))
+        if solution.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        told = "; ".join(([] if done else [solution.message]) + list(solution.notes))
+        return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs)
+
+    def job(self, scene: Scene) -> Job:
+        """A job for a scene: one of the same structure with other numbers, or a new one; errors as for `stiffmbs.run`."""
+        from ..solve.settings import changed
+
+        settings = changed(scene.run, dict(self._task.settings))
+        for k, known in enumerate(self._jobs):
+            if known.settings == settings:
+                found = renumbered(known, scene)
+                if found is not None:
+                    self._jobs.insert(0, found)
+                    del self._jobs[k + 1]
+                    return found
+        self._jobs.insert(0, prepare(scene, settings))
+        del self._jobs[MOST_STRUCTURES:]
+        return self._jobs[0]
+
+
+def _kept(output: Output, solution: Solution, done: bool) -> float | np.ndarray:
+    """An output of a run; a reduction of one that stopped early is not known."""
+    if not done and not output.is_series:
+        output.value(solution)
+        return np.nan
+    return output.value(solution)
+
+
+def written_scene(model: Any) -> WrittenScene:
+    """What a model is read from, again and again.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, or the model cannot be written as a scene.
+    """
+    from ..describe.model_text import model_text
+    from ..describe.scene import read_scene
+    from ..jobs.run import data_of
+
+    data = data_of(model)
+    if not isinstance(data, Scene) or data.written is None:
+        data = read_scene(model_text(data))
+    if data.written is None:
+        raise InputError("study: found a scene that was not read from text, expected a file, a scene or a model")
+    return data.written

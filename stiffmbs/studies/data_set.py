@@ -1,0 +1,136 @@
+"""The table of a study as a data set of xarray."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import InputError, needs
+from .case_solver import Row
+from .cases import Cases
+from .outputs import Output
+
+if TYPE_CHECKING:
+    import xarray
+
+CASE, TIME = "case", "time"
+
+
+def data_set(
+    cases: Cases, outputs: Sequence[Output], rows: Iterable[Row], time: np.ndarray, title: str
+) -> xarray.Dataset:
+    """All rows with the varied values as coordinates.
+
+    A grid has a dimension for each of what is varied; vectors and matrices one of numbers, with the values beside it.  A sample
+    has the dimension ``case``.
+    """
+    with needs("xarray", "netcdf"):
+        import xarray
+    dimensions, coordinates = _coordinates(cases)
+    count, shape = len(cases), cases.shape
+    arrays = [np.full((count, len(time)) if one.is_series else count, np.nan) for one in outputs]
+    status, message = (np.full(count, "", dtype=object) for _ in range(2))
+    for row in rows:
+        status[row.case], message[row.case] = row.status, row.message
+        for array, value in zip(arrays, row.values, strict=True):
+            if isinstance(value, np.ndarray):
+                array[row.case, : len(value)] = value
+            else:
+                array[row.case] = value
+    variables: dict[str, Any] = {}
+    for one, array in zip(outputs, arrays, strict=True):
+        over_time = (TIME,) if one.is_series else ()
+        variables[one.name] = (
+            (*dimensions, *over_time),
+            array.reshape(*shape, *array.shape[1:]),
+            {"formula": one.text},
+        )
+    for name, words in (("status", status), ("message", message)):
+        variables[name] = (dimensions, words.astype(str).reshape(shape))
+    if any(one.is_series for one in outputs):
+        coordinates[TIME] = (TIME, time, {"units": "s"})
+    return xarray.Dataset(variables, coords=coordinates, attrs={"title": title})
+
+
+def _coordinates(cases: Cases) -> tuple[tuple[str, ...], dict[str, Any]]:
+    """The names of the dimensions, and what is varied along them."""
+    if cases.drawn:
+        coordinates = {CASE: np.arange(len(cases))}
+        for name, values in zip(cases.names, cases.drawn, strict=True):
+            coordinates |= _along(name, CASE, values)
+        return (CASE,), coordinates
+    dimensions: list[str] = []
+    found: dict[str, Any] = {}
+    for one in cases.variations:
+        array = _array(one.name, one.values)
+        dimension = one.name if array.ndim == 1 else f"{one.name}.number"
+        dimensions.append(dimension)
+        found |= _along(one.name, dimension, one.values)
+    return tuple(dimensions), found
+
+
+def _along(name: str, dimension: str, values: Sequence[Any]) -> dict[str, Any]:
+    array = _array(name, values)
+    return {name: ((dimension, *(f"{name}.{k}" for k in range(array.ndim - 1))), array)}
+
+
+def _array(name: str, values: Sequence[Any]) -> np.ndarray:
+    """Values of one form as an array; numbers where all are."""
+    try:
+        array = np.array(values)
+    except ValueError:
+        raise InputError(
+            f"{name}: found values of different lengths, expected vectors or matrices of one shape"
+        ) from None
+    return array if array.dtype.kind in "if" else array.astype(str)
+
+
+def check_output(path: Path) -> None:
+    """Refuse, before anything is solved, a file that could not be written.
+
+    Raises
+    ------
+    InputError
+        For an unknown ending, a missing folder, or a missing package.
+    """
+    from ..results.files import refuse_path
+
+    refuse_path("-o", path, WRITERS)
+    with needs("xarray", "netcdf"):
+        import xarray  # noqa: F401
+
+
+def write(path: Path, data: xarray.Dataset) -> None:
+    """Write a data set; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in .nc, where ``_per_`` stands for the ``/`` in a name, or in .csv, a line for each case without its series.
+    """
+    from ..results.files import written_whole
+
+    written_whole(path, lambda part: WRITERS[path.suffix](part, data))
+
+
+def _write_netcdf(path: Path, data: xarray.Dataset) -> None:
+    names = {str(name): str(name).replace("/", "_per_") for name in data.variables if "/" in str(name)}
+    data.rename(names).to_netcdf(path, engine="scipy")
+
+
+def _write_csv(path: Path, data: xarray.Dataset) -> None:
+    import csv
+
+    from .table import as_dict
+
+    rows = as_dict("", data)["cases"]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+WRITERS: dict[str, Callable[[Path, Any], None]] = {".nc": _write_netcdf, ".csv": _write_csv}

@@ -1,0 +1,202 @@
+"""What a study keeps of each run: channels, their reductions, and formulas of both."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..describe.parts.names import owner_of
+from ..errors import ChannelError, InputError
+from ..results.solution import Solution
+
+Series = np.ndarray
+TIME = "time"
+
+
+def _peak(t: Series, x: Series) -> float:
+    return float(np.max(np.abs(x)))
+
+
+def _t_peak(t: Series, x: Series) -> float:
+    return float(t[int(np.argmax(np.abs(x)))])
+
+
+def _integral(t: Series, x: Series) -> float:
+    return float(np.trapezoid(x, t))
+
+
+def _mean(t: Series, x: Series) -> float:
+    return float(np.divide(_integral(t, x), t[-1] - t[0]))
+
+
+def _rms(t: Series, x: Series) -> float:
+    return float(np.sqrt(_mean(t, x * x)))
+
+
+REDUCTIONS: dict[str, Callable[[Series, Series], float]] = {
+    "peak": _peak, "t_peak": _t_peak, "rms": _rms, "mean": _mean, "integral": _integral,
+    "final": lambda t, x: float(x[-1]), "first": lambda t, x: float(x[0]),
+    "min": lambda t, x: float(np.min(x)), "max": lambda t, x: float(np.max(x)),
+    "t_min": lambda t, x: float(t[int(np.argmin(x))]), "t_max": lambda t, x: float(t[int(np.argmax(x))]),
+}  # fmt: skip
+"""Numbers of a channel over time: ``peak`` is its largest magnitude, means and integrals are by the trapezoidal rule."""
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan,
+    "atan2": np.arctan2, "hypot": np.hypot,
+}  # fmt: skip
+OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
+    ast.Add: np.add, ast.Sub: np.subtract, ast.Mult: np.multiply, ast.Div: np.divide, ast.Pow: np.power,
+    ast.USub: np.negative, ast.UAdd: np.positive,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Output:
+    """One variable of a study.
+
+    Attributes
+    ----------
+    name : str
+    text : str
+        A formula of channels, ``time`` and `REDUCTIONS`: ``peak(rail.fy)``, ``rms(chassis.ay - front.ay)``, ``rail.fy``.
+    """
+
+    name: str
+    text: str
+
+    def value(self, solution: Solution) -> float | np.ndarray:
+        """The number, or the series over the output instants, of a run.
+
+        Raises
+        ------
+        InputError
+            When it names no channel.
+        """
+        with np.errstate(all="ignore"):
+            found = _value(parsed(self.text).body, solution)
+        return np.asarray(found, dtype=float) if np.ndim(found) else float(found)
+
+    def refuse_unknown(self, known: Collection[str]) -> None:
+        """Refuse a channel that is not among the known ones.
+
+        Raises
+        ------
+        InputError
+        """
+        for name in _channels(parsed(self.text).body):
+            if name != TIME and name not in known:
+                near = [channel for channel in known if owner_of(channel) == owner_of(name)] or list(known)[:12]
+                raise InputError(
+                    f"output '{self.text}': found no channel '{name}', expected one such as {', '.join(near)}"
+                )
+
+    @property
+    def is_series(self) -> bool:
+        """Whether it is a series over time."""
+        return _is_series(parsed(self.text).body)
+
+
+def outputs_of(found: Mapping[str, str] | list[str] | tuple[str, ...] | str) -> tuple[Output, ...]:
+    """The outputs that a user asks for: formulas, or formulas by name.
+
+    Raises
+    ------
+    InputError
+        When a formula cannot be read.
+    """
+    if isinstance(found, str):
+        found = [found]
+    pairs = dict(found) if isinstance(found, Mapping) else {text.strip(): text for text in found}
+    for text in pairs.values():
+        _check(text, parsed(text).body)
+    return tuple(Output(name, text) for name, text in pairs.items())
+
+
+def parsed(text: str) -> ast.Expression:
+    """The tree of a formula."""
+    try:
+        return ast.parse(text.strip().replace("^", "**"), mode="eval")
+    except (SyntaxError, ValueError):
+        raise InputError(f"output '{text}': found no formula, expected such as peak(rail.fy)") from None
+
+
+def _channel(node: ast.AST) -> str | None:
+    """The dotted name that a part of a formula is; None where it is none."""
+    match node:
+        case ast.Name(name):
+            return name
+        case ast.Attribute(owner, name):
+            before = _channel(owner)
+            return f"{before}.{name}" if before else None
+    return None
+
+
+def _channels(node: ast.AST) -> Iterator[str]:
+    """The channels that a formula names."""
+    name = _channel(node)
+    if name:
+        yield name
+        return
+    for part in node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node):
+        yield from _channels(part)
+
+
+def _check(text: str, node: ast.AST) -> None:
+    match node:
+        case ast.Constant(int() | float()):
+            return
+        case ast.Call(ast.Name(name), [*arguments], []) if name in REDUCTIONS or name in FUNCTIONS:
+            if name in REDUCTIONS and (len(arguments) != 1 or not _is_series(arguments[0])):
+                raise InputError(
+                    f"output '{text}': found {name} of {len(arguments)} values, expected one channel over time"
+                )
+            parts = arguments
+        case ast.BinOp(left, operator, right) if type(operator) in OPERATORS:
+            parts = [left, right]
+        case ast.UnaryOp(operator, operand) if type(operator) in OPERATORS:
+            parts = [operand]
+        case _ if _channel(node):
+            return
+        case _:
+            known = ", ".join((*REDUCTIONS, *FUNCTIONS))
+            raise InputError(
+                f"output '{text}': found '{ast.unparse(node)}', expected channels, numbers, + - * / ^ and {known}"
+            )
+    for part in parts:
+        _check(text, part)
+
+
+def _is_series(node: ast.AST) -> bool:
+    match node:
+        case ast.Call(ast.Name(name), [*arguments], []):
+            return name not in REDUCTIONS and any(map(_is_series, arguments))
+        case ast.BinOp(left, _, right):
+            return _is_series(left) or _is_series(right)
+        case ast.UnaryOp(_, operand):
+            return _is_series(operand)
+    return _channel(node) is not None
+
+
+def _value(node: ast.AST, solution: Solution) -> Any:
+    match node:
+        case ast.Constant(value):
+            return value
+        case ast.Call(ast.Name(name), [argument], []) if name in REDUCTIONS:
+            return REDUCTIONS[name](solution.time, _value(argument, solution))
+        case ast.Call(ast.Name(name), [*arguments], []):
+            return FUNCTIONS[name](*(_value(argument, solution) for argument in arguments))
+        case ast.BinOp(left, operator, right):
+            return OPERATORS[type(operator)](_value(left, solution), _value(right, solution))
+        case ast.UnaryOp(operator, operand):
+            return OPERATORS[type(operator)](_value(operand, solution))
+    name = _channel(node) or ""
+    if name == TIME:
+        return solution.time
+    try:
+        return solution[name]
+    except ChannelError as error:
+        raise InputError(str(error)) from None

@@ -1,0 +1,253 @@
+"""The front door: many runs of one scene with other values."""
+
+from __future__ import annotations
+
+import pickle
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..describe.scene import Scene
+from ..describe.settings import RunSettings
+from ..errors import InputError, StiffmbsError
+from ..jobs.run import Runnable
+from ..solve.settings import changed, output_grid
+from .case_solver import CaseSolver, Row, Task, written_scene
+from .cases import Cases, cases_of
+from .data_set import data_set
+from .executors import executor_of, rows_of
+from .outputs import Output, outputs_of
+from .store import Store
+from .variation import Range, Variation, variation
+from .worker import Chunk
+
+if TYPE_CHECKING:
+    import xarray
+
+LARGEST_CHUNK, CHUNKS_PER_WORKER = 8, 8
+GRID = tuple(f"run.{name}" for name in ("start", "duration", "output", "points"))
+StudyProgress = Callable[[int, int, float], None]
+"""Called with the cases done, all cases, and the estimated time left, s."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study that is ready to be solved.
+
+    Attributes
+    ----------
+    task : Task
+    cases : Cases
+    time : ndarray
+        The output instants of series, s.
+    title : str
+    """
+
+    task: Task
+    cases: Cases
+    time: np.ndarray
+    title: str
+
+    def solve(
+        self, workers: int | None = None, executor: Executor | None = None, store: str | Path | None = None,
+        watch: StudyProgress | None = None,
+    ) -> xarray.Dataset:  # fmt: skip
+        """Solve the cases that the store does not have yet; parameters and errors as for `sweep`."""
+        from .. import __version__
+
+        if workers is not None and workers < 1:
+            raise InputError(f"workers: found {workers}, expected 1 or more")
+        task = pickle.dumps(self.task)
+        study = repr((__version__, self.task, self.cases)).encode()
+        with Store(Path(store) if store else None, study) as rows, executor_of(workers, executor) as (found, count):
+            done = rows.done()
+            size = max(1, min(LARGEST_CHUNK, (len(self.cases) - len(done)) // (CHUNKS_PER_WORKER * count)))
+            progress = _Progress(len(self.cases), len(done), watch)
+
+            def keep(solved: list[Row]) -> None:
+                rows.add(solved)
+                progress.add(len(solved))
+
+            rows_of(task, _chunks(self.cases, done, size), found, count, keep)
+            return data_set(self.cases, self.task.outputs, rows.rows(), self.time, self.title)
+
+
+class _Progress:
+    """Tells how far a study is, with the time left by what the cases of this session took."""
+
+    def __init__(self, total: int, before: int, watch: StudyProgress | None) -> None:
+        self._total, self._before, self._done, self._watch = total, before, before, watch
+        self._begun = time.monotonic()
+
+    def add(self, count: int) -> None:
+        self._done += count
+        if self._watch:
+            each = (time.monotonic() - self._begun) / (self._done - self._before)
+            self._watch(self._done, self._total, each * (self._total - self._done))
+
+
+def _chunks(cases: Cases, done: set[int], size: int) -> Iterator[Chunk]:
+    left = ((number, values) for number, values in enumerate(cases) if number not in done)
+    while chunk := list(islice(left, size)):
+        yield chunk
+
+
+def sweep(
+    scene: Runnable,
+    vary: Mapping[str, Any] | Sequence[Variation] = (),
+    *,
+    sample: str | None = None,
+    seed: int = 0,
+    outputs: Mapping[str, str] | Sequence[str] | str | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    store: str | Path | None = None,
+    watch: StudyProgress | None = None,
+    **parameters: Any,
+) -> xarray.Dataset:
+    """Solve a scene for many values of its parameters (needs xarray, the extra ``netcdf``).
+
+    Parameters
+    ----------
+    scene : str, Path, Scene or Model
+        A file of a scene has parameters; a model has paths alone.
+    vary : mapping, optional
+        What is varied, by parameters or paths that no keyword can name: ``{"forces.spring.stiffness": [100, 200]}``,
+        ``{"bodies.bar.angle": Range(0, 1)}``, ``{"run.rtol": [1e-6, 1e-8]}``.  Each value may be a vector or a matrix.
+    sample : str, optional
+        ``lhs:500`` (Latin hypercube), ``sobol:512`` or ``random:500`` cases in place of the full grid; values are drawn from
+        ranges, or picked from lists.
+    seed : int
+        Of the sample.
+    outputs : mapping of str to str, sequence of str, optional
+        What is kept of each run, formulas of channels and of ``peak``, ``t_peak``, ``rms``, ``mean``, ``integral``, ``min``,
+        ``max``, ``t_min``, ``t_max``, ``first`` and ``final`` of them, at the output instants; the peak of every channel of
+        the scene's figure, or of the total energy, by default.
+    workers : int, optional
+        Threads that solve at once; 1 by default.
+    executor : concurrent.futures.Executor, optional
+        What solves in place of threads: a ``ProcessPoolExecutor``, or ``client.get_executor()`` of a Dask cluster.
+    store : str or Path, optional
+        A file that keeps each case once it is done; a study that was stopped goes on from there.
+    watch : callable, optional
+        Called with the cases done, all cases, and the time left, s.
+    **parameters
+        What is varied, by name; and settings of the run that all cases share, such as ``solver="auto"``, ``rtol=1e-8``.
+
+    Returns
+    -------
+    xarray.Dataset
+        A variable for each output, with what is varied as coordinates, and ``status`` and ``message`` of each case.  Of a case
+        that failed reductions are nan, and its message says why.
+
+    Raises
+    ------
+    InputError
+        When the scene, what is varied, an output or the store is wrong.
+    SolverError
+        When workers of an executor end again and again.
+
+    Examples
+    --------
+    >>> found = stiffmbs.sweep("examples/half_car.yaml", k_b=np.logspace(5, 9, 200), zeta=[0.02, 0.1],
+    ...                        outputs=["peak(front_bushing.fx)"], workers=2)
+    """
+    study = study_of(scene, vary, sample, seed, outputs, parameters)
+    return study.solve(workers, executor, store, watch)
+
+
+def study_of(
+    scene: Runnable,
+    vary: Mapping[str, Any] | Sequence[Variation],
+    sample: str | None,
+    seed: int,
+    outputs: Mapping[str, str] | Sequence[str] | str | None,
+    parameters: Mapping[str, Any],
+) -> Study:
+    """A study, with one of its scenes read to see that all fits; parameters and errors as for `sweep`."""
+    written = written_scene(scene)
+    known = CaseSolver(Task(written, (), {}, ())).scene(())
+    settings = {name: value for name, value in parameters.items() if _is_setting(name, value, known)}
+    varied = vary.items() if isinstance(vary, Mapping) else ((one.name, one) for one in vary)
+    pairs = [*varied, *((name, found) for name, found in parameters.items() if name not in settings)]
+    variations = [
+        found if isinstance(found, Variation) else variation(_path(name, known), found) for name, found in pairs
+    ]
+    cases = cases_of(variations, sample, seed)
+    chosen = outputs_of(outputs if outputs is not None else _usual(known))  # type: ignore[arg-type]
+    _refuse_other_instants(cases, chosen)
+    task = Task(written, cases.names, settings, chosen)
+    _refuse_unfit(task, cases)
+    return Study(task, cases, _instants(known, settings, chosen), known.name)
+
+
+def _refuse_unfit(task: Task, cases: Cases) -> None:
+    """Refuse what no case can be solved with: names that the scene does not have, channels that no run has.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        When neither the first nor the last case can be prepared.
+    """
+    solver, all_cases = CaseSolver(task), [*islice(cases, 1), _last(cases)]
+    faults = []
+    for values in all_cases:
+        try:
+            known = solver.channels(values)
+        except StiffmbsError as error:
+            faults.append(error)
+            continue
+        for output in task.outputs:
+            output.refuse_unknown(known)
+        return
+    raise faults[0]
+
+
+def _last(cases: Cases) -> tuple[Any, ...]:
+    if cases.drawn:
+        return tuple(drawn[-1] for drawn in cases.drawn)
+    return tuple(one.values[-1] for one in cases.variations)
+
+
+def _is_setting(name: str, value: Any, scene: Scene) -> bool:
+    """Whether a keyword is a setting that all cases share."""
+    several = isinstance(value, list | tuple | np.ndarray | Range | Variation)
+    return name in RunSettings.model_fields and name not in scene.parameters and not several
+
+
+def _path(name: str, scene: Scene) -> str:
+    """A setting's bare name stands for its path."""
+    return f"run.{name}" if name in RunSettings.model_fields and name not in scene.parameters else name
+
+
+def _usual(scene: Scene) -> list[str]:
+    channels = scene.figure.y if scene.figure else ("energy.total",)
+    return [f"peak({channel})" for channel in channels]
+
+
+def _refuse_other_instants(cases: Cases, outputs: Sequence[Output]) -> None:
+    """Series of all cases stand in one table."""
+    series = next((one.name for one in outputs if one.is_series), None)
+    other = next((name for name in cases.names if name in GRID), None)
+    if series and other:
+        raise InputError(
+            f"output '{series}': found series with {other} varied, expected the same output instants in all cases"
+        )
+
+
+def _instants(scene: Scene, settings: Mapping[str, Any], outputs: Sequence[Output]) -> np.ndarray:
+    """The output instants of series; none where there are no series."""
+    if not any(one.is_series for one in outputs):
+        return np.empty(0)
+    times = output_grid(changed(scene.run, dict(settings))).times
+    if times is None:
+        raise InputError(
+            "points: found 'steps' with outputs over time, expected a number of output points, or reductions"
+        )
+    return times

@@ -1,0 +1,180 @@
+"""Pages in a real browser: they draw, play and scrub, by mouse and by keys, without an error or a request."""
+
+import io
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import stiffmbs
+from stiffmbs.commands.main import main
+
+from ...conftest import EXAMPLES
+from . import browser
+
+pytest.importorskip("jinja2")
+pytest.importorskip("websocket")
+pytestmark = pytest.mark.skipif(browser.found() is None, reason="no Chromium is installed")
+
+
+@pytest.fixture(scope="module")
+def tab(tmp_path_factory):
+    with browser.tab(tmp_path_factory.mktemp("browser")) as found:
+        yield found
+
+
+@pytest.fixture
+def opened(tab, tmp_path):
+    """Writes and opens the page of a command; checks that nothing went wrong when all is done."""
+
+    def make(command, scene, *options):
+        path = tmp_path / "page.html"
+        result = CliRunner().invoke(main, [command, str(scene), "-o", str(path), *map(str, options)])
+        assert result.exit_code == 0, result.output
+        tab.requests.clear()
+        tab.open(path)
+        return path
+
+    yield make
+    assert tab.errors == []
+    assert all(url.startswith(("file://", "data:", "blob:")) for url in tab.requests)
+
+
+def pixels(tab, selector):
+    """The colors of an element on the screen, shape (height, width, 3)."""
+    from PIL import Image
+
+    tab.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    x, y, w, h = (
+        int(v)
+        for v in tab.run(
+            f"(({{x, y, width, height}}) => [x, y, width, height])(document.querySelector('{selector}').getBoundingClientRect())"
+        )
+    )
+    return np.asarray(Image.open(io.BytesIO(tab.picture())).convert("RGB"))[y : y + h, x : x + w].astype(int)
+
+
+def coloured(image):
+    """The part of an image that is neither white nor grey."""
+    return (np.ptp(image, axis=2) > 30).mean()
+
+
+@pytest.mark.parametrize(
+    ("command", "scene", "options"),
+    [
+        ("report", "cart_pendulum", ["--no-verify"]),
+        ("animate", "bricard", ["--duration", 1]),
+        ("animate", "half_car", ["--duration", 1]),
+    ],
+)
+def test_the_mechanism_is_drawn_and_moves(tab, opened, command, scene, options):
+    opened(command, EXAMPLES / f"{scene}.yaml", *options)
+    first = pixels(tab, ".viewer canvas")
+    assert coloured(first) > 0.002
+    tab.run("shown.time.set(shown.time.start + 0.6*(shown.time.end - shown.time.start))")
+    then = pixels(tab, ".viewer canvas")
+    assert (np.abs(then - first).max(axis=2) > 60).mean() > 0.0005
+
+
+def test_it_plays_to_its_end_and_again(tab, opened):
+    opened("animate", EXAMPLES / "four_bar.yaml")
+    tab.run(
+        "document.querySelector('.controls select').value = '5'; document.querySelector('.controls select').onchange()"
+    )
+    tab.run("document.querySelector('.controls button').click()")
+    tab.wait("shown.time.t > 0.3")
+    assert tab.run("document.querySelector('.controls button').textContent") == "Pause"
+    tab.wait("!shown.time.playing")
+    assert tab.run("shown.time.t") == pytest.approx(1)
+    tab.run("document.querySelector('.controls button').click()")
+    tab.wait("shown.time.t < 0.9")
+    assert float(tab.run("document.querySelector('input[type=range]').value")) < 950
+
+
+def test_the_scrubber_sets_the_time_of_plots_and_mechanism(tab, opened):
+    opened("animate", EXAMPLES / "cart_pendulum.yaml")
+    before = pixels(tab, ".plot canvas")
+    assert coloured(before) > 0.001
+    tab.run("(() => { const s = document.querySelector('input[type=range]'); s.value = 250; s.oninput(); })()")
+    assert tab.run("shown.time.t") == pytest.approx(2.5)
+    assert tab.run("document.querySelector('.controls output').textContent") == "t = 2.50 s"
+    assert (np.abs(pixels(tab, ".plot canvas") - before).max(axis=2) > 60).any()
+
+
+def test_a_drag_zooms_and_a_click_sets_the_time(tab, opened):
+    opened("animate", EXAMPLES / "bar_pendulum.yaml")
+    tab.run("document.querySelector('.plot').scrollIntoView()")
+    x, y, w, h = tab.run(
+        "(({x, y, width, height}) => [x, y, width, height])(document.querySelector('.plot canvas').getBoundingClientRect())"
+    )
+    tab.drag((x + w * 0.3, y + h / 2), (x + w * 0.6, y + h / 2))
+    tab.drag((x + w / 2, y + h / 2), (x + w / 2, y + h / 2))
+    time = tab.run("shown.time.t")
+    assert 0.3 * 3 < time < 0.6 * 3  # the middle of what was dragged over, not the middle of the run
+    assert time == pytest.approx(0.45 * 3, abs=0.15)
+
+
+def test_keys_move_the_time(tab, opened):
+    opened("animate", EXAMPLES / "bar_pendulum.yaml")
+    tab.run("document.querySelector('.viewer canvas').focus()")
+    for _ in range(3):
+        tab.key("ArrowRight")
+    assert tab.run("shown.time.t") == pytest.approx(3 * 3 / 200)
+    tab.key("End")
+    assert tab.run("shown.time.t") == pytest.approx(3)
+    tab.key("Home")
+    tab.key(" ", "Space", " ")
+    tab.wait("shown.time.t > 0.1")
+    assert tab.run("shown.time.playing")
+    tab.key(" ", "Space", " ")
+
+
+def test_a_body_is_followed_and_a_path_is_traced(tab, opened):
+    opened("animate", EXAMPLES / "rolling_disc.yaml", "--duration", 2)
+    tab.run("shown.shown.state.follow = 'disc'; shown.shown.stale = true")
+    plain = pixels(tab, ".viewer canvas")
+    tab.run("shown.time.set(2)")
+    followed = pixels(tab, ".viewer canvas")
+    middles = [np.argwhere(np.ptp(image, axis=2) > 60).mean(axis=0) for image in (plain, followed)]
+    assert np.abs(middles[1] - middles[0]).max() < 60
+    tab.run("shown.shown.addTrace({body: 'disc', point: [0, 0, 0.3]}); shown.shown.stale = true")
+    assert (np.abs(pixels(tab, ".viewer canvas") - followed).max(axis=2) > 60).any()
+
+
+def test_names_and_titles_are_no_markup(tab, opened, tmp_path):
+    scene = tmp_path / "odd.yaml"
+    scene.write_text(
+        "name: \"</title></script><img src=x onerror='window.hit=1'><svg onload='window.hit=1'>\"\n"
+        "bodies: {a: {mass: 1, inertia: 1}}\njoints: {pin: {type: revolute, i: a, j: ground}}\n"
+        "notes: ['<img src=x onerror=window.hit=1>']\nrun: {duration: 1, points: 11}  # <script>window.hit=1</script>\n"
+    )
+    opened("report", scene, "--no-verify")
+    assert tab.run("window.hit === undefined && document.querySelectorAll('body img[src=x]').length === 0")
+    assert "onerror" in tab.run("document.title")
+
+
+def test_runs_are_drawn_over_each_other(tab, opened, tmp_path):
+    paths = []
+    for length in ("0.6 m", "0.9 m"):
+        paths.append(tmp_path / f"L{length[:3]}.npz")
+        stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml", [("L", length)])).save(paths[-1])
+    opened("animate", EXAMPLES / "bar_pendulum.yaml", *paths)
+    assert tab.run("[...document.querySelectorAll('.legend div')].map(e => e.textContent)")[:2] == ["L0.6", "L0.9"]
+    tab.run("shown.time.set(0.5)")
+    image = pixels(tab, ".viewer canvas")
+    assert coloured(image) > 0.002
+    tab.run(
+        "shown.shown.state.forces = false; shown.data.runs[1].bodies.bar.forEach((c) => c.fill(0)); shown.shown.stale = true"
+    )
+    assert (np.abs(pixels(tab, ".viewer canvas") - image).max(axis=2) > 20).mean() > 0.001
+
+
+def test_every_control_has_a_name_for_screen_readers(tab, opened):
+    opened("report", EXAMPLES / "four_bar.yaml", "--no-verify")
+    tree = tab.do("Accessibility.getFullAXTree")["nodes"]
+    roles = {"button", "slider", "combobox", "checkbox", "textbox", "img", "image"}
+    unnamed = [
+        node["role"]["value"] for node in tree
+        if not node.get("ignored") and node.get("role", {}).get("value") in roles and not node.get("name", {}).get("value")
+    ]  # fmt: skip
+    assert not unnamed
