@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from pydantic import Field, field_validator, model_validator
 
 from ..fields import NAME_PATTERN, Described
 from ..formula.field import Formula, OfMotion
+from ..given import Law, Laws, Number, Numbers
+from ..given import Matrix as GivenMatrix
 from ..units import si
 from .combined import Weighted, combined
 from .state import State, StateValue
@@ -37,6 +41,10 @@ class TransferFunction(Described):
         description="coefficients of the denominator, that of the highest power of s first", min_length=1
     )
     input: OfMotion = Field(description="a formula of time, coordinates, velocities and states")
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, numerator: Numbers, denominator: Numbers, input: Law) -> None: ...
 
     @model_validator(mode="after")
     def _proper(self) -> TransferFunction:
@@ -106,6 +114,13 @@ class LinearSystem(Described):
     outputs_: tuple[str, ...] = Field((), alias="outputs", description="names of the outputs, where there are several")
     start: Row | None = Field(None, description="initial values of x; zeros by default")
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, a: GivenMatrix, b: GivenMatrix, c: GivenMatrix, input: Law | Laws, d: GivenMatrix | None = None,
+            outputs: Sequence[str] = (), start: Numbers | None = None,
+        ) -> None: ...  # fmt: skip
+
     @field_validator("input", mode="before")
     @classmethod
     def _one_or_more(cls, found: object) -> object:
@@ -124,8 +139,6 @@ class LinearSystem(Described):
             raise ValueError(f"start: found {len(self.start)} numbers, expected {n}")
         if len(self.outputs_) != (p if p > 1 or self.outputs_ else 0):
             raise ValueError(f"outputs: found {len(self.outputs_)} names, expected {p}, one for each row of c")
-        import re
-
         for output in self.outputs_:
             if not re.match(NAME_PATTERN, output) or re.match(r"x\d+$", output):
                 raise ValueError(f"outputs: found '{output}', expected letters, digits and _, and none of x1, x2, ...")
@@ -173,6 +186,13 @@ class PID(Described):
     ki: si.Anything = Field(0.0, description="integral gain")
     kd: si.Anything = Field(0.0, description="derivative gain")
     filter: si.PositiveTime | None = Field(None, description="time constant of the derivative's filter, s")
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, input: Law, setpoint: Law | None = None, kp: Number = 0.0, ki: Number = 0.0, kd: Number = 0.0,
+            filter: Number | None = None,
+        ) -> None: ...  # fmt: skip
 
     @model_validator(mode="after")
     def _filtered(self) -> PID:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import AfterValidator, Field, model_validator
 
 from ..fields import Described
 from ..formula.dimension import Known, measured_in, product
 from ..formula.field import Formula, OfMotion
+from ..given import Law, Number
 from ..units.units import named_unit
 from .amount import Amount, positive
 
@@ -54,6 +55,10 @@ class State(Described):
     scale: Scale = Field(
         Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
     )
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, rate: Law, start: Number = 0.0, scale: Number = 1.0) -> None: ...
 
     @model_validator(mode="after")
     def _rate_fits(self) -> State:
