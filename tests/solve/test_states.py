@@ -125,6 +125,22 @@ def test_a_lag_follows_a_prescribed_motion(solver):
     assert solution["lag"] == pytest.approx(lag, abs=1e-7 if solver != "kinematic" else 1e-9)
 
 
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_a_tyre_builds_its_side_force_over_its_relaxation_length(solver):
+    """sigma alpha' + |v| alpha = v_y: at constant speed the slip comes to v_y/v by exp(-v t/sigma) (Pacejka, ch. 5)."""
+    model = Model("towed wheel")
+    model.add("wheel", Body(mass=10, inertia=1, velocity=(20, 1)))
+    model.add("slip", State(rate="(wheel.vy - abs(wheel.vx)*slip)/0.5", start=0))
+    model.add("side", AppliedForce(i="wheel", force=(0, "-40*slip")))
+    solution = stiffmbs.run(model, duration=0.2, points=21, rtol=1e-10, solver=solver)
+    matrix = np.array([[0, -40 / 10], [1 / 0.5, -20 / 0.5]])  # of v_y and the slip
+    values, vectors = np.linalg.eig(matrix)
+    parts = np.linalg.solve(vectors, [1.0, 0.0])
+    vy, slip = (vectors * parts) @ np.exp(np.outer(values, solution.time))
+    assert solution["slip"] == pytest.approx(slip, abs=1e-9)
+    assert solution["wheel.vy"] == pytest.approx(vy, abs=1e-9)
+
+
 def test_mechanisms_are_solved_together_where_a_state_couples_them():
     model = Model("two carts")
     for k, name in enumerate(("left", "right")):
