@@ -60,6 +60,20 @@ def test_friction_by_formula_is_that_of_the_element(settings):
     )
 
 
+@pytest.mark.parametrize(
+    "settings", [{"solver": "bdf"}, {"solver": "projected"}, {"solver": "projected", "scheme": "rk4", "step": 1e-3}]
+)
+def test_the_integral_of_a_reaction_is_the_impulse(settings):
+    """int fy dt = m (vy - vy0) + m g t of a pendulum."""
+    model = Model("pendulum", gravity=(0, -9.81))
+    model.add("bar", Body(mass=2, inertia=0.03, position=(0.3, 0)))
+    model.add("hinge", Revolute(i=Marker(body="bar", point=(-0.3, 0)), j="ground"))
+    model.add("impulse", State(rate="fy(hinge)", start="0 N s"))
+    solution = stiffmbs.run(model, duration=1.0, points=11, rtol=1e-9, **settings)
+    impulse = 2 * (solution["bar.vy"] - solution["bar.vy"][0] + 9.81 * solution.time)
+    assert solution["impulse"] == pytest.approx(impulse, abs=1e-6)
+
+
 def test_a_reaction_in_a_formula_is_its_channel_in_space_too():
     scene = stiffmbs.spatial.in_space(sliding(FORMULA))
     planar = stiffmbs.run(sliding(FORMULA), duration=0.5, points=6, rtol=1e-9)

@@ -146,18 +146,16 @@ def test_mechanisms_are_solved_together_where_a_state_couples_them():
     for k, name in enumerate(("left", "right")):
         model.add(name, Body(mass=1, inertia=1, position=(0.1 + k, 0)))
         model.add(f"{name}_rail", Prismatic(i=name, j="ground"))
-    model.add("difference", State(rate="(right.x - left.x - 1 - difference)/0.1", start=0.2))
-    model.add("push", AppliedForce(i="left", force=("50*difference - 20*left.vx", 0)))
+    model.add("seen", State(rate="(right.x - 1 - seen)/0.1", start=0.2))
+    model.add("push", AppliedForce(i="left", force=("50*seen - 20*left.vx", 0)))
+    model.add("pull", AppliedForce(i="right", force=("9*(1 - right.x)", 0)))
     model.add("alone", State(rate="-alone", start=1))
     solution = stiffmbs.run(model, duration=1.0, points=11, rtol=1e-10)
-    left, _, difference = reference(
-        lambda t, y: [y[1], 50 * y[2] - 20 * y[1], (0.1 - y[0] - y[2]) / 0.1],
-        [0.1, 0, 0.2],
-        solution.time,
-        method="DOP853",
-    )
+    rates = lambda t, y: [y[1], 50 * y[4] - 20 * y[1], y[3], -9 * y[2], (y[2] - y[4]) / 0.1]  # noqa: E731
+    left, _, right, _, seen = reference(rates, [0.1, 0, 0.1, 0, 0.2], solution.time, method="DOP853")
     assert solution["left.x"] == pytest.approx(left, abs=1e-8)
-    assert solution["difference"] == pytest.approx(difference, abs=1e-8)
+    assert solution["right.x"] == pytest.approx(1 + right, abs=1e-8)
+    assert solution["seen"] == pytest.approx(seen, abs=1e-8)
     assert solution["alone"] == pytest.approx(np.exp(-solution.time), abs=1e-8)
 
 
