@@ -30,6 +30,8 @@ PLANE = """
 from typing import Literal
 
 from . import spatial as spatial
+from .comparison.compare import compare as compare
+from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
 from .describe import given
 from .describe.body import Body as Body
@@ -43,6 +45,7 @@ from .describe.scene import Scene as Scene
 from .describe.scene import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
+from .describe.settings import SteadyMotion as SteadyMotion
 from .describe.states.linear_system import PID as PID
 from .describe.states.linear_system import LinearSystem as LinearSystem
 from .describe.states.linear_system import TransferFunction as TransferFunction

@@ -24,7 +24,7 @@ from .describe.own_elements import register
 from .describe.python_function import PythonFunction
 from .describe.scene import Scene, read_scene
 from .describe.schema import scene_schema
-from .describe.settings import RunSettings
+from .describe.settings import RunSettings, SteadyMotion
 from .describe.states.linear_system import PID, LinearSystem, TransferFunction
 from .describe.states.state import State
 from .describe.table import Table
@@ -37,7 +37,8 @@ __version__ = "0.1.0"
 
 _ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
 _LATER = {
-    "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check",
+    "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
+    "compare_over": ".comparison.over",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation",
@@ -47,7 +48,7 @@ _LATER = {
 
 __all__ = [
     "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
-    "SolverError", "State", "StiffmbsError", "Table", "TransferFunction", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
+    "SolverError", "State", "SteadyMotion", "StiffmbsError", "Table", "TransferFunction", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
     *_LATER, *_ELEMENTS,
 ]  # fmt: skip
 

@@ -139,11 +139,23 @@ def section(module: str, kind: str, element: type[Element]) -> Iterator[str]:
         module = element.__module__
     shared = module != "stiffmbs" and element in SECTIONS["joints"][1].values()
     yield from (f".. autoclass:: {module}.{element.__name__}", *(["   :no-index:"] if shared else []), "")
+    yield from _sketched(module, kind, element)
     if names := getattr(element, "equations", ()):
         yield from ("Equations: " + ", ".join(f"``{name}``" for name in names), "")
     yield from field_table(element)
     yield from ("In the source, ``e`` being the element with frames for its markers and symbols for its numbers:", "")
     yield from (".. code-block:: python", "", indent("\n\n".join(sources(element)), "   "), "")
+
+
+def _sketched(module: str, kind: str, element: type[Element]) -> Iterator[str]:
+    """A drawing of the kind between two bodies; none for equations, which have no place."""
+    if element.__module__.startswith("stiffmbs") and not kind.endswith("equation"):
+        yield from (".. plot::", "   :include-source: false", f"   :alt: sketch of {kind}", "")
+        yield from (
+            "   from sketches import sketch",
+            f"   sketch({3 if module == 'stiffmbs.spatial' else 2}, '{kind}')",
+            "",
+        )
 
 
 def sources(element: type[Element]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The page of examples: each scene with what its first lines say about it, and its figure, drawn when pages are built."""
+"""The page of examples: each scene with what its first lines say about it, its drawing and its figure, made when pages are built."""
 
 from __future__ import annotations
 
@@ -25,6 +25,16 @@ PLOT = """\
    draw_on(pyplot.figure(), stiffmbs.run(scene), scene.figure)
 """
 
+DRAWING = """\
+.. plot::
+   :include-source: false
+   :alt: drawing of {name}
+
+   import stiffmbs
+
+   stiffmbs.draw("examples/{name}.yaml", checked=True)
+"""
+
 
 class Scenes(SphinxDirective):
     """All scenes of a folder, a section each."""
@@ -40,9 +50,10 @@ class Scenes(SphinxDirective):
         self.env.note_dependency(str(path))
         scene = load_scene(path)
         figure = PLOT.format(name=path.stem) if scene.figure else ""
+        drawing = DRAWING.format(name=path.stem)
         title = f"{scene.name}\n{'-' * len(scene.name)}\n"
         source = ".. code-block:: yaml\n\n" + indent(path.read_text(encoding="utf-8"), "   ")
-        return f"{title}\n``examples/{path.name}``\n\n{figure}\n{source}\n"
+        return f"{title}\n``examples/{path.name}``\n\n{drawing}\n{figure}\n{source}\n"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 from .benchmark import Row
 from .contestant import Contestant, Failed
-from .decades import error_of, over_decades, seconds_of
+from .decades import error_of, over_decades
 from .peers import peers
 from .problem import Problem
+from .turns import seconds_of
 
 AT_A_GLANCE = 1e-6
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -12,7 +12,9 @@ from scipy.integrate import solve_ivp
 from ..describe.model_data import ModelData
 from ..jobs.run import prepare
 from ..solve.trajectory import Outcome
-from .by_hand.ida import Equations
+
+if TYPE_CHECKING:
+    from .by_hand.ida import Equations
 
 Solve = Callable[[], np.ndarray]
 

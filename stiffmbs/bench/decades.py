@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import itertools
-import statistics
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from .benchmark import Row
-from .contestant import Contestant, Failed, Solve
+from .contestant import Contestant, Failed
 from .sweep import FEWEST, WINDOW, at_target_rows, on_line
+from .turns import ONCE, Timed, seconds_of, take_turns
 
 TOLERANCES = tuple(float(f"{10.0**exponent:.2g}") for exponent in np.linspace(-2, -13, 34))
 TARGETS = tuple(10.0**-k for k in range(3, 10))
 """Errors at which times are compared."""
 SET_UP = "set-up"
 ROUNDS = 5
-ONCE = 0.2
-"""Solutions that take longer, s, are timed a single time."""
 LONGEST = 2.0
 """A contestant whose solution took longer, s, is not asked for a tighter one."""
 ENOUGH = 2
@@ -28,25 +26,18 @@ ENOUGH = 2
 
 
 @dataclass
-class Point:
-    """A contestant at a setting: its error, seconds of set-up, and of its solutions; slow ones are not solved again."""
+class Point(Timed):
+    """A contestant at a setting: its error, seconds of set-up, and of its solutions."""
 
     contestant: Contestant
     setting: float
-    solve: Solve | None
     error: float
     set_up: float
-    seconds: list[float] = field(default_factory=list)
-
-    def measure(self) -> None:
-        """Time a solution once more, unless it is slow."""
-        if self.solve is not None:
-            self.seconds.append(seconds_of(self.solve)[0])
 
     def row(self) -> Row:
         """As measured."""
         c = self.contestant
-        return Row(c.solver, f"{c.setting} {self.setting:.3g}", self.error, statistics.median(self.seconds), c.peer)
+        return Row(c.solver, f"{c.setting} {self.setting:.3g}", self.error, self.median, c.peer)
 
 
 def over_decades(
@@ -62,11 +53,7 @@ def over_decades(
         ``at error ...`` for each target it reaches.
     """
     points = [p for c in contestants for p in _points(c, reference, targets)]
-    for _ in range(rounds):
-        for point in points:
-            point.measure()
-    for point in points:
-        del point.seconds[: len(point.seconds) > 1]  # the first one met cold caches
+    take_turns(points, range(rounds))
     rows = [point.row() for point in points]
     return [
         *rows,
@@ -92,13 +79,6 @@ def at_errors(solver: str, peer: bool, rows: Sequence[Row], targets: Sequence[fl
             yield on_line(solver, peer, near, target)
 
 
-def seconds_of(solve: Solve) -> tuple[float, np.ndarray]:
-    """Processor time of a solution, which other programs on the machine leave alone, and the solution."""
-    begun = time.process_time()
-    found = solve()
-    return time.process_time() - begun, found
-
-
 def _points(contestant: Contestant, reference: np.ndarray, targets: Sequence[float]) -> Iterator[Point]:
     beyond, loosest, tightest = 0, max(targets) * WINDOW, min(targets) / WINDOW
     for setting in contestant.settings or TOLERANCES:
@@ -112,7 +92,7 @@ def _points(contestant: Contestant, reference: np.ndarray, targets: Sequence[flo
         error = error_of(found, reference)
         if tightest <= error <= loosest:
             again = solve if seconds < ONCE else None  # what a slow one holds in memory is let go
-            yield Point(contestant, setting, again, error, ready, [seconds])
+            yield Point(again, [seconds], contestant, setting, error, ready)
         beyond += error < tightest
         if beyond == ENOUGH or seconds > LONGEST:
             return

@@ -4,10 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from .benchmark import Row
 from .machine import machine
 from .sweep import at_target_rows
+
+SIZE, NARROW = (8, 5.5), (7, 4.2)
+"""Of figures, inches: with and without a line on the machine."""
+
+
+def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, style: str = "-") -> None:
+    """Times of a solver, on logarithmic axes."""
+    axes.loglog(x, seconds, style, marker=".", label=label)
+
+
+def finished(axes: Any, x: str, title: str) -> None:
+    """Give the axes their labels, grid and legend."""
+    axes.set(xlabel=x, ylabel="time of a solution, s", title=title)
+    axes.grid(which="major", alpha=0.3)
+    axes.legend(fontsize="small")
 
 
 def draw(problem: str, rows: Sequence[Row], folder: Path) -> Path:
@@ -21,16 +37,14 @@ def draw(problem: str, rows: Sequence[Row], folder: Path) -> Path:
     from matplotlib.figure import Figure
 
     measured = [row for row in rows if row.error > 0 and row not in at_target_rows(rows)]
-    figure = Figure(figsize=(8, 5.5), layout="constrained")
+    figure = Figure(figsize=SIZE, layout="constrained")
     axes = figure.add_subplot()
     for solver in dict.fromkeys(row.solver for row in measured):
         own = sorted((r for r in measured if r.solver == solver), key=lambda r: r.seconds)
         style = "--" if own[0].peer else "-"
-        axes.loglog([r.error for r in own], [r.seconds for r in own], style, marker=".", label=solver)
+        curve(axes, [r.error for r in own], [r.seconds for r in own], solver, style)
     axes.invert_xaxis()
-    axes.set(xlabel="largest error, m or rad", ylabel="time of a solution, s", title=problem)
-    axes.grid(which="major", alpha=0.3)
-    axes.legend(fontsize="small")
+    finished(axes, "largest error, m or rad", problem)
     found = machine()
     figure.supxlabel(", ".join(f"{name} {value}" for name, value in found.items()), fontsize=5)
     folder.mkdir(parents=True, exist_ok=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -15,10 +14,11 @@ from ..solve.explicit.projected import TRAITS
 from ..solve.formulations import FORMULATIONS
 from ..solve.trajectory import Outcome, Trajectory
 from .benchmark import Row
-from .decades import LONGEST, ONCE, TARGETS, at_errors
+from .decades import LONGEST, TARGETS, at_errors
 from .peers.scipy import explicit, states
 from .problem import Problem
 from .task import Task
+from .turns import ONCE, seconds_of
 
 TOLERANCES = tuple(float(f"{10.0**-k:.2g}") for k in np.arange(3, 12.1, 0.5))
 STEPS = tuple(10.0**-k for k in np.arange(2, 5.6, 0.25))
@@ -121,9 +121,8 @@ def _measured(
     times: list[float] = []
     found: Trajectory | None = None
     while len(times) <= ROUNDS and (not times or times[0] < ONCE):
-        begun = time.process_time()
-        found = job.integrate()
-        times.append(time.process_time() - begun)
+        seconds, found = seconds_of(job.integrate)
+        times.append(seconds)
     if found is None or found.outcome is not Outcome.DONE:
         return
     report = job.dynamics.report(found.t, found.q, found.u, project=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import statistics
-import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from .benchmark import Row
 from .contestant import Contestant, Failed, Solve
+from .turns import seconds_of
 
 WINDOW = 10**1.5
 """Errors within this factor of the target make the line from which the time at the target is read."""
@@ -31,9 +31,7 @@ class Point:
 
     def measure(self) -> None:
         """Time a solution: by the processor's time, which other programs on the machine leave alone."""
-        begun = time.process_time()
-        self.solve()
-        self.times.append(time.process_time() - begun)
+        self.times.append(seconds_of(self.solve)[0])
 
     def row(self) -> Row:
         """The median of the times."""

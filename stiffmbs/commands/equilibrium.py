@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from ..describe.settings import SteadyMotion
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
 from .scene import (
@@ -32,12 +33,21 @@ from .scene import (
     help="Write the state, which run --from starts from: .npz, .csv or .nc.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@click.option("--velocity", help="Seek it at constant speed: VX,VY or VX,VY,VZ, m/s, or with units.")
+@click.option(
+    "--rotation", help="Seek it on circles: an angular velocity, rad/s; in space about the vertical, or WX,WY,WZ."
+)
+@click.option("--about", help="A point of the axis of the rotation: X,Y or X,Y,Z, m; the origin without it.")
+@click.option("--rolling", multiple=True, metavar="BODY", help="A body that rolls, or spins as described, besides.")
 @state_options
 @solving_options
 def equilibrium(
-    scene: str, output: Path | None, as_json: bool, state: str | None, at: float | None, **options: Any
-) -> None:
-    """Find the static equilibrium of SCENE from its described pose: poses, forces, and what is free to move.
+    scene: str, output: Path | None, as_json: bool, velocity: str | None, rotation: str | None, about: str | None,
+    rolling: tuple[str, ...], state: str | None, at: float | None, **options: Any,
+) -> None:  # fmt: skip
+    """Find the equilibrium of SCENE from its described pose: poses, forces, and what is free to move.
+
+    It is static, or quasi-static where a velocity or a rotation is given, in which all bodies move together.
 
     Exit status: 0 done, 1 no equilibrium was found or the file could not be written, 2 the input is wrong.
     """
@@ -52,8 +62,9 @@ def equilibrium(
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = start_of(loaded, state, at, changes)
+        motion = _motion(velocity, rotation, about, rolling)
         with in_file(scene):
-            found = found_equilibrium(loaded, **start)
+            found = found_equilibrium(loaded, motion=motion, **start)
     except StiffmbsError as error:
         refuse(scene, error, as_json)
     if output is not None:
@@ -63,3 +74,28 @@ def equilibrium(
             click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
             sys.exit(STOPPED_EARLY)
     click.echo(json.dumps(found.as_dict(scene)) if as_json else equilibrium_text(found, loaded))
+
+
+def _motion(
+    velocity: str | None, rotation: str | None, about: str | None, rolling: tuple[str, ...]
+) -> SteadyMotion | None:
+    """The steady motion that options ask for; None for none."""
+    turning = _numbers(rotation)
+    given: dict[str, Any] = {
+        "velocity": _numbers(velocity), "rotation": turning[0] if turning and len(turning) == 1 else turning,
+        "about": _numbers(about), "rolling": rolling or None,
+    }  # fmt: skip
+    given = {name: value for name, value in given.items() if value is not None}
+    return SteadyMotion(**given) if given else None
+
+
+def _numbers(text: str | None) -> list[Any] | None:
+    """Numbers, or texts with units, between commas."""
+    return None if text is None else [_number(part.strip()) for part in text.split(",")]
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text

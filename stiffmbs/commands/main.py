@@ -8,6 +8,7 @@ from .animate import animate
 from .bench import bench
 from .cache import cache
 from .check import check
+from .compare import compare
 from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
@@ -29,6 +30,6 @@ def main() -> None:
 
 
 for command in (
-    run, check, equilibrium, modes, response, study, convert, schema, bench, cache, draw, animate, plot, report, stress,
+    run, check, equilibrium, modes, response, study, compare, convert, schema, bench, cache, draw, animate, plot, report, stress,
 ):  # fmt: skip
     main.add_command(command)

@@ -1,4 +1,4 @@
-"""A progress bar on standard error, for runs of more than two seconds on a terminal."""
+"""What shows on standard error, on a terminal, that a command is at work."""
 
 from __future__ import annotations
 
@@ -51,3 +51,31 @@ class ProgressBar:
     ) -> None:
         if self._bar is not None:
             self._bar.stop()
+
+
+class Telling:
+    """Called with a line on what is being done; shows the last one while someone can see it."""
+
+    def __init__(self) -> None:
+        self._seen = sys.stderr.isatty()
+        self._status: Any = None
+
+    def __call__(self, line: str) -> None:
+        if not self._seen:
+            return
+        if self._status is None:
+            from rich.console import Console
+
+            console = Console(stderr=True, markup=False, emoji=False)
+            self._status = console.status(line, refresh_per_second=4)
+            self._status.start()
+        self._status.update(line)
+
+    def __enter__(self) -> Telling:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._status is not None:
+            self._status.stop()

@@ -117,10 +117,10 @@ def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
     if as_json:
         click.echo(summary.as_json(scene, solution))
         return
-    summary.print_summary(scene, solution, results, _console())
+    summary.print_summary(scene, solution, results, console())
 
 
-def _console() -> Console:
+def console() -> Console:
     """Standard output; lines are broken to the width of a terminal, or of COLUMNS, and nowhere else."""
     from rich.console import Console
 

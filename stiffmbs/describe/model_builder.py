@@ -24,7 +24,7 @@ from .own_elements import check_class
 from .requests.check import ByChannel, by_channel, check_output
 from .requests.order import dimensions, with_named
 from .requests.output_field import RequestField
-from .settings import RunSettings, Settings, takes_settings
+from .settings import RunSettings, Settings, SteadyMotion, takes_settings
 from .states.inputs import InputValue
 from .states.linear_system import StateEntry
 from .states.section import check_states, names_in_formulas
@@ -372,12 +372,16 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
 
     @takes_settings
     def equilibrium(
-        self, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Unpack[Settings]
+        self,
+        settings: RunSettings | None = None,
+        start_from: StartFrom | None = None,
+        motion: SteadyMotion | None = None,
+        **changes: Unpack[Settings],
     ) -> EquilibriumFound:
-        """The pose at rest in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
+        """The pose at rest, or in steady motion, in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
         from ..jobs.equilibrium import equilibrium
 
-        return equilibrium(self, settings, start_from, **changes)
+        return equilibrium(self, settings, start_from, motion, **changes)
 
     @takes_settings
     def modes(

@@ -37,7 +37,7 @@ from .requests.names import OF_PLANE
 from .requests.order import dimension, dimensions
 from .requests.output import Output
 from .requests.output_field import OutputField
-from .settings import RunSettings
+from .settings import RunSettings, SteadyMotion
 from .table import Table
 from .units.units import Quantity, in_text
 
@@ -51,8 +51,9 @@ class Scene(ModelData):
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
     variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
-    start: Literal["described", "equilibrium"] = Field(
-        "described", description="where a run starts: as described, or at rest in the equilibrium found from there"
+    start: Literal["described", "equilibrium"] | SteadyMotion = Field(
+        "described",
+        description="where a run starts: as described, at rest in the equilibrium found from there, or in steady motion",
     )
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")

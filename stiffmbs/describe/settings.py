@@ -140,6 +140,34 @@ class RunSettings(Described):
         return self
 
 
+class SteadyMotion(Described):
+    """All bodies move as one rigid body: along a straight line, or on circles about one axis, at constant speed.
+
+    Adams calls such an equilibrium quasi-static.
+
+    Parameters
+    ----------
+    velocity : tuple of float
+        Of every point beside that of the rotation, in ground axes, m/s: as many numbers as dimensions; none for zero.
+    rotation : float or tuple of float
+        Angular velocity, rad/s: in the plane a number; in space a vector in ground axes, or a number for one against
+        gravity.
+    about : tuple of float
+        A point of the axis of the rotation, m; the origin where none is given.
+    rolling : tuple of str
+        Bodies that spin beside that about their axis of symmetry: as rolling constraints ask, else as they are described.
+    """
+
+    velocity: tuple[si.Velocity, ...] = Field((), description="of every point, in ground axes, m/s")
+    rotation: si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+        0.0, description="angular velocity, rad/s; a number in space is about the vertical"
+    )
+    about: tuple[si.Length, ...] = Field(
+        (), description="a point of the axis of the rotation, m; the origin without it"
+    )
+    rolling: tuple[str, ...] = Field((), description="bodies that spin about their axis of symmetry besides")
+
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..describe.requests.order import units
 from ..describe.scene import Scene
-from ..describe.settings import RunSettings, Settings, takes_settings
+from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..errors import SolverError
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
@@ -19,6 +19,7 @@ from ..solve.trajectory import History, Outcome
 from .run import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
 from .start_from import StartFrom
+from .steady import settled_in_motion
 
 
 @dataclass(frozen=True)
@@ -76,9 +77,10 @@ def equilibrium(
     model: Runnable,
     settings: RunSettings | None = None,
     start_from: StartFrom | None = None,
+    motion: SteadyMotion | None = None,
     **changes: Unpack[Settings],
 ) -> EquilibriumFound:
-    """The pose at rest in which all forces balance, sought from the described one.
+    """The pose at rest, or in steady motion, in which all forces balance, sought from the described one.
 
     Parameters
     ----------
@@ -88,6 +90,8 @@ def equilibrium(
         Its start is the instant at which forces and drives are taken.
     start_from : Solution, str, Path or SavedState, optional
         A state whose pose it is sought from in place of the described one; as for `stiffmbs.run`.
+    motion : SteadyMotion, optional
+        At constant speed or on a circle; that of a scene which starts in one by default.
     **changes
         Fields of the settings to change.
 
@@ -104,9 +108,10 @@ def equilibrium(
     """
     data = data_of(model)
     if isinstance(data, Scene):
+        motion = motion or (data.start if isinstance(data.start, SteadyMotion) else None)
         data = data.model_copy(update={"start": "described"})
     job = prepare(data, settings, start_from, **changes)
-    found = settled(job.dynamics, job.start, job.grid.start)
+    found = _settled(job, motion)
     system, solution = job.dynamics.system, _solution(job, found)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
@@ -115,6 +120,12 @@ def equilibrium(
     return EquilibriumFound(
         job.data.name, job.grid.start, kept, found.moves, found.imbalance, moved, found.free, found.notes, solution
     )
+
+
+def _settled(job: Job, motion: SteadyMotion | None) -> Settled:
+    if motion is None:
+        return settled(job.dynamics, job.start, job.grid.start)
+    return settled_in_motion(job.data, job.dynamics, job.start, job.grid.start, motion)
 
 
 def _solution(job: Job, found: Settled) -> Solution:
@@ -126,7 +137,7 @@ def _solution(job: Job, found: Settled) -> Solution:
     channels = channels_of(job.data, system, rows)
     energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=_message(found.moves),
+        name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=_message(found),
         notes=found.notes, solver={"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance},
         history=History(np.empty(0), np.empty(0, dtype=int)),
         balance=energy_balance(system, rows.t, *energies, rows.values, np.empty(0)), not_unique=job.redundancy.not_unique,
@@ -134,5 +145,6 @@ def _solution(job: Job, found: Settled) -> Solution:
     )  # fmt: skip
 
 
-def _message(moves: int) -> str:
-    return f"at rest in equilibrium after {moves} moves"
+def _message(found: Settled) -> str:
+    how = "in steady motion" if np.any(found.start.u) else "at rest in equilibrium"
+    return f"{how} after {found.moves} moves"

@@ -7,12 +7,16 @@ from dataclasses import dataclass
 from typing import Any, Unpack
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from ..describe.settings import RunSettings, Settings, takes_settings
+from ..errors import InputError
 from ..linear_analysis.modes import Mode, natural_modes
 from ..linear_analysis.state_space import StateMatrix, state_matrix
 from ..linear_analysis.tangent_space import linearised
+from ..results.solution import Solution
 from .at_state import AtState, at_state
+from .mode_shapes import mode_shape
 from .run import Runnable
 from .start_from import StartFrom
 
@@ -38,6 +42,10 @@ class Modes:
         What they are the eigenvalues of.
     notes : tuple of str
         What there is to say of the state, a sentence each.
+    about : AtState
+        The model at that state.
+    own_axes : sparse array, shape (n_u, n_u)
+        From ground axes, which shapes are in, to those of u.
     """
 
     name: str
@@ -46,6 +54,31 @@ class Modes:
     modes: tuple[Mode, ...]
     state: StateMatrix
     notes: tuple[str, ...]
+    about: AtState
+    own_axes: csr_array
+
+    def shape(self, number: int, amplitude: float = 0.1, points: int = 61) -> Solution:
+        """One period of a mode as results over time, which can be drawn and saved like those of a run.
+
+        Parameters
+        ----------
+        number : int
+            1 for the slowest.
+        amplitude : float
+            The largest displacement, or rotation times the mechanism's size, relative to that size.
+        points : int
+            Instants, both ends included.
+
+        Raises
+        ------
+        InputError
+            When there is no such mode.
+        SolverError
+            Where the mechanism cannot move so far.
+        """
+        if not 1 <= number <= len(self.modes):
+            raise InputError(f"mode {number}: found no such mode, expected one of 1 to {len(self.modes)}")
+        return mode_shape(self.about, self.own_axes, self.modes[number - 1], number, amplitude, points)
 
     def as_dict(self, scene: str) -> dict[str, Any]:
         """The content of ``stiffmbs modes --json``.
@@ -103,7 +136,7 @@ def modes(
     state = state_matrix(linear, scale)
     shapes = tuple(natural_modes(state, linear.mass, system.bodies, scale))
     notes = tuple(_notes(found, state))
-    return Modes(found.data.name, found.t, state.degrees_of_freedom, shapes, state, notes)
+    return Modes(found.data.name, found.t, state.degrees_of_freedom, shapes, state, notes, found, linear.own_axes)
 
 
 def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:

@@ -15,7 +15,7 @@ from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.requests.order import units
 from ..describe.scene import Scene, notes_of
-from ..describe.settings import RunSettings, Settings, takes_settings
+from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..diagnostics.far_away import refuse_far_away
 from ..diagnostics.growth import senseless
 from ..diagnostics.lost_turns import lost_turns_sentence
@@ -145,7 +145,12 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
         )
     start = initial_values(dynamics, t)
-    if isinstance(data, Scene) and data.start == "equilibrium":
+    asked = data.start if isinstance(data, Scene) else "described"
+    if isinstance(asked, SteadyMotion):
+        from .steady import settled_in_motion
+
+        return settled_in_motion(data, dynamics, start, t, asked).start
+    if asked == "equilibrium":
         from .settled import settled
 
         return settled(dynamics, start, t).start

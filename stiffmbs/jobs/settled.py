@@ -83,8 +83,9 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
 
 
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
-    rest = np.zeros_like(start.u)
-    resting = replace(start, q=found.q, u=rest, acceleration=rest, lam=found.lam, moved=(), notes=tuple(notes))
+    resting = replace(
+        start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=tuple(notes)
+    )
     return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
 
 

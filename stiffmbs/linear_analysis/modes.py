@@ -94,7 +94,7 @@ def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], 
         In ground axes.
     bodies : tuple of str
     scale : ndarray, shape (n_u,)
-        Lengths for displacements, 1 for rotations.
+        The mechanism's size for displacements, 1 for rotations.
     """
     if not len(state.matrix):
         return []
@@ -160,7 +160,7 @@ def _mode(
     both: tuple[complex, ...], shape: np.ndarray, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray
 ) -> Mode:
     motion = Motion.OSCILLATING if both[0].imag else Motion.APERIODIC if all(both) else Motion.RIGID
-    sizes = shape / scale * scale.max()
+    sizes = shape / scale * scale[0]  # the first of a body is a displacement
     if np.max(np.abs(sizes), initial=0.0) <= NO_MOTION:  # of states alone
         return Mode(motion, both, np.zeros(len(shape), dtype=complex), {})
     shape = shape / sizes[np.argmax(np.abs(sizes))]

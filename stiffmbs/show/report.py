@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import math
+from collections.abc import Sequence
 from importlib.metadata import version
 from importlib.resources import files
 from importlib.util import find_spec
@@ -34,6 +35,7 @@ from .joint_forces import joint_forces
 from .modes import modes_text
 from .page.data import page_data
 from .page.parts import page_parts
+from .sections import Section
 from .step_history import step_history
 
 if TYPE_CHECKING:
@@ -61,7 +63,9 @@ def check_report(path: Path) -> None:
             raise InputError(f"-o {path}: found no {package}, expected it installed: pip install 'stiffmbs[report]'")
 
 
-def write_report(path: Path, scene: Scene, solution: Solution, text: str = "") -> None:
+def write_report(
+    path: Path, scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = ()
+) -> None:
     """Write the page; it appears whole or not at all.
 
     Parameters
@@ -73,13 +77,15 @@ def write_report(path: Path, scene: Scene, solution: Solution, text: str = "") -
         With error bars where it was verified.
     text : str
         Of the scene's file.
+    sections : sequence of Section
+        What else was asked for.
     """
-    page = report_page(scene, solution, text)
+    page = report_page(scene, solution, text, sections)
     written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
 
 
 @np.errstate(all="ignore")  # of a diverged run sums overflow
-def report_page(scene: Scene, solution: Solution, text: str = "") -> str:
+def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = ()) -> str:
     """The page as HTML, figures and all."""
     from jinja2 import Environment
 
@@ -96,6 +102,7 @@ def report_page(scene: Scene, solution: Solution, text: str = "") -> str:
         solution=solution, check=report, settings=_settings(scene), peaks=_peaks(solution),
         start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
+        sections=[(section, [_embedded(sheet, 0) for sheet in section.figures]) for section in sections],
         counted=solver_words(solution.solver), violation=float(np.nanmax(solution.channels["constraint.position"])),
         forces=joint_forces(solution), modes=_modes(scene), text=text, moving=_moving(scene, solution, report), **page_parts(),
     )  # fmt: skip

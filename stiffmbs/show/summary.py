@@ -29,7 +29,7 @@ STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOP
 @np.errstate(all="ignore")  # of a diverged run sums overflow
 def as_json(scene: str, solution: Solution) -> str:
     """The one-line JSON object of ``stiffmbs run --json``."""
-    return _line(
+    return json_line(
         {
             "scene": scene,
             "status": STATUS[solution.outcome],
@@ -58,15 +58,16 @@ def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
 
 def check_as_json(scene: str, report: Report) -> str:
     """The one-line JSON object of ``stiffmbs check --json``."""
-    return _line(report.as_dict(scene))
+    return json_line(report.as_dict(scene))
 
 
 def error_as_json(scene: str, message: str, status: str = "error") -> str:
     """The one-line JSON object for a scene that could not be run, or that has no result."""
-    return _line({"scene": scene, "status": status, "message": message})
+    return json_line({"scene": scene, "status": status, "message": message})
 
 
-def _line(content: Any) -> str:
+def json_line(content: Any) -> str:
+    """Anything as one line of JSON; NaN and infinity become null."""
     return json.dumps(_finite(content), allow_nan=False)
 
 

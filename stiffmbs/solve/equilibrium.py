@@ -16,14 +16,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, diags_array
+from scipy.sparse import block_array, diags_array
 from scipy.sparse.linalg import splu
 
-from ..compile.system import System
-from ..compile.terms import TERM_AXES
 from ..errors import SolverError
 from .dynamics import Dynamics
-from .failures import FAILURES
+from .force_balance import Balance, balance_at, moved, way
+from .steady_motion import SteadyMotion, at_rest
 
 MOST_MOVES = 2000
 TRANSLATION, ROTATION = 0.25, 0.5
@@ -37,17 +36,15 @@ the step, and from which on it is taken back."""
 MOST_CORRECTIONS = 8
 SLOW = 0.5
 """Part that has to be left after one of the last moves for another one."""
-BALANCED, ROUNDING = 1e-10, 8
-"""Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A pose at rest in which forces balance.
+    """A pose at rest, or in a steady motion, in which forces balance.
 
     Attributes
     ----------
-    q, lam : ndarrays
+    q, u, acceleration, lam : ndarrays
     moves : int
         That led there.
     imbalance : float
@@ -55,54 +52,15 @@ class Equilibrium:
     """
 
     q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
     lam: np.ndarray
     moves: int
     imbalance: float
 
 
-@dataclass(frozen=True)
-class _Balance:
-    """What is known at a pose.
-
-    Attributes
-    ----------
-    n_u : int
-        Number of velocities.
-    left : ndarray, shape (n_u + states,)
-        What is left of the forces, and the rates of the states.
-    lam : ndarray
-    largest : float
-        The largest force.
-    allowed : ndarray, shape (n_u + states,)
-        What may be left.
-    stiffness : sparse array
-        Derivatives of what is left, with the opposite sign.
-    jacobian, reactions : sparse arrays
-        Of the constraints, and of what is left by multipliers, with the opposite sign.
-    """
-
-    n_u: int
-    left: np.ndarray
-    lam: np.ndarray
-    largest: float
-    allowed: np.ndarray
-    stiffness: csc_array
-    jacobian: csc_array
-    reactions: csc_array
-
-    @property
-    def imbalance(self) -> float:
-        """Of forces, relative to the largest."""
-        return float(np.max(np.abs(self.left[: self.n_u]), initial=0.0) / (self.largest or 1.0))
-
-    @property
-    def balanced(self) -> bool:
-        """Whether no more is left than rounding and a little of the largest force."""
-        return bool(np.all(np.abs(self.left) <= self.allowed))
-
-
-def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
-    """The equilibrium that a system comes to from its pose if it moves slowly; the state is at rest there afterwards.
+def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None = None) -> Equilibrium:
+    """The equilibrium that a system comes to from its pose if it moves slowly; the state is there afterwards.
 
     Parameters
     ----------
@@ -110,6 +68,8 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
         At an assembled pose.
     t : float
         At which forces and drives are taken, s.
+    motion : SteadyMotion, optional
+        In which it is sought; at rest without one.
 
     Raises
     ------
@@ -117,41 +77,42 @@ def find_equilibrium(dynamics: Dynamics, t: float) -> Equilibrium:
         Where none is found; names the body with the largest imbalance.
     """
     state = dynamics.state
-    state.u[:] = 0.0
-    shift, known, moves = 1.0, _balance(dynamics, t), 0
+    motion = motion or at_rest(dynamics.system.of_body.dimensions)
+    shift, known, moves = 1.0, balance_at(dynamics, t, motion), 0
     while moves < MOST_MOVES and shift < STIFFEST:
         if known.balanced:
-            known, more = _polished(dynamics, t, known)
-            return Equilibrium(state.q.copy(), known.lam, moves + more, known.imbalance)
+            known, more = _polished(dynamics, t, motion, known)
+            return as_equilibrium(dynamics, t, motion, known, moves + more)
         before = state.q.copy()
-        step = _step(dynamics, t, shift, known)
+        step = _step(dynamics, t, motion, shift, known)
         moves += step.moves
         shift = max(SLOWEST, step.factor * shift)
         if step.known is None:
             state.q[:] = before
+            motion.put(dynamics, t)
         else:
             known = step.known
-    raise SolverError(_unbalanced(dynamics, known))
+    raise SolverError(unbalanced(dynamics, known))
 
 
 @dataclass(frozen=True)
 class _Step:
     """What came of an implicit step: the balance there, or None where it was none; what the root of s is multiplied by."""
 
-    known: _Balance | None
+    known: Balance | None
     factor: float
     moves: int
 
 
-def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
+def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, known: Balance) -> _Step:
     """An implicit step from the present pose; the pose is wherever it led."""
     system, state = dynamics.system, dynamics.state
     of_states = np.maximum(system.state_scales, np.abs(state.q[system.first_state :]))
     limits = np.append(system.per_velocity(TRANSLATION * system.size, ROTATION), of_states)
     start, first = state.q.copy(), 0.0
     for count in range(1, MOST_CORRECTIONS + 1):
-        whole = _way(system, start, state.q)
-        move = _move(dynamics, shift, known, whole)
+        whole = way(system, start, state.q)
+        move = newton_move(dynamics, shift, known, whole)
         if (
             count == 1 and not system.states and not known.left @ np.nan_to_num(move) >= 0
         ):  # towards an unstable equilibrium
@@ -161,10 +122,10 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
             return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
         if count > 1 and longest > TOO_FAR * longest_of_all:
             break
-        state.q[:] = _moved(system, state.q, move)
+        state.q[:] = moved(system, state.q, move)
         if dynamics.assemble(t) < 0:
             break
-        known, first = _balance(dynamics, t), first or longest
+        known, first = balance_at(dynamics, t, motion), first or longest
         if known.balanced:
             return _Step(known, 1.0, count)
         if count > 1 and longest <= CLOSE * longest_of_all:
@@ -174,69 +135,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: _Balance) -> _Step:
     return _Step(None, RISES, count)
 
 
-def _balance(dynamics: Dynamics, t: float) -> _Balance:
-    """Multipliers that balance forces best (in the metric of the masses), and what they leave."""
-    state, system = dynamics.state, dynamics.system
-    state.u[:] = 0.0
-    state.count_anew(t)
-    status, acceleration = dynamics.accelerate(t)
-    if status < 0:
-        raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
-    state.evaluate("motion", t)
-    largest = max(
-        np.max(np.abs(state.vector("motion", "f")), initial=0.0), np.max(np.abs(_entries(dynamics)), initial=0.0)
-    )
-    rates = dynamics.position_rates(state.q, state.u)[system.first_state :]
-    stiffness, jacobian, reactions, sizes = _derivatives(dynamics, t)
-    farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
-    of_poses = abs(stiffness[: system.n_u, : system.n_u])
-    rounding = ROUNDING * np.finfo(float).eps * (of_poses @ system.per_velocity(float(farthest), 1.0))
-    allowed = np.append(np.maximum(BALANCED * largest, rounding), BALANCED * sizes)
-    left, lam = np.append(system.mass * acceleration, rates), state.lam[: system.n_c].copy()
-    return _Balance(system.n_u, left, lam, float(largest), allowed, stiffness, jacobian, reactions)
-
-
-def _entries(dynamics: Dynamics) -> np.ndarray:
-    """The single contributions to applied forces: they may cancel in the sum."""
-    term = dynamics.system.term("motion", "f")
-    entries: np.ndarray = dynamics.state.values["motion"][term.source]
-    return entries
-
-
-def _derivatives(dynamics: Dynamics, t: float) -> tuple[csc_array, csc_array, csc_array, np.ndarray]:
-    """-f_q + d(J^T lam)/dq, J and J^T of the equations that are not redundant, by velocities, all with rows and columns of
-    states; and the sizes of what the rates of states are made of."""
-    system, q = dynamics.system, dynamics.state.q
-    dynamics.state.evaluate("tangent", t)
-    rates = _sparse(dynamics, "tangent", "Z") + _identity(dynamics)
-    by_pose = _sparse(dynamics, "tangent", "G_lam") - _sparse(dynamics, "tangent", "f_q")
-    stiffness, rows = by_pose @ rates, np.flatnonzero(system.active)
-    jacobian = _sparse(dynamics, "tangent", "J")[rows]
-    if not system.states:
-        return stiffness, jacobian, jacobian.T, np.empty(0)
-    own = slice(system.first_state, None)
-    of_rates = _sparse(dynamics, "tangent", "rate_q")[own]
-    whole = block_array([[stiffness, by_pose[:, own]], [-of_rates @ rates, -of_rates[:, own]]], format="csc")
-    wide = block_array([[jacobian, csc_array((len(rows), len(system.states)))]], format="csc")
-    reactions = block_array([[jacobian.T], [-_sparse(dynamics, "tangent", "rate_lam")[own][:, rows]]], format="csc")
-    sizes = system.per_coordinate(system.size, 1.0)
-    sizes[own] = system.state_scales
-    return whole, wide, reactions, abs(of_rates) @ np.maximum(sizes, np.abs(q))
-
-
-def _way(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """What leads from a pose and states to others."""
-    return np.append(system.move(start, there), (there - start)[system.first_state :])
-
-
-def _moved(system: System, q: np.ndarray, move: np.ndarray) -> np.ndarray:
-    """The pose and states after a move."""
-    there = system.of_body.moved(q, move[: system.n_u])
-    there[system.first_state :] += move[system.n_u :]
-    return there
-
-
-def _move(dynamics: Dynamics, shift: float, known: _Balance, whole: np.ndarray) -> np.ndarray:
+def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
     """Newton's move in a step that has come so far as a whole; `shift` is the root of s."""
     system, jacobian = dynamics.system, known.jacobian
     inertia = np.append(shift**2 * system.mass, np.full(len(system.states), shift))
@@ -249,16 +148,16 @@ def _move(dynamics: Dynamics, shift: float, known: _Balance, whole: np.ndarray) 
     return found
 
 
-def _polished(dynamics: Dynamics, t: float, known: _Balance) -> tuple[_Balance, int]:
+def _polished(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance) -> tuple[Balance, int]:
     """Newton's moves from a balanced pose as long as less and less is left, and their number."""
     system, state = dynamics.system, dynamics.state
     for count in range(MOST_CORRECTIONS):
         before = state.q.copy()
-        move = _move(dynamics, SLOWEST, known, np.zeros(len(known.left)))
+        move = newton_move(dynamics, SLOWEST, known, np.zeros(len(known.left)))
         if not np.all(np.isfinite(move)):
             return known, count
-        state.q[:] = _moved(system, before, move)
-        found = _balance(dynamics, t) if dynamics.assemble(t) >= 0 else None
+        state.q[:] = moved(system, before, move)
+        found = balance_at(dynamics, t, motion) if dynamics.assemble(t) >= 0 else None
         if found is None or not np.max(np.abs(found.left)) < SLOW * np.max(np.abs(known.left)):
             state.q[:] = before
             return known, count
@@ -266,22 +165,15 @@ def _polished(dynamics: Dynamics, t: float, known: _Balance) -> tuple[_Balance, 
     return known, MOST_CORRECTIONS
 
 
-def _identity(dynamics: Dynamics) -> csc_array:
-    """q' of the coordinates whose rate is a velocity."""
-    system = dynamics.system
-    q, u = system.of_body.straight(len(system.bodies))
-    return csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
+def as_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance, moves: int) -> Equilibrium:
+    """The present pose, which is balanced, with the motion's velocities."""
+    motion.put(dynamics, t)
+    q, u = dynamics.state.q.copy(), dynamics.state.u.copy()
+    return Equilibrium(q, u, motion.acceleration(dynamics), known.lam, moves, known.imbalance)
 
 
-def _sparse(dynamics: Dynamics, term_set: str, name: str) -> csc_array:
-    system = dynamics.system
-    term = system.term(term_set, name)
-    axes = TERM_AXES[name]
-    shape = system.extent(axes[0]), system.extent(axes[1])
-    return csc_array((dynamics.state.values[term_set][term.source], (term.row, term.column)), shape=shape)
-
-
-def _unbalanced(dynamics: Dynamics, known: _Balance) -> str:
+def unbalanced(dynamics: Dynamics, known: Balance) -> str:
+    """Why no equilibrium was found, with the body that has the largest imbalance."""
     system = dynamics.system
     forces, rates = np.split(known.left, [system.n_u])
     if system.states and np.all(np.abs(forces) <= known.allowed[: system.n_u]):

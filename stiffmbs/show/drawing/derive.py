@@ -19,12 +19,14 @@ from .palette import body_colors
 from .poses import Poses, described_poses, placed
 from .scene_graph import Anchor, Drawing, Mark, Name, Part
 
-UNIT = 0.022
+UNIT = 0.024
 """The unit of symbols over the mechanism's size."""
+FRONT = 2.0
+"""Units that symbols of the plane lie before bodies."""
 Joints = dict[str, tuple[Any, Site | None, Site | None]]
 
 
-def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None) -> Drawing:
+def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: float = 1.0) -> Drawing:
     """The drawing of a model.
 
     Parameters
@@ -32,6 +34,8 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None) -> Draw
     data : ModelData
     marks : mapping of str to Mark, optional
         Joints of which there is something to say.
+    scale : float
+        Of symbols, against their usual size.
 
     Raises
     ------
@@ -43,7 +47,7 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None) -> Draw
     shaped = {name: given_shapes(name, body, data.dimensions, 1.0) for name, body in data.bodies.items()}
     size = _size(data, sites, shaped)
     colors = body_colors(data.bodies)
-    drafts = [_drawn(name, element, data, sites, size, colors) for name, element in _elements(data)]
+    drafts = [_drawn(name, element, data, sites, size, colors, scale) for name, element in _elements(data)]
     parts = [part for draft in drafts for part in draft.parts]
     having = {part.body for part in parts if part.role == "body"}
     points = sites.on_bodies()
@@ -142,7 +146,7 @@ def _own_size(data: ModelData) -> float:
 
 
 def _drawn(
-    name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str]
+    name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str], scale: float
 ) -> Draft:
     """The symbol of one element."""
     joints: Joints = {
@@ -158,7 +162,10 @@ def _drawn(
     down[: data.dimensions] = data.gravity
     length = float(np.linalg.norm(down))
     fallback = np.array([0.0, -1.0, 0.0]) if data.dimensions == 2 else np.array([0.0, 0.0, -1.0])
-    draft = Draft(name, element, UNIT * size, size, i, j, joints, down / length if length else fallback, dict(colors))
+    unit = UNIT * size * scale
+    below = down / length if length else fallback
+    front = FRONT * unit if data.dimensions == 2 else 0.0
+    draft = Draft(name, element, unit, size, i, j, joints, front, below, dict(colors))
     symbols = import_module(f".symbols.{'planar' if data.dimensions == 2 else 'spatial'}", __package__).SYMBOLS
     usual = symbols["joint" if isinstance(element, Joint) else "any_force"]
     symbols.get(element.symbol or element.kind, usual)(draft)

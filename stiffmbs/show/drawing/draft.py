@@ -76,6 +76,8 @@ class Draft:
         The element's markers, or those of the joint that it refers to.
     joints : mapping
         All joints by name, with their sites.
+    front : float
+        How far symbols of the plane lie before bodies, m; zero in space.
     down : ndarray, shape (3,)
         Where the ground is below its supports.
     colors : mapping of str to str
@@ -89,6 +91,7 @@ class Draft:
     i: Site | None
     j: Site | None
     joints: dict[str, tuple[Any, Site | None, Site | None]]
+    front: float
     down: np.ndarray
     colors: dict[str, str]
     parts: list[Part] = field(default_factory=list)

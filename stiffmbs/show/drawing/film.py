@@ -179,7 +179,7 @@ def write_gif(path: Path, frames: Iterator[np.ndarray], rate: float) -> None:
     mosaic = Image.new("RGB", (few[0].width * len(few), few[0].height))
     for k, image in enumerate(few):
         mosaic.paste(image, (k * few[0].width, 0))
-    palette = mosaic.quantize(128)
+    palette = mosaic.quantize(255, method=Image.Quantize.MAXCOVERAGE)
     reduced = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     reduced[0].save(path, save_all=True, append_images=reduced[1:], duration=1000 / rate, loop=0, optimize=False)
 

@@ -16,6 +16,8 @@ from .view import View
 
 LIGHT = np.array([0.35, 0.5, 0.8])
 """Where light comes from: to the right, up, towards the viewer."""
+SYMBOLS_BEFORE = 0.05
+"""Of the size: how far symbols are drawn before the bodies around them."""
 FOREMOST = 0.004
 """Of the size: how far lines lie before faces at the same place."""
 NEGLIGIBLE = 1e-9
@@ -89,12 +91,13 @@ def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Ite
     origin, axes = poses.pose(part.body, k)
     face = _face(drawing, part)
     edge, wider = _edge(drawing, part.owner, part.role)
+    nearer = np.zeros(3)
+    nearer[2] = 0.0 if part.role == "body" or drawing.dimensions == 2 else SYMBOLS_BEFORE * drawing.size
     for solid in part.solids:
-        yield from _solid(
-            view.seen(origin + solid.vertices @ axes.T), solid, face, (edge, wider), drawing.dimensions == 2
-        )
+        seen = view.seen(origin + solid.vertices @ axes.T) + nearer
+        yield from _solid(seen, solid, face, (edge, wider), drawing.dimensions == 2)
     for line in part.lines:
-        seen = view.seen(origin + line.points @ axes.T)
+        seen = view.seen(origin + line.points @ axes.T) + nearer
         yield from _line(seen, line, edge, wider, FOREMOST * drawing.size)
 
 

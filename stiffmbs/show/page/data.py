@@ -19,9 +19,9 @@ from ..drawing.scene_graph import Anchor, Drawing
 
 MOST_POSES = 1200
 POSES_A_SECOND = 60
-POSE_VALUES = 400_000
+POSE_VALUES = 240_000
 """Numbers of poses and forces of all runs together, at most."""
-CHANNEL_VALUES = 700_000
+CHANNEL_VALUES = 450_000
 """Numbers of channels, at most."""
 MOST_INSTANTS = 2000
 LEVELS = 65535

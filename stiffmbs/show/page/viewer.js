@@ -203,9 +203,9 @@ const MOVING = (() => {
     controls.enableDamping = false;
     const box = new THREE.Box3();
     const throughout = (act) => {
-      for (let k = 0; k <= 20; k++) {
+      for (let k = 0; k <= 12; k++) {
         for (const machine of machines) {
-          machine.update(time.start + ((time.end - time.start) * k) / 20);
+          machine.update(time.start + ((time.end - time.start) * k) / 12);
           machine.root.updateMatrixWorld(true);
           act(machine.root);
         }
@@ -505,7 +505,7 @@ const MOVING = (() => {
     const it = { time, data, shown, plotted, frames: 0 };
     const tick = (now) => {
       if (time.playing && last !== null) {
-        const t = time.t + ((now - last) / 1000) * time.speed;
+        const t = time.t + Math.min((now - last) / 1000, 0.5) * time.speed;  // no jump after a pause of the browser
         if (t >= time.end) time.playing = false;
         time.set(t);
       }

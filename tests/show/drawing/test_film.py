@@ -29,11 +29,13 @@ def run(*arguments):
 
 
 def test_poses_between_instants_turn_the_shorter_way():
-    turns = np.array([[1.0, 0, 0, 0], [0, 0, 0, -1.0]])  # half a turn about z, with the other sign
+    half = np.radians([5, 15])
+    signs = np.array([[1.0], [-1.0]])  # p and -p are one orientation
+    turns = signs * np.column_stack([np.cos(half), 0 * half, 0 * half, np.sin(half)])
     poses = Poses(np.array([0.0, 2.0]), {"a": np.array([[0.0, 0, 0], [4, 2, 0]])}, {"a": turns})
     found = poses.resampled(np.array([1.0, 5.0]))
     assert found.points["a"].tolist() == [[2, 1, 0], [4, 2, 0]]
-    assert abs(found.orientations["a"][0]) == pytest.approx([np.sqrt(0.5), 0, 0, np.sqrt(0.5)])
+    assert abs(found.orientations["a"][0]) == pytest.approx([np.cos(np.radians(10)), 0, 0, np.sin(np.radians(10))])
 
 
 def test_instants_without_values_are_left_out():

@@ -77,18 +77,32 @@ def test_the_mechanism_is_drawn_and_moves(tab, opened, command, scene, options):
 
 
 def test_it_plays_to_its_end_and_again(tab, opened):
+    """However slowly the machine draws: the first time slowly until it is seen to play, then to the end at once."""
     opened("animate", EXAMPLES / "four_bar.yaml")
-    tab.run(
-        "document.querySelector('.controls select').value = '5'; document.querySelector('.controls select').onchange()"
-    )
-    tab.run("document.querySelector('.controls button').click()")
-    tab.wait("shown.time.t > 0.3")
+    speed = "((s) => { const e = document.querySelector('.controls select'); e.value = s; e.onchange(); })"
+    press = "document.querySelector('.controls button').click()"
+    tab.run(f"{speed}('0.01'); {press}")
+    tab.wait("shown.time.t > 0")
     assert tab.run("document.querySelector('.controls button').textContent") == "Pause"
+    tab.run(f"{speed}('5')")
     tab.wait("!shown.time.playing")
     assert tab.run("shown.time.t") == pytest.approx(1)
-    tab.run("document.querySelector('.controls button').click()")
-    tab.wait("shown.time.t < 0.9")
-    assert float(tab.run("document.querySelector('input[type=range]').value")) < 950
+    tab.run(f"{speed}('0.01'); {press}")
+    tab.wait("shown.time.playing && shown.time.t < 0.9")
+    assert float(tab.run("document.querySelector('input[type=range]').value")) < 900
+
+
+def test_bodies_turn_as_they_do_in_the_run(tab, opened):
+    """A bar let go from the horizontal hangs when it is lowest."""
+    solution = stiffmbs.run(EXAMPLES / "bar_pendulum.yaml")
+    opened("animate", EXAMPLES / "bar_pendulum.yaml")
+    tab.run("shown.shown.state.forces = shown.shown.state.names = false; document.querySelector('.legend')?.remove()")
+    sizes = []
+    for time in (0.0, solution.time[np.argmin(solution["bar.y"])]):
+        tab.run(f"shown.time.set({time})")
+        where = np.argwhere(np.ptp(pixels(tab, ".viewer canvas"), axis=2) > 60)
+        sizes.append(np.ptp(where, axis=0))
+    assert sizes[0][1] > 5 * sizes[0][0] and sizes[1][0] > 5 * sizes[1][1]
 
 
 def test_the_scrubber_sets_the_time_of_plots_and_mechanism(tab, opened):

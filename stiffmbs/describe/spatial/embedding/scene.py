@@ -12,6 +12,7 @@ from ...marker import GROUND, MarkerReference
 from ...model import PlanarData
 from ...model_data import ModelData
 from ...scene import Scene
+from ...settings import SteadyMotion
 from .angles import Angles
 from .fields import fields, plain
 from .formulas import request
@@ -55,13 +56,20 @@ def scene_in_space(data: PlanarData) -> Written:
             "tables": plain(data.tables, angles),
             "variables": {name: request(found, angles) for name, found in data.variables.items()},
             "figure": _figure(data, requests, angles),
-            "start": data.start if data.start != Scene.model_fields["start"].default else None,
+            "start": _start(data.start),
             "run": plain(data.run.model_dump(exclude_unset=True), angles),
             "notes": list(data.notes),
         }
     parts["bodies"] = {name: _body(name, body, angles) for name, body in data.bodies.items()}
     parts["markers"] = _markers(GROUND, data.markers, angles)
     return {name: parts[name] for name in ORDER if parts.get(name)}
+
+
+def _start(start: str | SteadyMotion) -> str | Written | None:
+    if isinstance(start, SteadyMotion):
+        vectors = {name: [*getattr(start, name), 0] for name in ("velocity", "about") if getattr(start, name)}
+        return {**vectors, "rotation": [0, 0, start.rotation], "rolling": list(start.rolling)}
+    return start if start != Scene.model_fields["start"].default else None
 
 
 def _body(name: str, body: Body, angles: Angles) -> Written:

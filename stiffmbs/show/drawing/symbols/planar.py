@@ -10,6 +10,7 @@ from .. import solids
 from ..draft import Draft, Site
 from ..scene_graph import Line, Role
 from . import profiles
+from .gears import gear, rack_and_pinion
 from .shared import (
     any_force,
     any_joint,
@@ -26,12 +27,10 @@ from .shared import (
     upright,
 )  # fmt: skip
 
-FRONT = 2.0
-"""Units that symbols lie before bodies."""
 
-
-def _front(site: Site, d: Draft, layer: float = FRONT) -> Site:
-    return site.at((0, 0, layer * d.u))
+def _front(site: Site, d: Draft, layer: float = 1.0) -> Site:
+    """A site before the bodies, in layers: where pins are, or as far as a part of that."""
+    return site.at((0, 0, layer * d.front))
 
 
 def _pin(d: Draft, site: Site, radius: float = 0.5) -> None:
@@ -45,7 +44,7 @@ def _support(d: Draft) -> None:
     if site is None:
         return
     foot = np.array([[0, 0, 0], [-0.9, -1.6, 0], [0.9, -1.6, 0]]) * d.u
-    below = _front(upright(d, site), d, 0.5 * FRONT)
+    below = _front(upright(d, site), d, 0.5)
     d.put(
         below, "ground", solids.flat(foot), solids.outline(foot, 1.1), *hatched(d.u, 1.3, -1.6 * d.u), color="#dddddd"
     )
@@ -77,7 +76,7 @@ def prismatic(d: Draft) -> None:
         return
     block = solids.rectangle(4.4 * d.u, 2.4 * d.u)
     color = d.colors.get(d.i.body, "")
-    d.put(_front(d.i, d, 0.3), "body", solids.flat(block), solids.outline(block), color=color)
+    d.put(_front(d.i, d, 0.15), "body", solids.flat(block), solids.outline(block), color=color)
     _guides(d, 1.2)
 
 
@@ -127,32 +126,6 @@ def distance(d: Draft) -> None:
             _pin(d, site, 0.32)
 
 
-def gear(d: Draft) -> None:
-    """Pitch circles, each with a stroke that turns."""
-    one, two = d.joint_site("joint_1"), d.joint_site("joint_2")
-    if one is None or two is None:
-        return
-    apart = float(np.linalg.norm(one.in_ground - two.in_ground))
-    ratio = d.element.ratio
-    first = apart / abs(1 + ratio) if abs(1 + ratio) > 1e-9 else apart / 2
-    for site, radius in ((one, first), (two, abs(ratio) * first)):
-        _wheel(d, site, radius)
-
-
-def _wheel(d: Draft, site: Site, radius: float) -> None:
-    mark = np.array([[0.75 * radius, 0, 0], [radius, 0, 0]])
-    d.put(_front(site, d), "joint", Line(solids.circle(radius, corners=48), 1.3, dashed=True), Line(mark, 1.3))
-
-
-def rack_and_pinion(d: Draft) -> None:
-    """The pitch circle of the pinion, and the rack."""
-    pinion, rack = d.joint_site("pinion"), d.joint_site("rack")
-    if pinion is not None:
-        _wheel(d, pinion, abs(d.element.pitch_radius))
-    if rack is not None:
-        d.put(_front(rack, d), "joint", Line(np.array([[-0.3, 0, 0], [0.3, 0, 0]]) * d.size, 1.5, dashed=True))
-
-
 def drive(d: Draft) -> None:
     """An arrow around a driven angle, or along a driven displacement."""
     site = d.j or d.i
@@ -187,14 +160,14 @@ def spring_damper(d: Draft) -> None:
     damped = bool(getattr(d.element, "damping", 0)) or getattr(d.element, "damper_law", None) is not None
     shift = 0.75 * d.u if damped else 0.0
     d.stretch(
-        _front(d.i, d, 1),
-        _front(d.j, d, 1),
+        _front(d.i, d, 0.5),
+        _front(d.j, d, 0.5),
         "force",
         profiles.zigzag(0.5 * d.u if damped else 0.7 * d.u, shift),
         width=1.2,
     )
     if damped:
-        d.stretch(_front(d.i, d, 1), _front(d.j, d, 1), "force", *profiles.damper(0.45 * d.u, -shift), width=1.1)
+        d.stretch(_front(d.i, d, 0.5), _front(d.j, d, 0.5), "force", *profiles.damper(0.45 * d.u, -shift), width=1.1)
 
 
 def torsion_spring(d: Draft) -> None:
@@ -206,7 +179,7 @@ def bushing(d: Draft) -> None:
     if d.i is None or d.j is None:
         return
     _support(d)
-    d.put(_front(d.j, d, 0.9 * FRONT), "rubber", solids.disc(0.95 * d.u), Line(solids.circle(0.95 * d.u), 1.2))
+    d.put(_front(d.j, d, 0.9), "rubber", solids.disc(0.95 * d.u), Line(solids.circle(0.95 * d.u), 1.2))
     _pin(d, d.i, 0.42)
 
 
@@ -218,7 +191,9 @@ def contact(d: Draft) -> None:
     if e.radius:
         ring = solids.circle(e.radius, corners=40)
         spoke = Line(np.array([[0.6 * e.radius, 0, 0], [e.radius, 0, 0]]))
-        d.put(_front(d.i, d, -0.3), "body", solids.flat(ring[:-1]), Line(ring), spoke, color=d.colors.get(d.i.body, ""))
+        d.put(
+            _front(d.i, d, -0.15), "body", solids.flat(ring[:-1]), Line(ring), spoke, color=d.colors.get(d.i.body, "")
+        )
     else:
         _pin(d, d.i, 0.2)
     role: Role = "ground" if d.j.on_ground else "joint"
@@ -228,7 +203,7 @@ def contact(d: Draft) -> None:
         d.put(d.j.at((start, 0, 0)), role, *(lines if d.j.on_ground else lines[:1]))
     elif e.surface_radius:
         ring = solids.circle(e.surface_radius, corners=48)
-        d.put(_front(d.j, d, -0.4), role, Line(ring, 1.5))
+        d.put(_front(d.j, d, -0.2), role, Line(ring, 1.5))
 
 
 SYMBOLS: Mapping[str, Callable[[Draft], None]] = {

@@ -1,0 +1,134 @@
+"""The command ``stiffmbs compare``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..errors import InputError, StiffmbsError
+from ..jobs.load_scene import load_scene
+from .ranges import numbers_in, values_in
+from .scene import CHANGES, STOPPED_EARLY, in_file, refuse, refuse_own_input
+
+if TYPE_CHECKING:
+    from ..comparison.compare import Comparison
+    from ..comparison.over import ComparisonOver
+
+    Found = Comparison | ComparisonOver
+
+
+@click.command(short_help="Solvers compared on any scene.")
+@click.argument("scene")
+@click.option(
+    "--solver", "--solvers", "solvers", metavar="NAME,...",
+    help="bdf, auto, kinematic, dop853, dopri5, rk4, euler_cromer, or all; bdf,dop853,auto by default.",
+)  # fmt: skip
+@click.option("--formulation", "--formulations", "formulations", metavar="NAME,...", help="Of bdf: SI2, SI1, I3, ...")
+@click.option(
+    "--rtol", metavar="A..B[:N]", help="Relative tolerances, 1e-3..1e-8 by default, four in a decade without N."
+)
+@click.option("--step", metavar="A..B[:N]", help="Steps of the schemes with fixed steps, s.")
+@click.option(
+    "--measure", default="positions", show_default=True, help="What errors are of: positions, velocities or forces."
+)
+@click.option(
+    "--over", metavar="P=A..B[:N]", help="Time at an equal error against a parameter; by decades where A..B has any."
+)
+@click.option(
+    "--error", type=float, help="With --over: at which times are compared; of positions 1e-4 m or rad by default."
+)
+@click.option("--repeats", type=click.IntRange(1), default=9, show_default=True, help="How often a run is timed.")
+@click.option(
+    "--longest", type=click.FloatRange(0, min_open=True), default=20.0, show_default=True,
+    help="A run that takes longer is given up, s; one of the reference may take ten times as long.",
+)  # fmt: skip
+@click.option("--duration", help="Time to solve, s, or with a unit.")
+@CHANGES
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Draw the figure: .svg, .png or .pdf.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of tables.")
+def compare(scene: str, output: Path | None, as_json: bool, **options: Any) -> None:
+    """Measure run time against error of solvers, schemes and formulations on SCENE.
+
+    The reference is a motion on which bdf and dop853 agree at tight tolerances; where they do not, the comparison is refused.
+    With --over it measures time at an equal error against a parameter, and names where bdf and explicit steps cross.
+
+    Exit status: 0 done, 1 interrupted (what was measured is shown), there is no reference, or the figure could not be
+    written, 2 the input is wrong.
+    """
+    from .progress import Telling
+
+    try:
+        if output is not None:
+            from ..comparison.figure import check_figure
+
+            check_figure(output)
+            refuse_own_input("-o", scene, output)
+        with Telling() as tell:
+            found = _found(scene, options, tell)
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    _show(scene, found, as_json)
+    written = output is None or _draw(output, found)
+    sys.exit(0 if written and not found.interrupted else STOPPED_EARLY)
+
+
+def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
+    """What was measured, as it was asked for."""
+    asked = {name: options[name] for name in ("measure", "repeats", "longest")}
+    asked |= {name: _names(options[name]) for name in ("solvers", "formulations") if options[name]}
+    changes = [*options["changes"], *([("run.duration", options["duration"])] if options["duration"] else [])]
+    if options["error"] is not None and not options["over"]:
+        raise InputError(f"--error {options['error']:g}: found no --over, expected it with --over PARAMETER=RANGE")
+    over = values_in("--over", options["over"]) if options["over"] else None
+    from ..comparison.plan import PER_DECADE
+
+    if options["rtol"]:
+        asked["tolerances"] = numbers_in("--rtol", options["rtol"], PER_DECADE)
+    if options["step"]:
+        asked["steps"] = numbers_in("--step", options["step"], PER_DECADE)
+    if over is not None:
+        from ..comparison.over import compare_over, with_parameter
+
+        name, values = over
+        made = with_parameter(scene, name, changes)
+        return compare_over(made, name, values, error=options["error"], tell=tell, **asked)
+    from ..comparison.compare import compare
+
+    loaded = load_scene(scene, changes)
+    with in_file(scene):
+        return compare(loaded, tell=tell, **asked)
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _show(scene: str, found: Found, as_json: bool) -> None:
+    if as_json:
+        from ..show.summary import json_line
+
+        click.echo(json_line(found.as_dict(scene)))
+        return
+    from ..comparison.compare import Comparison
+    from ..comparison.table import print_comparison, print_over
+    from .run import console
+
+    if isinstance(found, Comparison):
+        print_comparison(found, console())
+    else:
+        print_over(found, console())
+
+
+def _draw(path: Path, found: Found) -> bool:
+    """Draw the figure; whether it could be written."""
+    from ..comparison.figure import write_figure
+
+    try:
+        write_figure(path, found.plot())
+    except OSError as error:
+        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
+        return False
+    return True

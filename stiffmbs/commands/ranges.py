@@ -1,0 +1,67 @@
+"""Ranges of numbers on the command line: ``1e-3..1e-8``, ``1e5:1e9:9``, ``1,2,5``."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from ..errors import InputError
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+RANGE = re.compile(rf"\s*({NUMBER})\s*(?:\.\.|:)\s*({NUMBER})\s*(?::\s*(\d+)\s*)?")
+DECADE = 10.0
+LINEAR = 5
+"""Numbers of a range of less than a decade, where nobody says how many."""
+EXPECTED = "expected a range such as 1e5..1e9, with a number of points 1e5..1e9:9, or numbers 1,2,5"
+
+
+def numbers_in(option: str, text: str, per_decade: int = 1) -> tuple[float, ...]:
+    """The numbers of a range or a list: evenly spaced in their logarithms over a decade or more, else evenly.
+
+    Parameters
+    ----------
+    option : str
+        For messages.
+    text : str
+    per_decade : int
+        How many there are in a decade, where the range does not say.
+
+    Raises
+    ------
+    InputError
+    """
+    found = RANGE.fullmatch(text.replace("...", ".. ."))
+    if found is None:
+        return _listed(option, text)
+    first, last = float(found[1]), float(found[2])
+    count = int(found[3]) if found[3] else 0
+    if first == last or (found[3] and count < 2):
+        raise InputError(f"{option}: found '{text}', expected two different ends, and 2 points or more")
+    least, most = sorted((first, last))
+    if least > 0 and most >= DECADE * least:
+        count = count or round(per_decade * np.log10(most / least)) + 1
+        spaced = 10.0 ** np.linspace(np.log10(first), np.log10(last), max(count, 2))
+    else:
+        spaced = np.linspace(first, last, count or LINEAR)
+    return (first, *(float(f"{value:.6g}") for value in spaced[1:-1]), last)
+
+
+def _listed(option: str, text: str) -> tuple[float, ...]:
+    parts = [part.strip() for part in text.split(",")]
+    if not all(re.fullmatch(NUMBER, part) for part in parts):
+        raise InputError(f"{option}: found '{text}', {EXPECTED}")
+    return tuple(float(part) for part in parts)
+
+
+def values_in(option: str, text: str) -> tuple[str, tuple[float, ...]]:
+    """A parameter and its values: ``k_b=1e5..1e9``.
+
+    Raises
+    ------
+    InputError
+    """
+    name, equals, rest = text.partition("=")
+    if not equals or not name.strip():
+        raise InputError(f"{option}: found '{text}', expected PARAMETER=RANGE such as k_b=1e5..1e9")
+    return name.strip(), numbers_in(option, rest)

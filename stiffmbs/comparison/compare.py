@@ -1,0 +1,197 @@
+"""Run time against error of solvers, schemes and formulations, on any model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..bench.turns import take_turns
+from ..describe.settings import RunSettings, Settings, takes_settings
+from ..errors import InputError
+from ..jobs.run import Runnable, data_of
+from .at_error import AtError, decades, times_at
+from .entries import USUAL, Entry
+from .plan import LONGEST, PATIENCE, REPEATS, TOLERANCES, Plan, base_settings, plan_of
+from .reference import Reference, Tell, reference
+from .row import Row
+from .sweep import Point, Sweep
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Solvers compared on a model.
+
+    Attributes
+    ----------
+    name : str
+        Of the model.
+    measure : str
+        What errors are measured in: ``positions`` (m, rad), ``velocities`` or ``forces``.
+    rows : tuple of Row
+        For each way to solve and each setting.
+    at_errors : tuple of AtError
+        Times at equal errors, powers of ten from the largest on.
+    reference : Reference
+    entries : tuple of Entry
+        The ways to solve.
+    interrupted : bool
+        Whether the user ended it early.
+    """
+
+    name: str
+    measure: str
+    rows: tuple[Row, ...]
+    at_errors: tuple[AtError, ...]
+    reference: Reference
+    entries: tuple[Entry, ...]
+    interrupted: bool
+
+    @property
+    def conclusion(self) -> str:
+        """Who is fastest at which errors, in a sentence."""
+        from .words import conclusion
+
+        return conclusion(self)
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs compare --json``.
+
+        Parameters
+        ----------
+        scene : str
+            The file, or what else the scene is called.
+        """
+        return {
+            "scene": scene, "measure": self.measure, "rows": [row.as_dict(self.measure) for row in self.rows],
+            "errors": {name: [row.errors.get(name) for row in self.rows] for name in self.reference.agreement},
+            "at_errors": [at.as_dict() for at in self.at_errors],
+            "reference": {"by": list(self.reference.names), "agreement": dict(self.reference.agreement)},
+            "not_compared": list(self.reference.left_out), "conclusion": self.conclusion, "interrupted": self.interrupted,
+        }  # fmt: skip
+
+    def plot(self) -> Sheet:
+        """Time against error, both logarithmic, as a figure of matplotlib's."""
+        from .figure import work_precision
+
+        return work_precision(self)
+
+    def __str__(self) -> str:
+        from .table import text
+
+        return text(self)
+
+
+@takes_settings
+def compare(
+    model: Runnable,
+    solvers: Sequence[str] = USUAL,
+    formulations: Sequence[str] = (),
+    tolerances: Sequence[float] = TOLERANCES,
+    steps: Sequence[float] = (),
+    measure: str = "positions",
+    repeats: int = REPEATS,
+    longest: float = LONGEST,
+    settings: RunSettings | None = None,
+    tell: Tell | None = None,
+    **changes: Unpack[Settings],
+) -> Comparison:
+    """Measure run time against error of solvers on a model.
+
+    The reference is a motion on which bdf and dop853, both at a relative tolerance of 1e-12, agree.  Times are of the
+    integration alone: medians of the processor's time, all taking turns.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
+    solvers : sequence of str
+        ``bdf``, ``auto``, ``kinematic``, ``dop853``, ``dopri5``, ``rk4``, ``euler_cromer``, or ``all``.
+    formulations : sequence of str
+        Of bdf, each compared: ``SI2``, ``SI1``, ``I3``, ...
+    tolerances : sequence of float
+        Relative tolerances.
+    steps : sequence of float
+        Of the schemes with fixed steps, s; parts of the duration without them.
+    measure : str
+        What the error is measured in: the largest over all output instants of ``positions`` (m or rad, of all bodies),
+        ``velocities`` (m/s or rad/s), or ``forces`` (N or N m, of joints and forces that are unique).
+    repeats : int
+        How often each run is timed; those that take longer than 0.2 s are timed once.
+    longest : float
+        A run that takes longer is given up, s; each run of the reference may take ten times as long.
+    settings : RunSettings, optional
+        The scene's own by default.
+    tell : callable, optional
+        Called with a line on what is being done.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    SolverError
+        Where there is no reference: the two integrators disagree, or one does not come to the end.
+    """
+    data = data_of(model)
+    plan = plan_of(solvers, formulations, tolerances, steps, measure, repeats, longest)
+    base = base_settings(data, settings, changes)
+    entries = plan.entries(base)
+    tell = tell or (lambda line: None)
+    exact = reference(data, base, PATIENCE * plan.longest, tell)
+    refuse_unmeasured(plan, exact)
+    sweep = Sweep(data, base, exact, plan.longest, tell)
+    swept = (point for entry in entries for point in sweep.points(entry, plan.values(entry, base)))
+    points, interrupted = measured(swept, plan, tell)
+    rows = tuple(point.row() for point in points)
+    resolved = exact.resolved(measure)
+    found = list(times_at(rows, measure, resolved, decades(rows, measure, resolved)))
+    at_errors = [at for at in found if len(at.better) < len(at.seconds)] or found[:1]
+    return Comparison(data.name, measure, rows, tuple(at_errors), exact, entries, interrupted)
+
+
+def measured(swept: Iterator[Point], plan: Plan, tell: Tell) -> tuple[list[Point], bool]:
+    """Points with their times; and whether the user ended this early, who then has what there is.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        When the user ends it before there is anything.
+    """
+    points: list[Point] = []
+    try:
+        points.extend(swept)
+        take_turns(points, _told(plan.repeats, tell))
+    except KeyboardInterrupt:
+        if not points:
+            raise
+        return points, True
+    return points, False
+
+
+def _told(repeats: int, tell: Tell) -> Iterator[int]:
+    for k in range(repeats):
+        tell(f"timing, round {k + 1} of {repeats}")
+        yield k
+
+
+def refuse_unmeasured(plan: Plan, exact: Reference) -> None:
+    """Refuse a measure in which there is nothing to compare.
+
+    Raises
+    ------
+    InputError
+    """
+    if plan.measure not in exact.agreement:
+        raise InputError(
+            f"measure: found '{plan.measure}', of which nothing can be compared, expected one of {', '.join(exact.agreement)}"
+            + "".join(f"; {note}" for note in exact.notes)
+        )

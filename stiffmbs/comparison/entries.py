@@ -1,0 +1,107 @@
+"""The ways to solve a scene that are compared: solvers, schemes and formulations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..describe.settings import RunSettings
+from ..errors import InputError
+from ..solve import traits_of
+from ..solve.explicit.projected import TRAITS as SCHEMES
+from ..solve.formulations import FORMULATIONS
+from ..solve.settings import changed
+
+BDF, PROJECTED, DEFAULT_SCHEME = "bdf", "projected", "dop853"
+ALONE = ("auto", "kinematic")
+USUAL = (BDF, DEFAULT_SCHEME, "auto")
+"""Solvers that are compared where nobody asks for others."""
+KNOWN = (BDF, *SCHEMES, *ALONE)
+ALL = "all"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A way to solve.
+
+    Attributes
+    ----------
+    name : str
+    settings : mapping of str to object
+        That choose it.
+    varied : str
+        What makes it more accurate: ``rtol``, ``step``, or nothing.
+    implicit, explicit : bool
+        Which kind of steps it takes; neither for what chooses between them, or takes none.
+    """
+
+    name: str
+    settings: Mapping[str, Any]
+    varied: str
+    implicit: bool
+    explicit: bool
+
+    @property
+    def chooses(self) -> bool:
+        """Whether it chooses between others that are compared."""
+        return bool(self.varied) and not self.implicit and not self.explicit
+
+    def at(self, settings: RunSettings, value: float) -> RunSettings:
+        """The settings of a run of it; an absolute tolerance stays in proportion to the relative one."""
+        changes = {**self.settings, **({self.varied: value} if self.varied else {})}
+        if self.varied == "rtol" and settings.atol:
+            changes["atol"] = settings.atol * value / settings.rtol
+        return changed(settings, changes)
+
+    def setting(self, value: float) -> str:
+        """What a row says of it: ``rtol 1e-05``."""
+        return f"{self.varied} {value:.3g}" if self.varied else "exact"
+
+
+def entries_of(solvers: Sequence[str], formulations: Sequence[str], settings: RunSettings) -> tuple[Entry, ...]:
+    """The ways to solve that are asked for.
+
+    Parameters
+    ----------
+    solvers : sequence of str
+        ``bdf``, ``auto``, ``kinematic``, schemes of `projected`, or ``all``, which is all but ``kinematic``.
+    formulations : sequence of str
+        Of bdf; that of the settings where there are none.
+    settings : RunSettings
+
+    Raises
+    ------
+    InputError
+        When a name is unknown, or formulations are given and bdf is not among the solvers.
+    """
+    names = [name for given in solvers for name in (KNOWN[:-1] if given == ALL else [given])]
+    names = [DEFAULT_SCHEME if name == PROJECTED else name for name in dict.fromkeys(names)]
+    wrong = [name for name in names if name not in KNOWN]
+    if wrong or not names:
+        raise InputError(f"solvers: found '{', '.join(wrong)}', expected some of {', '.join(KNOWN)}, or {ALL}")
+    for formulation in formulations:
+        if formulation not in FORMULATIONS:
+            raise InputError(f"formulations: found '{formulation}', expected some of {', '.join(FORMULATIONS)}")
+    if formulations and BDF not in names:
+        raise InputError(f"formulations: found {', '.join(formulations)} without bdf, expected bdf among the solvers")
+    return tuple(entry for name in names for entry in _entries(name, tuple(dict.fromkeys(formulations)), settings))
+
+
+def _entries(name: str, formulations: Sequence[str], settings: RunSettings) -> list[Entry]:
+    if name in SCHEMES:
+        return [_entry(name, {"solver": PROJECTED, "scheme": name}, settings)]
+    if name != BDF or not formulations:
+        return [_entry(name, {"solver": name}, settings)]
+    many = len(formulations) > 1
+    return [
+        _entry(f"{name} {formulation}" if many else name, {"solver": name, "formulation": formulation}, settings)
+        for formulation in formulations
+    ]
+
+
+def _entry(name: str, chosen: dict[str, Any], settings: RunSettings) -> Entry:
+    traits = traits_of(changed(settings, chosen))
+    varied = "" if traits.exact else "step" if traits.fixed_steps else "rtol"
+    neither = traits.switches or traits.exact
+    return Entry(name, chosen, varied, traits.implicit and not neither, not traits.implicit and not neither)

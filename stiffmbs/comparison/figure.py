@@ -1,0 +1,86 @@
+"""Figures of comparisons (need matplotlib, the extra ``plot``)."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..bench.figure import NARROW, curve, finished
+from ..errors import InputError
+from ..results.files import refuse_path, written_whole
+from ..show.figure import ENDINGS
+from .compare import Comparison
+from .measures import MEASURES
+from .over import ComparisonOver
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
+
+
+def check_figure(path: Path) -> None:
+    """Refuse, before anything is measured, a figure that could not be drawn.
+
+    Raises
+    ------
+    InputError
+        For an unknown ending, a missing folder, or a missing matplotlib.
+    """
+    refuse_path("-o", path, ENDINGS)
+    if find_spec("matplotlib") is None:
+        raise InputError(f"-o {path}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+
+
+def write_figure(path: Path, sheet: Sheet) -> None:
+    """Write a figure; text in .svg stays text."""
+    from matplotlib import rc_context
+
+    metadata = {"Date": None} if path.suffix == ".svg" else None
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "stiffmbs"}):
+        written_whole(path, lambda part: sheet.savefig(part, dpi=120, metadata=metadata))
+
+
+def work_precision(comparison: Comparison) -> Sheet:
+    """Time against error of each solver, both logarithmic."""
+    from matplotlib.figure import Figure as Sheet
+
+    sheet = Sheet(figsize=NARROW, layout="constrained")
+    axes = sheet.add_subplot()
+    measure, resolved = comparison.measure, comparison.reference.resolved(comparison.measure)
+    for name in dict.fromkeys(row.solver for row in comparison.rows):
+        own = [row for row in comparison.rows if row.solver == name and row.errors]
+        known = [row for row in own if np.isfinite(row.errors[measure]) and row.errors[measure] > resolved]
+        if known:
+            curve(axes, [row.errors[measure] for row in known], [row.seconds for row in known], name)
+    axes.invert_xaxis()
+    finished(axes, f"largest error in {measure}, {MEASURES[measure].unit}", comparison.name)
+    return sheet
+
+
+def over_parameter(comparison: ComparisonOver) -> Sheet:
+    """Time of each solver against the parameter, and where they cross."""
+    from matplotlib.figure import Figure as Sheet
+
+    sheet = Sheet(figsize=NARROW, layout="constrained")
+    axes = sheet.add_subplot()
+    for entry in comparison.entries:
+        pairs = [
+            (one.value, one.at.seconds[entry.name])
+            for one in comparison.values
+            if one.at and entry.name in one.at.seconds
+        ]
+        if pairs:
+            values, seconds = zip(*pairs, strict=True)
+            curve(axes, values, seconds, entry.name)
+    for crossing in comparison.crossings:
+        axes.axvline(
+            crossing.at, color="0.5", linestyle=":", label=f"{crossing.then} is faster from {crossing.at:.1e} on"
+        )
+    numbers = [one.value for one in comparison.values]
+    if not (min(numbers) > 0 and max(numbers) >= 10 * min(numbers)):
+        axes.set_xscale("linear")
+    error = f"{comparison.error:g} {MEASURES[comparison.measure].unit}"
+    finished(axes, comparison.parameter, f"{comparison.name} at an error of {error}")
+    return sheet

@@ -1,0 +1,76 @@
+"""What the error of a motion is measured in: positions, velocities, or forces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.bodies import SPACE
+from ..errors import InputError
+from ..results.scales import kind_of
+from ..results.solution import Solution
+
+ROTATION = ".rotation"
+"""Ending of what stands for the four parameters of a body in space: the angle between two orientations, rad."""
+QUATERNION = SPACE.positions[SPACE.linear :]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Channels whose errors are measured together: the kinds of them, and their unit."""
+
+    kinds: tuple[str, ...]
+    unit: str
+
+
+MEASURES = {
+    "positions": Measure(("position", "angle", "orientation"), "m or rad"),
+    "velocities": Measure(("velocity", "angular velocity"), "m/s or rad/s"),
+    "forces": Measure(("force", "torque"), "N or N m"),
+}
+
+
+def measure_of(name: str) -> Measure:
+    """A measure by its name.
+
+    Raises
+    ------
+    InputError
+        When there is no such measure.
+    """
+    if name not in MEASURES:
+        raise InputError(f"measure: found '{name}', expected one of {', '.join(MEASURES)}")
+    return MEASURES[name]
+
+
+def compared(solution: Solution) -> dict[str, tuple[str, ...]]:
+    """What each measure compares: channels of bodies, joints and forces; no requests, no reactions that are not unique."""
+    left_out = {*solution.requested, *solution.not_unique}
+    found: dict[str, list[str]] = {name: [] for name in MEASURES}
+    for channel in solution.channels:
+        kind, (owner, _, ending) = kind_of(channel), channel.rpartition(".")
+        if channel in left_out or (kind == "orientation" and ending != QUATERNION[0]):
+            continue
+        for name, measure in MEASURES.items():
+            if kind in measure.kinds:
+                found[name].append(owner + ROTATION if kind == "orientation" else channel)
+    return {name: tuple(channels) for name, channels in found.items()}
+
+
+def difference(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """How far two motions are apart over time in a channel, or in the rotation of a body in space."""
+    if not name.endswith(ROTATION) or name in one:
+        return np.abs(one[name] - other[name])
+    body = name.removesuffix(ROTATION)
+    p, r = (np.stack([run[f"{body}.{part}"] for part in QUATERNION]) for run in (one, other))
+    chord = np.minimum(np.linalg.norm(p - r, axis=0), np.linalg.norm(p + r, axis=0))  # p and -p are one orientation
+    return 4 * np.arcsin(np.minimum(chord / 2, 1.0))
+
+
+def largest(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], name: str) -> float:
+    """The largest difference over time, at instants where both have a value; infinite where a number overflowed."""
+    apart = difference(one, other, name)
+    known = apart[~np.isnan(apart)]
+    return float(known.max()) if known.size else np.inf

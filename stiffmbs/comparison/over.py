@@ -1,0 +1,276 @@
+"""Run time at an equal error against a parameter of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
+from ..describe.scene import read_scene
+from ..describe.settings import RunSettings, Settings, takes_settings
+from ..errors import AssemblyError, InputError, SolverError
+from ..jobs.load_scene import load_scene
+from ..jobs.run import Runnable, data_of
+from .at_error import AtError, times_at
+from .compare import measured, refuse_unmeasured
+from .crossing import Crossing, crossings
+from .entries import USUAL, Entry
+from .measures import measure_of
+from .plan import LONGEST, PATIENCE, REPEATS, TOLERANCES, Plan, base_settings, plan_of
+from .reference import Tell, reference
+from .row import Row
+from .sweep import Sweep
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
+
+USUAL_ERROR = 1e-4
+"""In positions, m or rad."""
+WHOLE = 1e15
+Family = Callable[[float], Runnable]
+
+
+@dataclass(frozen=True)
+class AtValue:
+    """What was measured at one value of the parameter.
+
+    Attributes
+    ----------
+    value : float
+    rows : tuple of Row
+    at : AtError or None
+        Times at the error.
+    message : str
+        Why there are none, or the solvers that have none, with reasons; empty where all do.
+    """
+
+    value: float
+    rows: tuple[Row, ...]
+    at: AtError | None
+    message: str
+
+
+@dataclass(frozen=True)
+class ComparisonOver:
+    """Solvers compared over a parameter.
+
+    Attributes
+    ----------
+    name : str
+        Of the model.
+    parameter : str
+    measure : str
+        What errors are measured in: ``positions`` (m, rad), ``velocities`` or ``forces``.
+    error : float
+        At which times are compared.
+    values : tuple of AtValue
+    entries : tuple of Entry
+        The ways to solve.
+    interrupted : bool
+        Whether the user ended it early.
+    """
+
+    name: str
+    parameter: str
+    measure: str
+    error: float
+    values: tuple[AtValue, ...]
+    entries: tuple[Entry, ...]
+    interrupted: bool
+
+    @property
+    def at(self) -> tuple[AtError | None, ...]:
+        """Times at the error, by value."""
+        return tuple(one.at for one in self.values)
+
+    @property
+    def crossings(self) -> tuple[Crossing, ...]:
+        """Where implicit steps become faster than explicit ones, or the other way."""
+        return tuple(crossings([one.value for one in self.values], self.at, self.entries)) if self.values else ()
+
+    @property
+    def conclusion(self) -> str:
+        """Where which kind of integrator is faster, in a sentence."""
+        from .words import conclusion_over
+
+        return conclusion_over(self)
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs compare --over ... --json``: a row for each value and solver, at the equal error.
+
+        Parameters
+        ----------
+        scene : str
+            The file, or what else the scene is called.
+        """
+        return {
+            "scene": scene, "measure": self.measure, "rows": [row for one in self.values for row in self._rows(one)],
+            "over": {"parameter": self.parameter, "values": [one.value for one in self.values], "error": self.error},
+            "crossings": [crossing.as_dict() for crossing in self.crossings],
+            "measured": [
+                {self.parameter: one.value, **row.as_dict(self.measure)} for one in self.values for row in one.rows
+            ],
+            "conclusion": self.conclusion, "interrupted": self.interrupted,
+        }  # fmt: skip
+
+    def _rows(self, one: AtValue) -> list[dict[str, Any]]:
+        setting = f"{self.parameter}={one.value:.4g}"
+        found = []
+        for entry in self.entries:
+            row: dict[str, Any] = {"solver": entry.name, "setting": setting}
+            if one.at and entry.name in one.at.seconds:
+                row |= {
+                    "error": self.error,
+                    "seconds": one.at.seconds[entry.name],
+                    "steps": round(one.at.steps[entry.name]),
+                }
+            else:
+                row |= {
+                    "error": None,
+                    "seconds": None,
+                    "steps": 0,
+                    "message": one.message or "the error was not reached",
+                }
+            found.append(row)
+        return found
+
+    def plot(self) -> Sheet:
+        """Time against the parameter as a figure of matplotlib's."""
+        from .figure import over_parameter
+
+        return over_parameter(self)
+
+    def __str__(self) -> str:
+        from .table import text_over
+
+        return text_over(self)
+
+
+@takes_settings
+def compare_over(
+    model: str | Path | Family,
+    parameter: str,
+    values: Sequence[float],
+    error: float | None = None,
+    solvers: Sequence[str] = USUAL,
+    formulations: Sequence[str] = (),
+    tolerances: Sequence[float] = TOLERANCES,
+    steps: Sequence[float] = (),
+    measure: str = "positions",
+    repeats: int = REPEATS,
+    longest: float = LONGEST,
+    settings: RunSettings | None = None,
+    tell: Tell | None = None,
+    **changes: Unpack[Settings],
+) -> ComparisonOver:
+    """Measure run time at an equal error against a parameter of a model, and where bdf and explicit steps cross.
+
+    Parameters
+    ----------
+    model : str, Path or callable
+        A scene's file, or a function that makes a model, a scene or a file's name of a value.
+    parameter : str
+        A parameter of the scene, or the path of any of its values; of a function just a name.
+    values : sequence of float
+        Of the parameter, SI units.
+    error : float, optional
+        At which times are compared, in the unit of the measure; of positions 1e-4 m or rad without it.
+    solvers, formulations, tolerances, steps, measure, repeats, longest, settings, tell, **changes
+        As for `stiffmbs.compare`.
+
+    Returns
+    -------
+    ComparisonOver
+
+    Raises
+    ------
+    InputError
+        As for `stiffmbs.run`.
+    SolverError
+        Where there is no reference at any value.
+    """
+    plan = plan_of(solvers, formulations, tolerances, steps, measure, repeats, longest)
+    at_error = _error(error, measure)
+    if not len(values):
+        raise InputError(f"{parameter}: found no values, expected some")
+    made = model if callable(model) else with_parameter(model, parameter)
+    found: list[AtValue] = []
+    entries: tuple[Entry, ...] = ()
+    name, interrupted = "", False
+    for value in sorted(float(value) for value in values):
+        data = data_of(made(value))
+        base = base_settings(data, settings, changes)
+        name, entries = data.name, plan.entries(base)
+        report = _prefixed(f"{parameter} = {value:.4g}", tell)
+        try:
+            exact = reference(data, base, PATIENCE * plan.longest, report)
+            refuse_unmeasured(plan, exact)
+            sweep = Sweep(data, base, exact, plan.longest, report)
+            one, interrupted = _at_value(value, sweep, plan, entries, at_error, report)
+        except (SolverError, AssemblyError) as refused:
+            one = AtValue(value, (), None, str(refused))
+        except KeyboardInterrupt:
+            if not found:
+                raise
+            interrupted = True
+            break
+        found.append(one)
+        if interrupted:
+            break
+    if not any(one.at for one in found):
+        raise SolverError(next((one.message for one in found if one.message), "no solver reached the error"))
+    return ComparisonOver(name, parameter, measure, at_error, tuple(found), entries, interrupted)
+
+
+def _at_value(
+    value: float, sweep: Sweep, plan: Plan, entries: Sequence[Entry], error: float, tell: Tell
+) -> tuple[AtValue, bool]:
+    """Times at the error for one value; and whether the user ended this early."""
+    resolved = sweep.reference.resolved(plan.measure)
+    if error < resolved:
+        message = f"the reference is good to {resolved:.1e} alone, expected an error above that"
+        return AtValue(value, (), None, message), False
+    target = (plan.measure, error)
+    swept = (point for entry in entries for point in sweep.points(entry, plan.values(entry, sweep.settings), target))
+    points, interrupted = measured(swept, plan, tell)
+    rows = tuple(point.row() for point in points)
+    at = next(times_at(rows, plan.measure, resolved, [error]), None)
+    missing = [entry.name for entry in entries if at is None or entry.name not in at.seconds]
+    reasons = [f"{name}: {_reason(name, rows)}" for name in missing]
+    return AtValue(value, rows, at, "; ".join(reasons)), interrupted
+
+
+def _reason(name: str, rows: Sequence[Row]) -> str:
+    """Why a solver has no time at the error."""
+    messages = [row.message for row in rows if row.solver == name and row.message]
+    return messages[-1] if messages else "the error was not reached"
+
+
+def _error(error: float | None, measure: str) -> float:
+    """The error at which times are compared; there is a usual one of positions alone."""
+    if error is None and measure != "positions":
+        raise InputError(
+            f"error: found none, expected one in {measure_of(measure).unit}, as errors of {measure} are compared"
+        )
+    if error is not None and not error > 0:
+        raise InputError(f"error: found {error}, expected more than 0")
+    return error or USUAL_ERROR
+
+
+def with_parameter(path: str | Path, parameter: str, changes: Sequence[tuple[str, str]] = ()) -> Family:
+    """A scene as a function of one of its parameters, or of any other value in it; standard input is read once."""
+    if str(path) == STANDARD_INPUT:
+        text = file_text(path)
+        return lambda value: read_scene(text, [*changes, (parameter, _written(value))], source_name(path))
+    return lambda value: load_scene(path, [*changes, (parameter, _written(value))])
+
+
+def _written(value: float) -> str:
+    """Whole numbers without a point, as counts are written."""
+    return str(int(value)) if value.is_integer() and abs(value) < WHOLE else repr(value)
+
+
+def _prefixed(prefix: str, tell: Tell | None) -> Tell:
+    return (lambda line: tell(f"{prefix}: {line}")) if tell else (lambda line: None)

@@ -1,0 +1,240 @@
+"""The reference of a comparison: a motion on which an implicit and an explicit integrator agree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..describe.model_data import ModelData
+from ..describe.settings import RunSettings
+from ..errors import SolverError
+from ..jobs.run import prepare, solved
+from ..results.scales import kind_of, scales
+from ..results.solution import Solution
+from ..solve import traits_of
+from ..solve.settings import changed
+from ..solve.trajectory import Outcome
+from ..verification.settings_again import EXPLICIT, IMPLICIT
+from ..verification.solve_again import Deadline
+from .measures import MEASURES, ROTATION, compared, difference, largest
+
+TIGHT, TIGHTER, LOOSER = 1e-12, 1e-13, 1e-11
+"""Relative tolerances: the first is tried first, the next where the two disagree, the last where one does not end."""
+WELL, AGREED = 1e-6, 1e-5
+"""Parts of a channel's motion: two runs that differ by less need no tighter ones; by more they have no reference."""
+FORCES_AGREED = 1e-2
+"""Part of a force's size by which it may differ: of stiff springs it magnifies what positions differ by."""
+STILL = 1e-4
+"""Motions smaller than this, in sizes of the mechanism and rad, need not agree to a part of themselves."""
+RESOLVED = 3.0
+"""Errors are measured down to so many times what the two integrators differ by."""
+ROUNDING = 1e-11
+"""Part of a measure's size that rounding takes over a run."""
+NAMED = 4
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A motion on which two integrators agree.
+
+    Attributes
+    ----------
+    solution : Solution
+        By the explicit one.
+    names : (str, str)
+        What was solved: ``bdf at rtol 1e-12`` and ``dop853 at rtol 1e-12``.
+    channels : mapping of str to tuple of str
+        What each measure compares.
+    agreement : mapping of str to float
+        Largest difference of the two in each measure.
+    part : float
+        The same of positions, relative to the motion of each body.
+    left_out : tuple of str
+        Reactions that are not compared, as rigid bodies do not determine them.
+    notes : tuple of str
+    """
+
+    solution: Solution
+    names: tuple[str, str]
+    channels: Mapping[str, tuple[str, ...]]
+    agreement: Mapping[str, float]
+    part: float
+    left_out: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    def errors(self, channels: Mapping[str, np.ndarray]) -> dict[str, float]:
+        """The largest error of a motion over time in each measure."""
+        return {
+            measure: max(largest(channels, self.solution, name) for name in names)
+            for measure, names in self.channels.items()
+            if names
+        }
+
+    def resolved(self, measure: str) -> float:
+        """The smallest error that can be told from that of the reference, and from rounding."""
+        return max(RESOLVED * self.agreement[measure], ROUNDING * self.size(measure))
+
+    def size(self, measure: str) -> float:
+        """The largest value of the channels of a measure, of positions how far they come from the start."""
+        at_start = measure == "positions"
+        values = [self.solution[name] for name in self.channels[measure] if name in self.solution.channels]
+        return max((float(np.nanmax(np.abs(v - v[0] if at_start else v))) for v in values), default=1.0)
+
+    def sentences(self) -> list[str]:
+        """How well the two integrators agree, and what is not compared."""
+        agree = ", ".join(f"{self.agreement[name]:.1e} {MEASURES[name].unit} ({name})" for name in self.agreement)
+        told = [f"reference: {self.names[0]} and {self.names[1]} agree within {agree}"]
+        if self.left_out:
+            told.append(f"not compared, as rigid bodies do not determine them: {_few(self.left_out)}")
+        return [*told, *self.notes]
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Both integrators at a tolerance."""
+
+    implicit: Solution
+    explicit: Solution
+    names: tuple[str, str]
+    sizes: Mapping[str, float]
+    channels: Mapping[str, tuple[str, ...]]
+
+    def parts(self, measure: str) -> dict[str, np.ndarray]:
+        """Differences over time in the channels of a measure, relative to the size of each."""
+        return {
+            name: difference(self.implicit, self.explicit, name) / size
+            for name in self.channels[measure]
+            if (size := 1.0 if name.endswith(ROTATION) else self.sizes[name])
+        }
+
+    def part(self, measure: str) -> float:
+        """The largest of these."""
+        return max((float(np.nanmax(values)) for values in self.parts(measure).values()), default=0.0)
+
+
+def reference(model: ModelData, settings: RunSettings, allowed: float, tell: Tell) -> Reference:
+    """Solve a model tightly by both integrators.
+
+    Parameters
+    ----------
+    model : ModelData
+    settings : RunSettings
+        Of the comparison: duration, output points, and what else is no matter of the solver.
+    allowed : float
+        Time for each run, s.
+    tell : callable
+        Called with what is being done.
+
+    Raises
+    ------
+    SolverError
+        Where one does not come to the end, or they disagree: which channel, when, and by how much.
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    """
+    best, unended = None, ""
+    for rtol in (TIGHT, TIGHTER, LOOSER):
+        if (rtol == TIGHTER and best is None) or (rtol == LOOSER and best is not None):
+            continue
+        found = _pair(model, settings, rtol, allowed, tell)
+        if isinstance(found, str):
+            unended = unended or found
+            continue
+        if best is None or found.part("positions") < best.part("positions"):
+            best = found
+        if best.part("positions") <= WELL:
+            break
+    if best is None:
+        raise SolverError(unended)
+    if not best.part("positions") <= AGREED:
+        raise SolverError(_disagreement(best, settings))
+    return _agreed(best)
+
+
+def _pair(model: ModelData, settings: RunSettings, rtol: float, allowed: float, tell: Tell) -> _Pair | str:
+    """Both runs, or why there is no such pair."""
+    solutions, names = [], []
+    for integrator in (IMPLICIT, EXPLICIT):
+        chosen = changed(settings, {**integrator, "rtol": rtol, "atol": None})
+        names.append(f"{traits_of(chosen).name} at rtol {rtol:g}")
+        tell(f"reference: {names[-1]}")
+        job = prepare(model, chosen)
+        deadline = Deadline(job.grid.start, job.grid.end, allowed)
+        found = solved(job, deadline)
+        if found.outcome is Outcome.INTERRUPTED and not deadline.passed:
+            raise KeyboardInterrupt
+        if found.outcome is not Outcome.DONE:
+            return _unended(names[-1], found, job.grid.end, allowed if deadline.passed else 0.0)
+        solutions.append(found)
+    explicit = solutions[1]
+    return _Pair(
+        solutions[0], explicit, (names[0], names[1]), _sizes(explicit, job.dynamics.system.size), compared(explicit)
+    )
+
+
+def _sizes(solution: Solution, size: float) -> dict[str, float]:
+    """Scales of channels; of places no less than what rounding of a mechanism at rest is small beside."""
+    least = {"position": STILL * size, "angle": STILL}
+    found = scales(solution.channels, size, solution.requested)
+    return {name: max(scale, least.get(kind_of(name), 0.0)) for name, scale in found.items()}
+
+
+def _unended(name: str, found: Solution, end: float, allowed: float) -> str:
+    why = found.message
+    if allowed:
+        why = f"given up at t = {found.time[-1]:.4g} s of {end:.4g} s, as it would take more than {allowed:.4g} s"
+    return (
+        f"no reference: {name}: {why}; expected an implicit and an explicit integrator that come to the end and agree; "
+        "a shorter duration may do" + (", or a larger 'longest'" if allowed else "")
+    )
+
+
+def _disagreement(pair: _Pair, settings: RunSettings) -> str:
+    parts = pair.parts("positions")
+    beyond = {name: np.flatnonzero(~(values <= AGREED)) for name, values in parts.items()}
+    name = min((name for name, at in beyond.items() if len(at)), key=lambda name: beyond[name][0])
+    times, first = pair.explicit.time, int(beyond[name][0])
+    apart = difference(pair.implicit, pair.explicit, name)
+    worst = int(np.nanargmax(apart))
+    unit = "rad" if name.endswith(ROTATION) else pair.explicit.unit(name)
+    until = float(f"{0.9 * (times[first] - settings.start):.1g}")
+    remedy = f"compare a shorter duration, such as {until:g} s" if until > 0 else "compare another scene"
+    return (
+        f"no reference: {pair.names[0]} and {pair.names[1]} disagree: {name} differs by more than {AGREED:g} of its motion "
+        f"from t = {times[first]:.4g} s on, by {apart[worst]:.2g} {unit} at t = {times[worst]:.4g} s; the motion is chaotic, "
+        f"may go on in more than one way, or has an event that a step passes over; {remedy}"
+    )
+
+
+def _agreed(pair: _Pair) -> Reference:
+    channels, notes = dict(pair.channels), []
+    apart = {
+        name: part
+        for name, values in pair.parts("forces").items()
+        if (part := float(np.nanmax(values))) > FORCES_AGREED
+    }
+    if apart:
+        worst = max(apart, key=lambda name: apart[name])
+        over = difference(pair.implicit, pair.explicit, worst)
+        at = int(np.nanargmax(over))
+        notes.append(
+            f"forces are not compared: the two integrators differ in {worst} by {over[at]:.2g} {pair.explicit.unit(worst)} "
+            f"at t = {pair.explicit.time[at]:.4g} s"
+        )
+        channels["forces"] = ()
+    agreement = {
+        measure: max(largest(pair.implicit, pair.explicit, name) for name in names)
+        for measure, names in channels.items()
+        if names
+    }
+    return Reference(
+        pair.explicit, pair.names, channels, agreement, pair.part("positions"), pair.explicit.not_unique, tuple(notes)
+    )
+
+
+def _few(names: tuple[str, ...]) -> str:
+    more = len(names) - NAMED
+    return ", ".join(names[:NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,133 @@
+"""A way to solve at settings from loose to tight, each measured against a reference."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..bench.sweep import WINDOW
+from ..bench.turns import ONCE, Timed, seconds_of
+from ..describe.model_data import ModelData
+from ..describe.settings import RunSettings
+from ..errors import StiffmbsError
+from ..jobs.python_faults import up_to_a_fault
+from ..jobs.run import Job, prepare
+from ..results.channels import channels_of
+from ..results.missing_rows import reported
+from ..solve.settings import near_constraints
+from ..solve.trajectory import Grid, Outcome, Trajectory
+from ..verification.solve_again import Deadline
+from .entries import Entry
+from .reference import Reference, Tell
+from .row import Row
+
+ENOUGH = 2
+"""So many settings in succession that are far more accurate than asked for end a sweep."""
+WARM_UP = 1e-3
+"""Part of the duration that is solved before a run is timed, so that all is compiled and set up."""
+
+
+@dataclass
+class Point(Timed):
+    """A way to solve at a setting, with its errors by measure; a message where it failed."""
+
+    entry: Entry
+    setting: str
+    errors: Mapping[str, float]
+    steps: int
+    message: str = ""
+
+    def row(self) -> Row:
+        """As measured."""
+        seconds = self.median if self.seconds else np.nan
+        return Row(self.entry.name, self.setting, self.errors, seconds, self.steps, self.message)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is measured, and how long it may take.
+
+    Attributes
+    ----------
+    model : ModelData
+    settings : RunSettings
+    reference : Reference
+    longest : float
+        A run that takes longer is given up, s.
+    tell : callable
+        Called with what is being done.
+    """
+
+    model: ModelData
+    settings: RunSettings
+    reference: Reference
+    longest: float
+    tell: Tell
+
+    def points(self, entry: Entry, values: Sequence[float], target: tuple[str, float] | None = None) -> Iterator[Point]:
+        """From loose to tight; a run that is given up is the last, and so are two beyond the target.
+
+        Parameters
+        ----------
+        entry : Entry
+        values : sequence of float
+            Tolerances or steps, the loosest first.
+        target : (str, float), optional
+            A measure, and the error that is sought.
+        """
+        beyond = 0
+        for value in values:
+            setting = entry.setting(value)
+            self.tell(f"{entry.name}, {setting}")
+            try:
+                job = prepare(self.model, entry.at(self.settings, value))
+                _warm_up(job)
+                point, given_up = self._first(job, entry, setting)
+            except StiffmbsError as error:
+                yield Point(None, [], entry, setting, {}, 0, str(error))
+                continue
+            yield point
+            if target is not None and not point.message:
+                beyond = beyond + 1 if point.errors[target[0]] < target[1] / WINDOW else 0
+            if given_up or beyond == ENOUGH:
+                return
+
+    def _first(self, job: Job, entry: Entry, setting: str) -> tuple[Point, bool]:
+        """The first solution at a setting, and whether it took too long."""
+        deadline = Deadline(job.grid.start, job.grid.end, self.longest)
+        seconds, trajectory = seconds_of(lambda: job.integrate(deadline))
+        if trajectory.outcome is Outcome.INTERRUPTED and not deadline.passed:
+            raise KeyboardInterrupt
+        steps = int(trajectory.statistics.get("steps", 0))
+        if deadline.passed:
+            message = f"given up at t = {trajectory.t[-1]:.4g} s: it would take more than {self.longest:g} s"
+            return Point(None, [], entry, setting, {}, steps, message), True
+        trajectory = up_to_a_fault(job.dynamics.system, trajectory)
+        message = "" if trajectory.outcome is Outcome.DONE else trajectory.message
+        errors = {} if message else self._errors(job, trajectory)
+        if not message and not errors:
+            message = "some output instants have no accelerations and reactions"
+        solve = (lambda: _again(job)) if seconds < ONCE and not message else None
+        return Point(solve, [] if message else [seconds], entry, setting, errors, steps, message), False
+
+    @np.errstate(all="ignore")  # numbers of a diverged run overflow
+    def _errors(self, job: Job, trajectory: Trajectory) -> dict[str, float]:
+        """By measure; none where not all output instants have a solution."""
+        rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
+        if len(rows.t) < len(self.reference.solution.time):
+            return {}
+        return self.reference.errors(channels_of(job.data, job.dynamics.system, rows))
+
+
+def _warm_up(job: Job) -> None:
+    start, end = job.grid.start, job.grid.end
+    until = start + WARM_UP * (end - start)
+    if replace(job, grid=Grid(start, until, np.array([start, until]))).integrate().outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
+
+
+def _again(job: Job) -> None:
+    if job.integrate().outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt

@@ -1,0 +1,148 @@
+"""Equilibria in steady motion: of a car at constant speed, on a straight road or on a circle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..compile.system import System
+from ..describe.model_data import ModelData
+from ..describe.settings import SteadyMotion as Described
+from ..errors import InputError, SolverError
+from ..solve.dynamics import Dynamics
+from ..solve.equilibrium import find_equilibrium
+from ..solve.force_balance import balance_at
+from ..solve.initial import InitialValues
+from ..solve.nearest_equilibrium import nearest_equilibrium
+from ..solve.steady_motion import SteadyMotion
+from .settled import Settled
+
+AHEAD = 1e-3
+"""How far a motion goes, rad or parts of the mechanism's size, until it is looked at whether forces still balance."""
+STEADY, ALLOWED = 1e-6, 1e-8
+"""Imbalance there, relative to the largest force; and velocity, relative to the largest, that a joint may prescribe beside the motion's."""
+
+
+def settled_in_motion(
+    model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described
+) -> Settled:
+    """An equilibrium in steady motion.
+
+    Parameters
+    ----------
+    model : ModelData
+    dynamics : Dynamics
+        Of the model.
+    start : InitialValues
+        The pose from which it is sought, and the spins of bodies that no rolling constraint tells.
+    t : float
+        s.
+    described : SteadyMotion
+
+    Raises
+    ------
+    InputError
+        When the motion has another number of dimensions, or a body cannot spin.
+    SolverError
+        Where none is found, a joint does not let the mechanism move so, or forces do not stay as they are.
+    """
+    motion = _motion(model, dynamics, start, described)
+    dynamics.state.q[:] = start.q
+    try:
+        found = find_equilibrium(dynamics, t, motion)
+    except SolverError:
+        dynamics.state.q[:] = start.q
+        found = nearest_equilibrium(dynamics, t, motion)
+    _refuse_joints(dynamics, t)
+    _refuse_unsteady(dynamics, t, motion)
+    notes = ("whether the steady motion is stable was not looked at",)
+    moving = replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
+    return Settled(moving, found.moves, found.imbalance, (), notes)
+
+
+def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, described: Described) -> SteadyMotion:
+    system, state = dynamics.system, dynamics.state
+    velocity, about = (_vector(system, name, getattr(described, name)) for name in ("velocity", "about"))
+    rotation = _rotation(model, described)
+    spinning = np.array([_spin(system, name) for name in described.rolling], dtype=int)
+    motion = SteadyMotion(velocity, rotation, about, spinning, np.zeros(len(spinning)))
+    state.q[:] = start.q
+    spins = start.u[spinning] - motion.carried(dynamics)[spinning]
+    return replace(motion, spins=spins)
+
+
+def _vector(system: System, name: str, found: tuple[float, ...]) -> np.ndarray:
+    dimensions = system.of_body.dimensions
+    if found and len(found) != dimensions:
+        raise InputError(f"{name}: found {len(found)} numbers, expected {dimensions}")
+    return np.array(found or [0.0] * dimensions)
+
+
+def _rotation(model: ModelData, described: Described) -> np.ndarray:
+    """W; a number in space is about the direction against gravity, or z without."""
+    found = described.rotation
+    if model.dimensions == 2:
+        if isinstance(found, tuple):
+            raise InputError("rotation: found 3 numbers, expected one in the plane")
+        return np.array([found])
+    if isinstance(found, tuple):
+        return np.array(found)
+    gravity = np.array(model.gravity)
+    size = np.linalg.norm(gravity)
+    return found * (-gravity / size if size else np.array([0.0, 0.0, 1.0]))
+
+
+def _spin(system: System, body: str) -> int:
+    """The number of a body's angular velocity about its axis of symmetry."""
+    if body not in system.bodies:
+        raise InputError(f"rolling: found no body '{body}', expected one of {', '.join(system.bodies)}")
+    n_u, linear = system.of_body.n_u, system.of_body.linear
+    first = n_u * system.bodies.index(body) + linear
+    if linear == 2:
+        return first
+    moments = system.mass[first : first + 3]
+    for k in range(3):
+        one, other = np.delete(moments, k)
+        if np.isclose(one, other, rtol=1e-9, atol=0):
+            return first + k
+    raise InputError(
+        f"rolling: found three different moments of inertia of body '{body}', expected two alike about its axis of symmetry"
+    )
+
+
+def _refuse_joints(dynamics: Dynamics, t: float) -> None:
+    state, system = dynamics.state, dynamics.system
+    state.evaluate("motion", t)
+    missed = np.abs(state.vector("motion", "V"))
+    worst = int(np.argmax(missed)) if len(missed) else 0
+    if len(missed) and missed[worst] > ALLOWED * max(1.0, np.max(np.abs(state.u), initial=0.0)):
+        joint, equation = system.equations[worst]
+        raise SolverError(
+            f"joint '{joint}' (equation {equation}) does not let the mechanism move so: found {missed[worst]:.3g} of "
+            "velocity across it, expected none"
+        )
+
+
+def _refuse_unsteady(dynamics: Dynamics, t: float, motion: SteadyMotion) -> None:
+    """Refuse an equilibrium of one instant: a little later on the way forces balance no more."""
+    state, system = dynamics.state, dynamics.system
+    rates = np.abs(motion.carried(dynamics)) * system.per_velocity(1 / system.size, 1.0)
+    if not np.max(rates, initial=0.0):
+        return
+    later = AHEAD / float(np.max(rates))
+    with state.unchanged():
+        start = state.q.copy()
+        half = system.of_body.moved(start, 0.5 * later * motion.carried(dynamics))
+        state.q[:] = half  # the midpoint rule: velocities of carried bodies turn on the way
+        middle = motion.carried(dynamics)
+        state.q[:] = system.of_body.moved(start, later * middle)
+        dynamics.assemble(t + later)
+        known = balance_at(dynamics, t + later, motion)
+        if known.imbalance > STEADY:
+            worst = int(np.argmax(np.abs(known.left[: system.n_u])))
+            raise SolverError(
+                f"the motion is not steady: forces balance at t = {t:g} s, but {later:.3g} s later "
+                f"{system.name_of(worst, system.of_body.reactions)} has {known.left[worst]:.3g} left; expected forces that "
+                "move with the bodies, and a rotation about the direction of gravity"
+            )

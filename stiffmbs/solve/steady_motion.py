@@ -1,0 +1,158 @@
+"""Bodies that all move as one rigid body, some of them spinning about their axis of symmetry besides.
+
+With the velocity V, the angular velocity W and a point c of its axis a centre of mass at r has
+
+    v = V + W x (r - c),    v' = W x v,
+
+and a body the angular velocity W + s e, whose rate in its own axes is (W + s e)' = W x s e.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import block_diag, csc_array
+
+from ..compile.quaternions import CONJUGATE, rotated
+from .dynamics import Dynamics
+
+SMALL = 1e-9
+"""Part of a spin's effect on rolling constraints, relative to the largest, that counts as none."""
+
+
+@dataclass(frozen=True)
+class SteadyMotion:
+    """A steady motion of a system.
+
+    Attributes
+    ----------
+    velocity, about : ndarrays, shape (dimensions,)
+        V, m/s, and c, m.
+    rotation : ndarray, shape (1,) or (3,)
+        W, rad/s.
+    spinning : ndarray of int
+        The angular velocities, by number, that differ from those of W.
+    spins : ndarray
+        By how much, where no rolling constraint tells it, rad/s.
+    """
+
+    velocity: np.ndarray
+    rotation: np.ndarray
+    about: np.ndarray
+    spinning: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
+    spins: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def is_rest(self) -> bool:
+        """Whether nothing moves."""
+        return not (np.any(self.velocity) or np.any(self.rotation) or np.any(self.spins))
+
+    def carried(self, dynamics: Dynamics) -> np.ndarray:
+        """The velocities of all bodies as parts of one rigid body, at the present pose."""
+        places = self._places(dynamics)
+        straight = self.velocity + _cross(self.rotation, places - self.about)
+        return np.concatenate([straight, self._own(dynamics)], axis=1).ravel()
+
+    def put(self, dynamics: Dynamics, t: float) -> None:
+        """Set the velocities of the present pose."""
+        state = dynamics.state
+        state.u[:] = 0.0 if self.is_rest else self.carried(dynamics)
+        if len(self.spinning):
+            across, missing = self._rolling(dynamics, t)
+            rolls = np.linalg.norm(across, axis=0) > SMALL
+            spins = np.where(rolls, 0.0, self.spins)
+            if rolls.any():
+                missing = missing + across @ spins
+                spins[rolls] -= np.linalg.lstsq(across[:, rolls], missing, rcond=SMALL)[0]
+            state.u[self.spinning] += spins
+
+    def acceleration(self, dynamics: Dynamics) -> np.ndarray:
+        """u' of the present pose and velocities."""
+        system, u = dynamics.system, dynamics.state.u
+        found = np.zeros((len(system.bodies), system.of_body.n_u))
+        if self.is_rest:
+            return found.ravel()
+        linear = system.of_body.linear
+        rates = u.reshape(found.shape)
+        found[:, :linear] = _cross(self.rotation, rates[:, :linear])
+        if linear == 3:
+            own = self._own(dynamics)
+            found[:, linear:] = np.cross(own, rates[:, linear:] - own)
+        return found.ravel()
+
+    def derivatives(self, dynamics: Dynamics, t: float, rates: csc_array) -> tuple[csc_array, csc_array]:
+        """Derivatives of the velocities and of the accelerations by moves of the pose, shape (n_u, n_u).
+
+        Parameters
+        ----------
+        rates : sparse array, shape (n_q, n_u)
+            q' of velocities.
+        """
+        system, u = dynamics.system, dynamics.state.u
+        linear = system.of_body.linear
+        turning = _matrix(self.rotation)
+        if linear == 2:
+            velocity = [block_diag([turning, np.zeros((1, 1))])] * len(system.bodies)
+            by_move = csc_array(block_diag(velocity))
+            return by_move, csc_array(by_move @ by_move)
+        own, whole = self._own(dynamics), u.reshape(-1, 6)[:, 3:]
+        by_move = csc_array(block_diag([part for w in own for part in (turning, _matrix(w))]))
+        accelerated = csc_array(
+            block_diag(
+                [p for w, v in zip(own, whole, strict=True) for p in (turning @ turning, _matrix(w - v) @ _matrix(w))]
+            )
+        )
+        if not len(self.spinning):
+            return by_move, accelerated
+        spins = self._spins_by_move(dynamics, t, rates, by_move)
+        into = csc_array((np.ones(len(self.spinning)), (self.spinning, np.arange(len(self.spinning)))), (system.n_u, len(self.spinning)))  # fmt: skip
+        gyroscopic = csc_array(block_diag([part for w in own for part in (np.zeros((3, 3)), _matrix(w))]))
+        return csc_array(by_move + into @ spins), csc_array(accelerated + gyroscopic @ into @ spins)
+
+    def _spins_by_move(self, dynamics: Dynamics, t: float, rates: csc_array, by_move: csc_array) -> csc_array:
+        """How the spins that rolling asks for change with the pose."""
+        state = dynamics.state
+        state.evaluate("tangent", t)
+        rolling = np.flatnonzero(~dynamics.system.holonomic)
+        rows, pose = (state.matrix("tangent", name)[rolling] for name in ("J", "V_q"))
+        across = rows[:, self.spinning]
+        missing = pose @ rates.toarray() + rows @ by_move.toarray()
+        return csc_array(-np.linalg.lstsq(across, missing, rcond=SMALL)[0]) if len(rolling) else csc_array((len(self.spinning), missing.shape[1]))  # fmt: skip
+
+    def _rolling(self, dynamics: Dynamics, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """What the spins do to the constraints of velocity alone, and what these miss without them."""
+        state = dynamics.state
+        state.evaluate("motion", t)
+        rolling = np.flatnonzero(~dynamics.system.holonomic)
+        return state.matrix("motion", "J")[np.ix_(rolling, self.spinning)], state.vector("motion", "V")[rolling]
+
+    def _places(self, dynamics: Dynamics) -> np.ndarray:
+        of_body, count = dynamics.system.of_body, len(dynamics.system.bodies)
+        return dynamics.state.q[: of_body.n_q * count].reshape(count, -1)[:, : of_body.linear]
+
+    def _own(self, dynamics: Dynamics) -> np.ndarray:
+        """W in the axes of each body."""
+        of_body, count = dynamics.system.of_body, len(dynamics.system.bodies)
+        if of_body.linear == 2:
+            return np.full((count, 1), self.rotation[0])
+        turned = dynamics.state.q[: of_body.n_q * count].reshape(count, -1)[:, of_body.linear :]
+        return rotated(CONJUGATE * turned, np.broadcast_to(self.rotation, (count, 3)))
+
+
+def at_rest(dimensions: int) -> SteadyMotion:
+    """No motion."""
+    nothing = np.zeros(dimensions)
+    return SteadyMotion(nothing, np.zeros(1 if dimensions == 2 else 3), nothing)
+
+
+def _matrix(rotation: np.ndarray) -> np.ndarray:
+    """W x as a matrix."""
+    if len(rotation) == 1:
+        return np.array([[0.0, -rotation[0]], [rotation[0], 0.0]])
+    x, y, z = rotation
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _cross(rotation: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    return np.asarray(vectors @ _matrix(rotation).T)

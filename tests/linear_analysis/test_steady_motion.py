@@ -1,0 +1,155 @@
+"""Equilibria at constant speed and on circles, against closed forms, and runs that stay in them."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.optimize import brentq
+
+import stiffmbs
+from stiffmbs import SteadyMotion
+from stiffmbs.commands.main import main
+
+from ..conftest import EXAMPLES
+
+BOB = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies: {bob: {mass: 2, inertia: [1e-3, 1e-3, 1e-3], position: [0.3, 0, -0.4]}}
+joints: {hook: {type: spherical, i: {body: bob, point: [-0.3, 0, 0.4]}, j: ground}}
+"""
+
+
+@pytest.mark.parametrize("rate", [5.0, 9.0, 30.0])
+def test_a_conical_pendulum(rate):
+    """cos a = g/(W^2 L)."""
+    scene = stiffmbs.read_scene(BOB)
+    found = stiffmbs.equilibrium(scene, motion=SteadyMotion(rotation=rate))
+    assert found.channels["bob.z"] == pytest.approx(-9.81 / rate**2, rel=1e-9)
+    run = stiffmbs.run(scene, start_from=found.solution, duration=1.0, rtol=1e-10)
+    assert np.ptp(run["bob.z"]) < 1e-7
+    assert run["bob.x"][-1] == pytest.approx(np.hypot(run["bob.x"][0], run["bob.y"][0]) * np.cos(rate), abs=1e-6)
+
+
+def test_below_its_critical_speed_the_pendulum_hangs_down():
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(BOB), motion=SteadyMotion(rotation=3.0))
+    assert found.channels["bob.z"] == pytest.approx(-0.5, abs=1e-9)
+
+
+def test_a_governor_stays_at_its_height():
+    scene = stiffmbs.load_scene(EXAMPLES / "governor.yaml")
+    found = stiffmbs.equilibrium(scene, motion=SteadyMotion(rotation=2 * np.pi))
+    run = stiffmbs.run(scene, start_from=found.solution, duration=2.0, rtol=1e-9)
+    assert np.ptp(run["slider.z"]) < 1e-6 and np.ptp(run["left.z"]) < 1e-6
+
+
+CAR = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies:
+  frame: {mass: 100, inertia: [20, 60, 70], position: [0, -30, 0.3]}
+  chassis: {mass: 1000, inertia: [300, 300, 300], position: [0, -30, 0.8]}
+joints:
+  road: {type: planar, i: {body: frame, point: [0, 0, -0.3]}, j: ground}
+  tyres: {type: distance, i: frame, j: {body: ground, point: [0, 0, 0.3]}, length: 30}
+  roll: {type: revolute, i: {body: chassis, point: [0, 0, -0.5], orientation: {z: [1, 0, 0]}},
+         j: {body: frame, orientation: {z: [1, 0, 0]}}}
+forces:
+  bar: {type: torsion_spring, i: {body: chassis, orientation: {z: [1, 0, 0]}}, j: {body: frame, orientation: {z: [1, 0, 0]}},
+        stiffness: 40e3, damping: 2e3}
+"""
+
+
+def test_a_car_on_a_circle_rolls_outwards():
+    """k a = m h (W^2 (R + h sin a) cos a + g sin a) for a chassis of equal moments of inertia about a roll axis."""
+    rate, radius, height = 0.4, 30.0, 0.5
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(CAR), motion=SteadyMotion(rotation=rate))
+    angle = brentq(
+        lambda a: 40e3 * a - 1000 * height * (rate**2 * (radius + height * np.sin(a)) * np.cos(a) + 9.81 * np.sin(a)),
+        0,
+        1,
+    )
+    assert found.channels["chassis.z"] == pytest.approx(0.3 + height * np.cos(angle), abs=1e-9)
+    outwards = np.hypot(found.channels["chassis.x"], found.channels["chassis.y"])
+    assert outwards == pytest.approx(radius + height * np.sin(angle), abs=1e-8)
+    speed = np.hypot(found.channels["chassis.vx"], found.channels["chassis.vy"])
+    assert speed == pytest.approx(rate * outwards, rel=1e-12)
+
+
+@pytest.mark.parametrize("rate", [0.5, 1.0])
+def test_a_disc_rolls_on_a_circle(rate):
+    """Its lean and spin follow from rolling; it falls over by statics and stays up by its spin, as a run from there does."""
+    text = (EXAMPLES / "rolling_disc.yaml").read_text().replace("position: [0, 0, R", "position: [0, -2, R")
+    still = [("falling", "0"), ("turning", "0"), ("rolling", "0")]
+    scene = stiffmbs.read_scene(text, still)
+    found = stiffmbs.equilibrium(scene, motion=SteadyMotion(rotation=rate, rolling=("disc",)))
+    assert abs(found.channels["disc.wz"]) > 3
+    run = stiffmbs.run(scene, start_from=found.solution, duration=3.0, rtol=1e-10)
+    assert np.ptp(run["disc.z"]) < 1e-8
+    assert np.ptp(np.hypot(run["disc.x"], run["disc.y"])) < 1e-5
+
+
+TURNTABLE = """
+bodies: {puck: {mass: 2, inertia: 0.1, position: [1, 0]}}
+forces: {spring: {type: spring_damper, i: puck, j: ground, stiffness: 50, free_length: 0.8, damping: 3}}
+"""
+
+
+def test_a_puck_on_a_turntable_in_a_scene_that_starts_so():
+    """r = k l/(k - m W^2)."""
+    scene = stiffmbs.read_scene(TURNTABLE + "start: {rotation: 3 rad/s}\nrun: {duration: 2 s, rtol: 1e-10}\n")
+    radius = 50 * 0.8 / (50 - 2 * 9)
+    assert np.hypot(*(stiffmbs.equilibrium(scene).channels[f"puck.{axis}"] for axis in "xy")) == pytest.approx(radius)
+    run = stiffmbs.run(scene)
+    assert np.hypot(run["puck.x"], run["puck.y"]) == pytest.approx(radius, abs=1e-6)
+    assert run["puck.omega"] == pytest.approx(3.0)
+
+
+SLED = """
+gravity: [0, -9.81]
+bodies: {sled: {mass: 5, inertia: 1, position: [0, 0.1]}}
+joints: {rail: {type: prismatic, i: sled, j: {body: ground, point: [0, 0.1]}}}
+forces: {air: {type: force, i: sled, force: ["40 N - 2 N s/m*vx(sled)", 0]}}
+"""
+
+
+def test_a_sled_at_the_speed_at_which_thrust_and_drag_balance():
+    scene = stiffmbs.read_scene(SLED)
+    found = stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0)))
+    assert found.channels["sled.vx"] == 20 and found.channels["rail.fy"] == pytest.approx(49.05)
+    with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is left in sled\.fx"):
+        stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(19, 0)))
+
+
+WRONG = [
+    ({"rotation": (1, 0, 0)}, "the motion is not steady"),
+    ({"velocity": (1, 0, 0)}, "joint 'hook' (equation x) does not let the mechanism move so"),
+    ({"velocity": (1, 0)}, "velocity: found 2 numbers, expected 3"),
+    ({"rolling": ("ball",)}, "rolling: found no body 'ball', expected one of bob"),
+]
+
+
+@pytest.mark.parametrize("motion, told", WRONG, ids=[told[:25] for _, told in WRONG])
+def test_motions_that_are_none_are_refused(motion, told):
+    with pytest.raises(stiffmbs.StiffmbsError) as error:
+        stiffmbs.equilibrium(stiffmbs.read_scene(BOB), motion=SteadyMotion(**motion))
+    assert told in str(error.value)
+
+
+def test_a_drive_that_accelerates_at_the_start_has_an_equilibrium():
+    scene = SLED.replace('forces: {air: {type: force, i: sled, force: ["40 N - 2 N s/m*vx(sled)", 0]}}', "")
+    drive = "joints: {rail: {type: prismatic, i: sled, j: {body: ground, point: [0, 0.1]}}, motor: {type: drive, joint: rail, position: 3*t^2}}"
+    lines = [drive if line.startswith("joints") else line for line in scene.splitlines()]
+    assert stiffmbs.equilibrium(stiffmbs.read_scene("\n".join(lines))).channels["sled.x"] == pytest.approx(0, abs=1e-12)
+
+
+def test_the_command(tmp_path):
+    scene = tmp_path / "bob.yaml"
+    scene.write_text(BOB)
+    told = CliRunner().invoke(main, ["equilibrium", str(scene), "--rotation", "9 rad/s", "--json"])
+    assert told.exit_code == 0, told.output
+    assert json.loads(told.stdout)["channels"]["bob.z"] == pytest.approx(-9.81 / 81)
+    assert "in steady motion" in json.loads(told.stdout)["message"]
+    wrong = CliRunner().invoke(main, ["equilibrium", str(scene), "--velocity", "1,2"])
+    assert wrong.exit_code == 2 and "velocity: found 2 numbers, expected 3" in wrong.output
