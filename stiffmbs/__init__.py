@@ -41,7 +41,9 @@ _LATER = {
     "compare_over": ".comparison.over",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
-    "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation",
+    "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
+    "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
+    "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""

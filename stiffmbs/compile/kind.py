@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..describe.element import Element, Joint, JointName
+from ..describe.element import Component, Element, Joint, JointName
 from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
@@ -149,7 +149,11 @@ def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
-    return tuple((name, _shape(getattr(element, name), model, data)) for name in type(element).model_fields)
+    return _parts({name: getattr(element, name) for name in type(element).model_fields}, model, data)
+
+
+def _parts(values: Mapping[str, Any], model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
+    return tuple((name, _shape(value, model, data)) for name, value in values.items())
 
 
 def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
@@ -178,6 +182,8 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             data.tables.append((len(data.numbers), spline_data(value)))
             data.numbers.append(0.0)
             return ("table",)
+        case Component():
+            return ("component", type(value), _parts(value.in_equations(), model, data))
         case tuple():
             return ("several", tuple(_shape(item, model, data) for item in value))
         case _:

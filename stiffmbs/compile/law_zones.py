@@ -2,7 +2,7 @@
 
 A bump of 0.1 m in a table over distance, or a Gaussian of it, may lie between the ends of a step.  The edges here part the
 argument of each law into zones such that within a zone nothing is overlooked: a cubic describes the table, tanh has
-saturated, exp has vanished.  Solvers see to it that no step passes a whole zone (`stiffmbs.solve.native.within_step`).
+saturated, exp has vanished.  Solvers see to it that no step passes a whole zone (`stiffmbs.solve.native.event_search.within_step`).
 """
 
 from __future__ import annotations

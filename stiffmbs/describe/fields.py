@@ -77,7 +77,7 @@ class Described(_Base):
         When a field is missing, unknown, of the wrong type or out of its bounds.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
 
     def __repr_args__(self) -> Iterator[tuple[str, Any]]:
         """The fields that do not have their defaults, for ``repr``."""

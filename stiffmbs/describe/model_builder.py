@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from ..jobs.modes import Modes
     from ..jobs.start_from import StartFrom
     from ..results.solution import Solution
+    from ..studies.simulation import Simulation
 
 Data = TypeVar("Data", bound=ModelData)
 Body = TypeVar("Body", bound=Described)
@@ -75,6 +76,12 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from ..show.html import model_html
+
+        return model_html(self)
 
     @overload
     def add(self, name: str, part: Body) -> BodyHandle: ...
@@ -382,6 +389,18 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         from ..jobs.equilibrium import equilibrium
 
         return equilibrium(self, settings, start_from, motion, **changes)
+
+    @takes_settings
+    def simulation(
+        self,
+        inputs: Mapping[str, float] | None = None,
+        settings: RunSettings | None = None,
+        **changes: Unpack[Settings],
+    ) -> Simulation:
+        """The model to be solved step by step; parameters, result and errors are those of `stiffmbs.simulation`."""
+        from ..studies.simulation import simulation
+
+        return simulation(self, inputs, settings, **changes)
 
     @takes_settings
     def modes(

@@ -83,6 +83,12 @@ class ModelData(Described):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from ..show.html import model_html
+
+        return model_html(self)
+
     def __str__(self) -> str:
         return repr(self)
 

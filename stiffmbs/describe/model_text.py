@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..errors import InputError
-from .element import Element, JointName
+from .element import JointName
 from .fields import Described
 from .files.scene_text import scene_text
 from .formula.dimension import Known
-from .geometry.shape import Shape
 from .marker import MarkerReference
 from .model_data import ModelData
 from .states.amount import Amount
@@ -53,7 +52,7 @@ def _written(value: Any) -> Any:
         case PID():
             return {"pid": _fields(value)}
         case Described():
-            kind = {"type": value.type} if isinstance(value, Element | Shape) else {}
+            kind = {"type": getattr(value, "type", "")} if "type" in type(value).model_fields else {}
             return {**kind, **_fields(value)}
         case JointName():
             return str(value)

@@ -92,7 +92,7 @@ def _language_text() -> str:
 def _native_text() -> str:
     """The text of all native modules and of what they are laid out by: a routine may be built of any of them."""
     here = Path(__file__).parent
-    files = [*sorted(here.parents[1].glob("**/native/*.py")), here / "layout.py"]
+    files = [*sorted(here.parents[1].glob("**/native/**/*.py")), here / "layout.py"]
     return _joined(files)
 
 

@@ -74,6 +74,19 @@ PAIRED_COLUMNS: Layout = {
 }  # fmt: skip
 """The same with its columns in pairs, `n_items` in all (`stiffmbs.solve.native.paired_columns`)."""
 
+BLOCK_LU: Layout = {
+    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
+    "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL,
+    "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
+    "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
+    "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
+    "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS, "pivot": FLOATS, "tried": FLOATS,
+    "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
+}  # fmt: skip
+"""The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
+of columns in pairs that takes over where those cannot be trusted.  `ready` says whether the counts are of this run: whether the factors at
+hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, and trials that were failed."""
+
 DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
@@ -118,7 +131,7 @@ EXPLICIT: Layout = {
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
-    "n_event_functions": INT, "n_events": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
+    "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
@@ -137,7 +150,7 @@ NATIVE_IDA: Layout = {
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
     "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
-    "output_correction": INTS, "iteration": INTS, "watch": INTS, "probe": FLOATS,
+    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
 }  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
@@ -196,7 +209,7 @@ EVENT_SEARCH: Layout = {
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 }  # fmt: skip
-"""What the search for events within a step works on (`stiffmbs.solve.native.within_step`): the event functions with their
+"""What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
 edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes.
 
 Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond

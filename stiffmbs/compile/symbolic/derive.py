@@ -165,13 +165,13 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     e, stated = symbols.element, stated_by_force(kind, symbols)
     f = e.work_by_velocities(stated.powers)
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
-    power, losses = power_of_force(stated, symbols)
+    power, losses = power_of_force(stated, symbols, kind.element.may_keep_energy)  # type: ignore[attr-defined]
     terms = {
         "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),
         "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
         "reaction": _reaction(stated, e, f), "potential": sp.Matrix([stated.potential]),
         "event_function": sp.Matrix(stated.event_functions), "limit": sp.Matrix(stated.limits),
-        "argument": _arguments(symbols), "power": sp.Matrix([power]),
+        "argument": _arguments(symbols), "power": sp.Matrix([power]), "measured": sp.Matrix(stated.measured),
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import cached_property
+from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property, partial
 from typing import Any
 
 import sympy as sp
@@ -119,6 +119,22 @@ class SymbolicElement:
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.named)
         return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(self.read(x))
+
+    def variable(self, x: Any) -> sp.Symbol:
+        """A symbol for an expression, by which what follows from it can be differentiated (`slope`, `composed`)."""
+        return self.derivatives.variable(self.read(x), self._state)
+
+    def slope(self, x: Any, variable: sp.Symbol) -> sp.Expr:
+        """The derivative of an expression by a symbol that `variable` gave, other variables kept."""
+        return self.derivatives.partial(self.read(x), variable)
+
+    def composed(self, outputs: Iterable[Any], variables: Sequence[sp.Symbol]) -> list[sp.Expr]:
+        """Long expressions that depend on the state through a few variables alone: they are differentiated by these first."""
+        return [self.derivatives.composed(self.read(x), variables, self._state) for x in outputs]
+
+    @property
+    def _state(self) -> list[sp.Symbol]:
+        return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, self.t]
 
     def relative_rotation(self, i: Any, j: Any) -> RelativeRotation:
         """How a marker is turned against another one, of another body in space."""
@@ -243,6 +259,18 @@ class SymbolicElement:
     def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
         """The integral of a law from 0 to x, for a potential; None where there is no simple one."""
         return integral(law, x)
+
+
+class SymbolicComponent:
+    """A component with symbols for its numbers; its equations are called as its methods."""
+
+    def __init__(self, component: Any, fields: dict[str, object]) -> None:
+        self._component = component
+        self.__dict__.update(fields)
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(self._component, name)
+        return partial(found, self) if callable(found) else found
 
 
 class ReferredJoint(SymbolicElement):

@@ -54,6 +54,9 @@ class _Printer(PythonCodePrinter):
         product = "*".join([factor] * whole + [f"sqrt({self._print(base)})"] * half)
         return f"({product})" if power > 0 else f"(1.0/({product}))"
 
+    def _print_Pi(self, expr: sp.NumberSymbol) -> str:
+        return repr(float(expr))
+
     def _print_NonsmoothBase(self, expr: NonsmoothBase) -> str:
         arguments = [f"{argument}.0" if argument.is_Integer else self._print(argument) for argument in expr.args]
         if isinstance(expr, Step):

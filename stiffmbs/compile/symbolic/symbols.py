@@ -17,7 +17,7 @@ from ..kind import OWN, REACTION, STATE, Kind, Shape
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
-from .frames import ReferredJoint, SymbolicElement
+from .frames import ReferredJoint, SymbolicComponent, SymbolicElement
 from .measures import measure, own_coordinate
 from .python_call import python_law
 from .spline import Spline
@@ -148,6 +148,8 @@ class _Builder:
                 return python_law(self.fresh(name), self.symbols.element.read)
             case ("formula", text, counts, measures, *reactions):
                 return self.formula(name, text, counts, measures, *reactions)
+            case ("component", component, fields):
+                return SymbolicComponent(component, {part: self.made(part, shape) for part, shape in fields})
             case ("joint", element, fields, slot, coordinate):
                 return self.joint(name, element, fields, slot, coordinate)
         raise TypeError(f"no such shape: {shape}")

@@ -18,13 +18,15 @@ class EventSearch:
     Parameters
     ----------
     state : State
-    masked : ndarray of int, shape (n_switches,), optional
+    masked : ndarray of int, shape (n_event_functions,), optional
         An event function that waits (above zero) is not looked at.
 
     Attributes
     ----------
     table : ndarray of int
         Addresses for compiled code (`stiffmbs.compile.machine.layout.EVENT_SEARCH`).
+    n : int
+        Number of event functions, with those of laws.
     found : ndarray of int, shape (n,)
         1 for the functions of the last event, 0 for others.
     """
@@ -37,7 +39,7 @@ class EventSearch:
             system.n_event_functions,
             system.n_q + system.n_u,
         )
-        self.found = np.zeros(n, dtype=np.int64)
+        self.n, self.found = n, np.zeros(n, dtype=np.int64)
         self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
         self._cells = cells(self.table, EVENT_SEARCH)
         if not n:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.machine.layout import EXPLICIT, cells, packed
+from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
@@ -16,6 +17,7 @@ from ..initial import InitialValues
 from ..trajectory import Grid, Rows
 from .scheme import Scheme
 
+END_AT_EVENT = Routine("stiffmbs.solve.native.event_search.explicit_events", "end_at_event", "int32(int64*)")
 SHORTEST_PART = 1e-12
 """Shorter steps than this part of the run would never come to its end."""
 MOST_STEPS, MOST_VALUES = 1024, 300_000
@@ -61,7 +63,7 @@ class Integration:
             "longest": settings.max_step or np.inf, "step_bound": self.step_bound.table,
             "shortest": SHORTEST_PART * (grid.end - grid.start),
             "t": grid.start, "t_before": grid.start, "h": settings.step,
-            "n_event_functions": n_event_functions, "n_events": dynamics.system.n_values("event_function"), "signs": np.zeros(n_event_functions),
+            "n_event_functions": n_event_functions, "end_at_event": END_AT_EVENT.address() if self._watch.n else 0, "signs": np.zeros(n_event_functions),
             "watch": self._watch.table,
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.machine.layout import MOST_STEPS, NATIVE_IDA, SAMPLES, cells, packed
-from ...compile.machine.routines import Routine
+from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ..events.event_functions import EventSearch
 from ..events.step_bound import StepBound
@@ -24,6 +24,9 @@ MODULE = "stiffmbs.solve.native.ida_loop"
 RESIDUAL = Routine(MODULE, "residual", "int32(float64, int64, int64, int64, int64*)")
 JACOBIAN = Routine(
     MODULE, "jacobian", "int32(float64, float64, int64, int64, int64, int64, int64*, int64, int64, int64)"
+)
+LOOK_AT_START, LOOK_WITHIN = together(
+    "stiffmbs.solve.native.event_search.ida_events", look_at_start="int32(float64, int64*)", look_within="int32(int64*)"
 )
 SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
 
@@ -52,7 +55,7 @@ class Connection:
     step_bound : StepBound
     n_event_functions : int
     signs, masked : ndarrays, shape (n_switches,)
-        As in `stiffmbs.solve.native.event_signs`.
+        As in `stiffmbs.solve.native.event_search.event_signs`.
     watch : EventSearch
     history : StepLog
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
@@ -105,7 +108,9 @@ class Connection:
                 "step_of": address("IDAGetLastStep"), "stop_at": address("IDASetStopTime"),
                 "next_step_of": address("IDAGetCurrentStep"), "step_bound": self.step_bound.table,
                 "history": self.history.rows(MOST_STEPS), "samples": self.samples,
-                "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table, "probe": self._probe,
+                "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
+                "look_at_start": LOOK_AT_START.address() if self.watch.n else 0, "look_within": LOOK_WITHIN.address() if self.watch.n else 0,
+                "probe": self._probe,
             },
         )  # fmt: skip
 

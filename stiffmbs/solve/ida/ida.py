@@ -112,7 +112,7 @@ class NativeIda:
         self._statistics = Statistics(session.libraries, ida.memory)
         self._flag, self._begun = 0, False
         self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
-        self._look = self._pace
+        self._look = self._usual_pace = self._pace
         ida.set_tolerances(rtol, atol)
         self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
         if suppressed is not None:
@@ -147,7 +147,7 @@ class NativeIda:
 
     def pause_after(self, steps: int) -> None:
         """Have `advance` and `steps` return after so many steps at the latest."""
-        self._pace = min(self._pace, steps)
+        self._pace = min(self._usual_pace, steps)
 
     def look_after(self, steps: int) -> None:
         """Have the next call of `advance` or `steps` return after so many steps at the latest."""
@@ -269,7 +269,7 @@ class NativeIda:
     def roots(self) -> np.ndarray:
         """After `Status.ROOT`: for each event function other than 0 where it went through zero.
 
-        None is where the step has passed a zone of a law (`stiffmbs.solve.native.within_step`).
+        None is where the step has passed a zone of a law (`stiffmbs.solve.native.event_search.within_step`).
         """
         if self._ida.cells["within"]:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)

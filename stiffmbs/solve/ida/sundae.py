@@ -50,7 +50,7 @@ class Callbacks:
     Attributes
     ----------
     masked : ndarray of int
-        For how many steps each event function is still left out (`stiffmbs.solve.native.event_signs`).
+        For how many steps each event function is still left out (`stiffmbs.solve.native.event_search.event_signs`).
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:

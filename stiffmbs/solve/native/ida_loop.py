@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import HISTORY_WIDTH, MOST_STEPS, NATIVE_IDA, SAMPLES
+from stiffmbs.compile.machine.layout import HISTORY_WIDTH, MOST_STEPS, SAMPLES
 from stiffmbs.compile.machine.native.access import (
     address_of,
     compiled,
@@ -10,45 +10,23 @@ from stiffmbs.compile.machine.native.access import (
     floats,
     shifted,
     state_view,
-    view_of,
 )
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.solve.native.calls import call_address, call_int, copy_bytes, int32
-from stiffmbs.solve.native.event_signs import watched
+from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
+from stiffmbs.solve.native.event_search.event_signs import watched
+from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import MADE, iteration_view
 from stiffmbs.solve.native.output_correction import corrected, output_correction_view
 from stiffmbs.solve.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
-from stiffmbs.solve.native.within_step import (
-    DIFFERENCE,
-    LOOKED_AT,
-    clear,
-    event_search_view,
-    first_event,
-    keep_row,
-    noted,
-    noted_rates,
-    shift_ends,
-    suspicious,
-)
 
 STRETCHED = 1.01
 """The last step may be this much longer than inputs allow, so that no tiny one is left."""
 STEPS_APART = 4
 """The last states are kept as samples, one each few steps."""
 STALLED = -101
-START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
-"""Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning
-than this part of the time are not told from it."""
 MOST_TINY, TINY_STEP = 100, 2e-14
 """IDA would go on forever with steps below the precision of time: this many below this part of t are the end."""
-
-native_ida_view = view_of("NativeIda", NATIVE_IDA)
-
-
-@compiled
-def _array(c, vector):
-    return floats(call_address(c.array_of, vector))
 
 
 @compiled
@@ -68,7 +46,7 @@ def residual(t, yy, yp, rr, user_data):
     c = native_ida_view(user_data)
     s = state_view(c.state)
     e = equations_view(c.equations)
-    y, rates, r = _array(c, yy), _array(c, yp), _array(c, rr)
+    y, rates, r = array_of(c, yy), array_of(c, yp), array_of(c, rr)
     load(s, e, y, rates)
     add_products(e, evaluate(s, e.residual_set, t), y, rates, r)
     return int32(OK if _finite(r, e.n) else RECOVERABLE)
@@ -79,7 +57,7 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     c = native_ida_view(user_data)
     s = state_view(c.state)
     e = equations_view(c.equations)
-    load(s, e, _array(c, yy), _array(c, yp))
+    load(s, e, array_of(c, yy), array_of(c, yp))
     a = floats(c.matrix)
     output_correction_view(c.output_correction).current = cj
     iteration_view(c.iteration).age = MADE
@@ -93,7 +71,7 @@ def event_functions(t, yy, yp, g, user_data):
     """IDARootFn: what changes its sign at the breakpoints of forces."""
     c = native_ida_view(user_data)
     s = state_view(c.state)
-    load(s, equations_view(c.equations), _array(c, yy), _array(c, yp))
+    load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
     values = evaluate(s, SWITCH, t)
     watched(values, c.signs, c.masked, g, c.n_event_functions)
     return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
@@ -113,11 +91,13 @@ def _see_inputs(c, stop):
 
 
 @compiled
-def _stepped(c, toward, stop):
+def _stepped(c, ida, toward, stop):
     """One step; returns IDA's flag and notes the step's end, order and size in the history."""
     before = c.internal
     _see_inputs(c, stop)
-    _watch_start(c, toward)
+    c.within = 0
+    if c.look_at_start:
+        call_int(c.look_at_start, (toward, ida))
     flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:
         flag = int32(OK)
@@ -133,81 +113,8 @@ def _stepped(c, toward, stop):
         _sample(c)
     if flag >= 0 and _stalled(c):
         return STALLED
-    return _looked_within(c, flag) if flag >= 0 else flag
-
-
-@compiled
-def _note_rates(c, t, ahead, value, rate):
-    """Rates of all event functions at the state in c.y, by their values there and a time `ahead` later, which may be negative."""
-    s = state_view(c.state)
-    e = equations_view(c.equations)
-    w = event_search_view(c.watch)
-    y, yp = _array(c, c.y), _array(c, c.yp)
-    for k in range(e.n):
-        c.probe[k] = y[k] + ahead * yp[k]
-    load(s, e, c.probe, yp)
-    noted_rates(rate, value, evaluate(s, SWITCH, t + ahead), ahead, w.n)
-
-
-@compiled
-def _watch_start(c, toward):
-    """Where the integrator starts anew, look at the event functions there."""
-    w = event_search_view(c.watch)
-    c.within = 0
-    if w.n > 0 and not w.ready:
-        w.ready = 1
-        w.begun = c.returned
-        ahead = max(START_DIFFERENCE * (toward - c.returned), ROUNDINGS * abs(c.returned))
-        s = state_view(c.state)
-        load(s, equations_view(c.equations), _array(c, c.y), _array(c, c.yp))
-        keep_row(w, s, 0)
-        noted(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
-        _note_rates(c, c.returned, ahead, w.value_before, w.rate_before)
-
-
-@compiled
-def _looked_within(c, flag):
-    """Where an event has begun and ended within the last step, go back to its beginning; IDA's flag, or ROOT_RETURN."""
-    w = event_search_view(c.watch)
-    if w.n == 0:
-        return flag
-    begun = w.begun
-    h = c.returned - begun
-    if not h > ROUNDINGS * abs(begun):
-        return flag
-    s = state_view(c.state)
-    e = equations_view(c.equations)
-    load(s, e, _array(c, c.y), _array(c, c.yp))
-    noted(w.value_after, evaluate(s, SWITCH, c.returned), w.n)
-    if clear(w, h, w.row, s.q):
-        keep_row(w, s, 0)
-        w.begun = c.returned
-        shift_ends(w)
-        return flag
-    _note_rates(c, c.returned, -DIFFERENCE * h, w.value_after, w.rate_after)
-    place = begun + LOOKED_AT * h
-    if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
-        return flag
-    load(s, e, c.output, _array(c, c.yp))
-    noted(w.m, evaluate(s, SWITCH, place), w.n)
-    load(s, e, _array(c, c.y), _array(c, c.yp))
-    if suspicious(w, h, w.row, s.q):
-        for node in range(w.n_nodes):
-            if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
-                return flag
-            load(s, e, c.output, _array(c, c.yp))
-            keep_row(w, s, node)
-        event = begun + h * first_event(w, s, begun, h)
-        if begun + ROUNDINGS * abs(begun) < event < c.returned:
-            call_int(c.interpolate, (c.memory, event, int32(0), c.y))
-            call_int(c.interpolate, (c.memory, event, int32(1), c.yp))
-            c.returned = event
-            c.within = 1
-            return int32(ROOT_RETURN)
-        load(s, e, _array(c, c.y), _array(c, c.yp))
-    keep_row(w, s, 0)
-    w.begun = c.returned
-    shift_ends(w)
+    if flag >= 0 and c.look_within and call_int(c.look_within, (ida,)):
+        return int32(ROOT_RETURN)
     return flag
 
 
@@ -224,7 +131,7 @@ def _sample(c):
         k = c.next_sample
         row = shifted(c.samples, k * (c.n_reported + 1))
         row[0] = c.returned
-        _report(c, _array(c, c.y), shifted(row, 1))
+        _report(c, array_of(c, c.y), shifted(row, 1))
         c.since_sample = 0
         c.next_sample = k + 1 if k + 1 < SAMPLES else 0
 
@@ -239,7 +146,7 @@ def _stalled(c):
 def _report_at(c, t, derivative, current, row):
     """What is reported of the solution, or of its derivative, at a time within the last step."""
     if t == c.returned:
-        _report(c, _array(c, current), row)
+        _report(c, array_of(c, current), row)
         return int32(OK)
     b = output_correction_view(c.output_correction)
     if c.size > b.long and corrected(c.output_correction, c.state, c.equations, t):
@@ -277,7 +184,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     for _ in range(min(most, MOST_STEPS)):
         if flag != OK:
             break
-        flag = _stepped(c, times[c.served] if c.served < count else stop, stop)
+        flag = _stepped(c, ida, times[c.served] if c.served < count else stop, stop)
         if flag >= 0:
             outcome = _served(c, times, count, y_out, yp_out)
             flag = outcome if outcome < 0 else flag
@@ -291,10 +198,10 @@ def steps(most, stop, t_out, y_out, ida):
     c.recorded = 0
     flag = int32(OK)
     while flag == OK and c.served < min(most, MOST_STEPS):
-        flag = _stepped(c, stop, stop)
+        flag = _stepped(c, ida, stop, stop)
         if flag >= 0:
             k = c.served
             t_out[k] = c.returned
-            _report(c, _array(c, c.y), shifted(y_out, k * c.n_reported))
+            _report(c, array_of(c, c.y), shifted(y_out, k * c.n_reported))
             c.served = k + 1
     return int32(flag)

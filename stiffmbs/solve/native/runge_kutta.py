@@ -13,8 +13,9 @@ from stiffmbs.compile.machine.native.access import (
     state_view,
 )
 from stiffmbs.solve.native.attempt import arrive, attempt
+from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.error_estimate import trusted_error
-from stiffmbs.solve.native.events import RETRIED, end_at_event
+from stiffmbs.solve.native.event_search.explicit_events import RETRIED
 from stiffmbs.solve.native.interpolant import store_rows, store_step
 from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF
@@ -135,8 +136,8 @@ def advance(end, steps, held, own_steps, explicit):
         if x.at_event:
             return AT_EVENT
         status = _step(x, c, s, m, end)
-        if status >= 0 and x.n_events:
-            status = end_at_event(x, c, s, m)
+        if status >= 0 and x.end_at_event:
+            status = call_int(x.end_at_event, (explicit,))
         if status < 0:
             return status
         if status == RETRIED:

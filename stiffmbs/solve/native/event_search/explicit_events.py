@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.access import (
+    compiled,
+    dynamics_view,
+    explicit_view,
+    scheme_view,
+    shifted,
+    state_view,
+)
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
+from stiffmbs.solve.native.calls import int32
 from stiffmbs.solve.native.error_estimate import UNTRUSTED, trusted_error
-from stiffmbs.solve.native.interpolant import interpolated, prepare
-from stiffmbs.solve.native.stages import copied, load_state, weighted
-from stiffmbs.solve.native.within_step import (
+from stiffmbs.solve.native.event_search.within_step import (
     DIFFERENCE,
     LOOKED_AT,
     event_search_view,
@@ -18,6 +24,8 @@ from stiffmbs.solve.native.within_step import (
     noted_rates,
     suspicious,
 )
+from stiffmbs.solve.native.interpolant import interpolated, prepare
+from stiffmbs.solve.native.stages import copied, load_state, weighted
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: relative to the step, and of the time."""
@@ -202,12 +210,20 @@ def _taken_to_event(x, c, s, m, h, behind):
     return RETRIED if within == h else _retaken(x, c, s, m, max(within - behind, 0.5 * within))
 
 
-@compiled
-def end_at_event(x, c, s, m):
+def end_at_event(explicit):
     """Where an event function has changed within the last step, or has changed twice, take the step again up to the first change.
 
-    0, a negative status, or `RETRIED` where the step's shortened form cannot be trusted and is left.
+    0, a negative status, or `RETRIED` where the step's shortened form cannot be trusted and is left.  It is compiled for scenes
+    with event functions alone.
     """
+    x = explicit_view(explicit)
+    c = scheme_view(x.scheme)
+    m = dynamics_view(x.dynamics)
+    return int32(_ended_at_event(x, c, state_view(m.state), m))
+
+
+@compiled
+def _ended_at_event(x, c, s, m):
     h = x.span
     behind = max(BEHIND * h, ROUNDINGS * abs(x.t))
     status = _taken_to_event(x, c, s, m, h, behind)

@@ -1,0 +1,1 @@
+"""Events within steps, as compiled routines."""

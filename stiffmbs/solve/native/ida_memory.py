@@ -1,0 +1,15 @@
+"""What IDA's callbacks and the loop over its steps work on."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.layout import NATIVE_IDA
+from stiffmbs.compile.machine.native.access import compiled, floats, view_of
+from stiffmbs.solve.native.calls import call_address
+
+native_ida_view = view_of("NativeIda", NATIVE_IDA)
+
+
+@compiled
+def array_of(c, vector):
+    """The numbers of one of SUNDIALS' vectors."""
+    return floats(call_address(c.array_of, vector))
