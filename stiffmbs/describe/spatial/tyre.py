@@ -64,7 +64,7 @@ class Tyre(Force):
 
     channels: ClassVar[tuple[str, ...]] = CHANNELS
     may_keep_energy: ClassVar[bool] = False
-    reflected: ClassVar[dict[str, str] | None] = {}
+    reflected: ClassVar[dict[str, str] | None] = {"j": "z"}
 
     i: Marker = Field(description="centre of the wheel, its y axis the spin axis, to the left of the heading")
     j: Marker | None = Field(

@@ -29,7 +29,7 @@ class MagicFormulaTyre(Tyre):
 
     kind: ClassVar[str] = "magic_formula_tyre"
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"properties": TyreProperties(coefficients=SAMPLE)},)
-    reflected: ClassVar[dict[str, str] | None] = {"hand": "angle"}
+    reflected: ClassVar[dict[str, str] | None] = {"j": "z", "hand": "angle"}
 
     properties: AnyProperties = Field(
         description="the name of a property file (.tir) beside the scene, or coefficients"
