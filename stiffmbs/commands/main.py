@@ -12,6 +12,7 @@ from .compare import compare
 from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
+from .fit import fit, optimise
 from .modes import modes
 from .plot import plot
 from .process import Process
@@ -30,6 +31,6 @@ def main() -> None:
 
 
 for command in (
-    run, check, equilibrium, modes, response, study, compare, convert, schema, bench, cache, draw, animate, plot, report, stress,
+    run, check, equilibrium, modes, response, study, compare, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress,
 ):  # fmt: skip
     main.add_command(command)

@@ -193,7 +193,7 @@ def test_units_are_known_or_follow():
     units = stiffmbs.run(stiffmbs.read_scene(SCENE), duration=1e-3, points=2).requested
     expected = {
         "place.x": "m", "rate.m": "m/s", "turned.z": "rad", "turned.w": "rad/s", "faster.x": "m/s^2", "faster.z": "rad/s^2",
-        "own.fx": "N", "own.torque": "N m", "push.m": "N", "push.tj": "N m", "of_run.sum": "J", "continuous_angle": "rad",
+        "own.fx": "N", "own.torque": "N m", "push.m": "N", "push.tj": "N m", "of_run.sum": "J", "counted": "rad",
         "twice": "N", "loaded": "N",
     }  # fmt: skip
     assert {name: units[name] for name in expected} == expected
