@@ -98,7 +98,8 @@ def test_a_dataset_is_checked(in_folder):
 def test_a_dataset_is_converted_to_the_scene_that_it_is_run_as(in_folder):
     assert command("convert", "model.adm", "-o", "scene.yaml").exit_code == 0
     converted, read = stiffmbs.load_scene("scene.yaml"), stiffmbs.load_scene("model.adm")
-    assert converted.model_dump() == read.model_dump()
+    for name in type(read).model_fields:
+        assert getattr(converted, name) == getattr(read, name), name
     first, second = (stiffmbs.run(scene, duration=0.5) for scene in (converted, read))
     np.testing.assert_array_equal(first["REQUEST_2.f2"], second["REQUEST_2.f2"])
     assert "  PART_2:  # crank\n" in (in_folder / "scene.yaml").read_text()
