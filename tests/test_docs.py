@@ -150,3 +150,12 @@ def test_expected_output_is_compared():
     assert as_expected("force: 3.142 N ... done", "force:  3.1416 N in 2 steps\ndone\n")
     assert not as_expected("force: 3.142 N", "force: 3.2 N")
     assert not as_expected("force: 3.142 N", "torque: 3.142 N")
+
+
+@pytest.mark.parametrize("page", ["joints", "forces", "spatial_joints", "spatial_forces"])
+def test_the_reference_names_each_kind_in_one_group(page):
+    module = spatial_model if page.startswith("spatial") else model
+    kinds = module.JOINTS if page.endswith("joints") else module.FORCES
+    text = (HERE / "docs" / "reference" / f"{page}.rst").read_text(encoding="utf-8").partition(".. kinds::")[2]
+    named = [kind for line in text.splitlines()[1:] for kind in line.partition(": ")[2].split()]
+    assert sorted(named) == sorted(kinds.shipped)

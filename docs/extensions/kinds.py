@@ -43,14 +43,29 @@ INNER = "body_type, data_type, handle_type, kinds"
 
 
 class Kinds(SphinxDirective):
-    """All kinds of joints or forces, a section each."""
+    """All kinds of joints or forces, a section each, in groups: a line of content is ``Title: kind kind ...``.
+
+    What no line names comes last, so that a new kind needs no line.
+    """
 
     required_arguments = 1
+    has_content = True
 
     def run(self) -> list[nodes.Node]:
         module, kinds = SECTIONS[self.arguments[0]]
-        text = "\n".join(line for kind in sorted(kinds) for line in section(module, kind, kinds[kind]))
+        groups = {title: names.split() for title, _, names in (line.partition(": ") for line in self.content if line)}
+        named = [kind for group in groups.values() for kind in group]
+        if wrong := sorted({kind for kind in named if kind not in kinds or named.count(kind) > 1}):
+            raise self.error(f"found {', '.join(wrong)}, expected kinds of {self.arguments[0]}, each once")
+        groups["Other"] = sorted(set(kinds) - set(named))
+        text = "\n".join(line for title, group in groups.items() if group for line in self._group(module, title, group))
         return self.parse_text_to_nodes(text, allow_section_headings=True)
+
+    def _group(self, module: str, title: str, group: list[str]) -> Iterator[str]:
+        kinds = SECTIONS[self.arguments[0]][1]
+        yield from ("", title, "-" * len(title), "")
+        for kind in group:
+            yield from section(module, kind, kinds[kind])
 
 
 class Overview(SphinxDirective):
@@ -134,7 +149,7 @@ def _row(module: str, kind: str, element: type[Element]) -> tuple[str, ...]:
 
 def section(module: str, kind: str, element: type[Element]) -> Iterator[str]:
     """The section of one kind: its class, names of equations, fields, and its equations as they stand in the source."""
-    yield from (f".. _{module}.{kind}:", "", kind, "-" * len(kind), "")
+    yield from (f".. _{module}.{kind}:", "", kind, "~" * len(kind), "")
     if element.__module__.partition(".")[0] != "stiffmbs":
         module = element.__module__
     shared = module != "stiffmbs" and element in SECTIONS["joints"][1].values()
