@@ -65,3 +65,18 @@ def test_all_faults_are_told_at_once():
     for words in ("line 7, MARKER/22: found 'x' PART", "line 8, JOINT/1: found no kind", "line 9, MOTION/3: FUNCTION:"):
         assert words in text
     assert text.count("MARKER/22") == 1
+
+
+def test_moments_that_no_body_has_are_taken_as_they_stand_with_a_warning():
+    text = HEAD.format("").replace("IP=0.1,0.1,0.1", "IP=0.1,0.1,0.3, WX=0.2, WZ=2")
+    scene = read_adams(text)
+    assert any(note.startswith("warning: PART/2 has a principal moment") for note in scene.notes)
+    found = stiffmbs.run(scene, duration=2, rtol=1e-9, output=0.1)
+    # a symmetric top: Euler's equations turn the spin about its axis at (I3 - I1) / I1 of wz
+    np.testing.assert_allclose(found["PART_2.wx"], 0.2 * np.cos(4 * found.time), atol=1e-6)
+    np.testing.assert_allclose(found["PART_2.wz"], 2, atol=1e-6)
+
+
+def test_moments_that_miss_the_inequality_by_arithmetic_are_not_told():
+    scene = read_adams(HEAD.format("").replace("IP=0.1,0.1,0.1", "IP=0.1,0.1,0.200000000001"))
+    assert not any("warning" in note for note in scene.notes)
