@@ -41,6 +41,10 @@ from .describe.scene import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.settings import SteadyMotion as SteadyMotion
+from .describe.states.linear_system import PID as PID
+from .describe.states.linear_system import LinearSystem as LinearSystem
+from .describe.states.linear_system import TransferFunction as TransferFunction
+from .describe.states.state import State as State
 from .describe.table import Table as Table
 from .describe.units import si as si
 from .errors import AssemblyError as AssemblyError
@@ -59,6 +63,12 @@ from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
 from .show.drawing.animate import animate as animate
 from .show.drawing.draw import draw as draw
+from .studies.fit import Fit as Fit
+from .studies.fit import fit as fit
+from .studies.optimise import Optimum as Optimum
+from .studies.optimise import optimise as optimise
+from .studies.simulation import Simulation as Simulation
+from .studies.simulation import simulation as simulation
 from .studies.sweep import sweep as sweep
 from .studies.variation import Range as Range
 from .verification.verify import verify as verify

@@ -12,13 +12,16 @@ from stiffmbs.describe.spatial.forces.applied import AppliedForce as _AppliedFor
 from stiffmbs.describe.spatial.forces.applied import AppliedTorque as _AppliedTorque
 from stiffmbs.describe.spatial.forces.beam import Beam as _Beam
 from stiffmbs.describe.spatial.forces.bushing import Bushing as _Bushing
+from stiffmbs.describe.spatial.forces.fiala_tyre import FialaTyre as _FialaTyre
 from stiffmbs.describe.spatial.forces.field import FieldForce as _FieldForce
 from stiffmbs.describe.spatial.forces.joint_friction import JointFriction as _JointFriction
+from stiffmbs.describe.spatial.forces.magic_formula_tyre import MagicFormulaTyre as _MagicFormulaTyre
 from stiffmbs.describe.spatial.forces.python_force import PythonForce as _PythonForce
 from stiffmbs.describe.spatial.forces.shared import LineForce as _LineForce
 from stiffmbs.describe.spatial.forces.shared import SpringDamper as _SpringDamper
 from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
 from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
+from stiffmbs.describe.spatial.forces.vertical_tyre import VerticalTyre as _VerticalTyre
 from stiffmbs.describe.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
 from stiffmbs.describe.spatial.joints.cylindrical import Cylindrical as _Cylindrical
 from stiffmbs.describe.spatial.joints.fixed import Fixed as _Fixed
@@ -171,6 +174,27 @@ class Drive(_Drive):
         type: Literal["drive"] = ...,
     ) -> None: ...
 
+class FialaTyre(_FialaTyre):
+    """Fiala's tyre: slip stiffnesses, and a friction that falls with the whole slip."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        road: given.Road = ...,
+        slow: given.Number = ...,
+        radius: given.Number,
+        stiffness: given.Number,
+        damping: given.Number = ...,
+        slip_stiffness: given.Number,
+        cornering_stiffness: given.Number,
+        mu_static: given.Number,
+        mu_sliding: given.Number,
+        width: given.Number = ...,
+        rolling_resistance: given.Number = ...,
+        type: Literal["fiala_tyre"] = ...,
+    ) -> None: ...
+
 class FieldForce(_FieldForce):
     """Linear elastic connection of two markers that are apart: preload - K (s - s0) - C (v, w)."""
     def __init__(
@@ -222,6 +246,20 @@ class LineForce(_LineForce):
     """A force between two points of space along the line through them: constant, or a formula of anything measured."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, force: given.Law, type: Literal["line_force"] = ...
+    ) -> None: ...
+
+class MagicFormulaTyre(_MagicFormulaTyre):
+    """Pacejka's Magic Formula in the form of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir)."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        road: given.Road = ...,
+        slow: given.Number = ...,
+        properties: given.TyreProperties,
+        hand: given.Number = ...,
+        type: Literal["magic_formula_tyre"] = ...,
     ) -> None: ...
 
 class Orientation(_Orientation):
@@ -391,4 +429,19 @@ class VelocityEquation(_VelocityEquation):
         j: given.Marker | None = ...,
         zero: given.Laws,
         type: Literal["velocity_equation"] = ...,
+    ) -> None: ...
+
+class VerticalTyre(_VerticalTyre):
+    """A spring and damper between a wheel and a road, which lifts off; it transmits no force along the road."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        road: given.Road = ...,
+        slow: given.Number = ...,
+        radius: given.Number,
+        stiffness: given.Number,
+        damping: given.Number = ...,
+        type: Literal["vertical_tyre"] = ...,
     ) -> None: ...

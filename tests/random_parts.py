@@ -9,7 +9,7 @@ import numpy as np
 import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, spatial
 from stiffmbs.describe import model as plane
-from stiffmbs.describe.element import Element, JointName
+from stiffmbs.describe.element import Component, Element, JointName
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.field import FormulaOf
 from stiffmbs.describe.marker import MarkerReference
@@ -125,9 +125,10 @@ def forms_of(kind: type[Element], dimensions: int) -> list[Form]:
 
 
 def _is_fixed(kind: type[Element], name: str) -> bool:
-    """Whether a field takes words, or a Python function."""
+    """Whether a field takes words, a Python function, or a component."""
     types = list(types_in(kind.model_fields[name].annotation)) if name in kind.model_fields else []
-    return PythonFunction in types or typing.Literal in (typing.get_origin(part) for part in types)
+    components = [part for part in types if isinstance(part, type) and issubclass(part, Component)]
+    return bool(components) or PythonFunction in types or typing.Literal in (typing.get_origin(part) for part in types)
 
 
 def _marker(body: str, rng: np.random.Generator, dimensions: int) -> MarkerReference:

@@ -19,7 +19,9 @@ ORDER = (
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts"}
 METHODS = {
-    (ROOT.name, "describe", "model_builder"): {"jobs", "results", "show", "verification"},
+    (ROOT.name, "describe", "model_builder"): {"studies", "jobs", "results", "show", "verification"},
+    (ROOT.name, "describe", "model_data"): {"show"},
+    (ROOT.name, "jobs", "check"): {"show"},
     (ROOT.name, "results", "solution"): {"show"},
 }
 """What users hold offers what can be done with it as methods, which load it when they are called."""

@@ -67,6 +67,8 @@ def _shown(default: Any) -> str:
         case tuple():
             parts = [_shown(part) for part in default]
             return f"[{', '.join(parts)}]" if set(parts) - {"none"} else "none"
+        case Described():
+            return f"``{{type: {default.type}}}``"
     return f"``{default}``"
 
 

@@ -34,7 +34,7 @@ SECTIONS = {
 """The module that offers the classes, and the classes by kind."""
 EQUATIONS = {
     Joint: ("relation", "position", "velocity", "displacement", "angle"),
-    Force: ("efforts", "powers", "potential"),
+    Force: ("law", "efforts", "powers", "potential"),
 }
 
 

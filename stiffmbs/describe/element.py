@@ -64,6 +64,21 @@ JointReference = Annotated[
 ]
 
 
+class Component(Described):
+    """Base of what an element is made of besides numbers, with fields and equations of its own, such as a road.
+
+    Its equations are static functions whose first argument is the component with symbols for its fields.
+    """
+
+    def in_equations(self) -> Mapping[str, Any]:
+        """What its equations see: its fields, or what is made of them."""
+        return {name: getattr(self, name) for name in type(self).model_fields}
+
+    def notes(self) -> Iterator[str]:
+        """What a user should know of it."""
+        yield from ()
+
+
 class Element(Described):
     """Base of joints and forces.  A subclass is all that a new kind takes: in its own file in `joints` or `forces`, or a user's own.
 
@@ -226,12 +241,18 @@ class Force(Element):
 
     Attributes
     ----------
+    channels : tuple of str
+        Names of what `measured` returns, reported as channels of the element.
+    may_keep_energy : bool
+        Whether there are numbers with which it keeps energy; they are looked for in its equations.
     turns : bool
         Whether it stands for a body's turning in space, and the body's kinematics, p' = Z(p) w, belong to it.
     beyond : str
         What is wrong where one of its `limits` is passed: "found ..., expected ...".
     """
 
+    channels: ClassVar[tuple[str, ...]] = ()
+    may_keep_energy: ClassVar[bool] = True
     turns: ClassVar[bool] = False
     beyond: ClassVar[str] = ""
 
@@ -249,6 +270,11 @@ class Force(Element):
     def potential(e: Symbolic) -> Any:
         """Potential energy, J; zero for a force that has none."""
         return 0
+
+    @classmethod
+    def measured(cls, e: Symbolic) -> Any:
+        """What is reported of the force besides its wrench, one expression for each name in `channels`."""
+        return ()
 
     @staticmethod
     def event_functions(e: Symbolic) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -11,7 +12,9 @@ if TYPE_CHECKING:
     from .handle import Handle
     from .marker import MarkerReference
     from .python_function import PythonFunction
+    from .roads import road
     from .table import Table
+    from .tyres import coefficients
 
 Number: TypeAlias = "float | np.number[Any] | str"
 """In SI units, or text with a unit: ``0.3``, ``"300 mm"``."""
@@ -26,6 +29,10 @@ Curve: TypeAlias = "Law | Table | Mapping[str, Any]"
 Function: TypeAlias = "Callable[..., Any] | PythonFunction"
 Marker: TypeAlias = "str | Handle | MarkerReference | Mapping[str, Any]"
 """A body or a marker of it by name, a body's handle, or a marker given on the spot."""
+Road: TypeAlias = "road.Road | Mapping[str, Any]"
+"""As made in Python, or its type and fields."""
+TyreProperties: TypeAlias = "coefficients.TyreProperties | str | Path | Mapping[str, Any]"
+"""A property file, or its coefficients."""
 Markers: TypeAlias = "Mapping[str, Any]"
 """Named points on a body."""
 Geometry: TypeAlias = "Mapping[str, Any] | Sequence[Mapping[str, Any]]"

@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
+from .element import Component
 from .fields import sentence
 from .figure import Figure
 from .files.expand import (
@@ -37,11 +38,12 @@ from .requests.names import OF_PLANE
 from .requests.order import dimension, dimensions
 from .requests.output import Output
 from .requests.output_field import OutputField
+from .roads.field import AnyRoad, read_roads
 from .settings import RunSettings, SteadyMotion
 from .table import Table
 from .units.units import Quantity, in_text
 
-SECTIONS = ("variables", "bodies", "joints", "forces")
+SECTIONS = ("variables", "states", "bodies", "joints", "forces")
 
 
 class Scene(ModelData):
@@ -49,6 +51,7 @@ class Scene(ModelData):
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
+    roads: dict[str, AnyRoad] = Field(default_factory=dict, description="roads that tyres name")
     variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
     start: Literal["described", "equilibrium"] | SteadyMotion = Field(
@@ -83,8 +86,14 @@ class Scene(ModelData):
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
-    """The notes of a scene; a model that is none has none."""
-    return model.notes if isinstance(model, Scene) else ()
+    """The notes of a scene, and what there is to say of the roads and tyres of a model."""
+    told: dict[str, list[str]] = {}
+    for name, element in model.forces.items():
+        for _, component in element.parts(Component):
+            for note in component.notes():
+                told.setdefault(note, []).append(name)
+    own = model.notes if isinstance(model, Scene) else ()
+    return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
 
 
 class PlanarScene(PlanarData, Scene):
@@ -158,16 +167,16 @@ def made_scene(
     line_of : callable
         The line in the source of what a path of keys leads to.
     folder : Path, optional
-        Where meshes are looked for; the working folder by default.
+        Where meshes and property files are looked for; the working folder by default.
     unchanged : Unchanged, optional
-        What was validated before and need not be again.
+        What was validated before and need not be again; the scene then does not keep what it was read from.
 
     Raises
     ------
     InputError
         When it is no valid scene.
     """
-    scene_as_written = WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
     in_parts = []
@@ -229,13 +238,14 @@ def _validated(
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
-        variables = read_variables(raw.get("variables"), parameters, tables)
+        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
+        context["roads"] = read_roads(raw.get("roads"), context)
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
-    raw["tables"] = tables
+    raw["tables"], raw["roads"] = tables, context["roads"]
     written_entries = dict(raw)
     if unchanged:
         raw = unchanged.put_into(raw, context)

@@ -79,6 +79,12 @@ class Report:
     messages: tuple[str, ...]
     sound: bool
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from ..show.html import report_html
+
+        return report_html(self)
+
     def as_dict(self, scene: str) -> dict[str, Any]:
         """The content of ``stiffmbs check --json``.
 

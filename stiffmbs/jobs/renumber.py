@@ -13,6 +13,7 @@ from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..describe.element import Element
 from ..describe.formula.field import TIME, Formula
+from ..describe.marker import GROUND
 from ..describe.model_data import ModelData
 from ..describe.scene import Scene
 from ..describe.table import Table
@@ -39,6 +40,28 @@ def renumbered(job: Job, data: ModelData) -> Job | None:
     AssemblyError
         When the other model has no consistent start.
     """
+    if not write_numbers(job, data):
+        return None
+    job.dynamics.forget_pivots()  # so that a run does not depend on those before it
+    changed = replace(job, data=data)
+    return replace(changed, start=start_of_job(changed))
+
+
+def write_numbers(job: Job, data: ModelData) -> bool:
+    """Give the compiled forces of a job the numbers of another model; False, with nothing changed, where it must be prepared anew."""
+    changes = changes_of_numbers(job, data)
+    if changes is None:
+        return False
+    of_inputs = any(change.of_inputs for change in changes)
+    for change in changes:
+        change.write()
+    if of_inputs:
+        job.dynamics.forget_inputs()
+    return True
+
+
+def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
+    """The forces of another model with other numbers than those of a job; None where it must be prepared anew."""
     if job.subsystems or not _same_structure(job.data, data):
         return None
     system = job.dynamics.system
@@ -48,14 +71,17 @@ def renumbered(job: Job, data: ModelData) -> Job | None:
         if change is None:
             return None
         written.append(change)
-    old = [change.group.elements[change.number] for change in written]
-    for change in written:
-        change.write()
-    job.dynamics.forget_pivots()  # so that a run does not depend on those before it
-    if any(map(_may_be_input, [*old, *(change.element for change in written)])):
-        job.dynamics.forget_inputs()
-    changed = replace(job, data=data)
-    return replace(changed, start=start_of_job(changed))
+    if (
+        any(_moved(job.data.forces[change.name], data.forces[change.name]) for change in written)
+        and data.size() != system.size
+    ):
+        return None  # tolerances follow from the size
+    return written
+
+
+def _moved(before: Element, after: Element) -> bool:
+    """Whether a force acts at other markers."""
+    return [marker for _, marker in before.markers()] != [marker for _, marker in after.markers()]
 
 
 def _same_structure(before: ModelData, after: ModelData) -> bool:
@@ -93,7 +119,7 @@ def _may_be_input(element: Element) -> bool:
 
 
 @dataclass(frozen=True)
-class _Change:
+class Change:
     """An element of a group that takes the place of one with other numbers."""
 
     group: Group
@@ -102,12 +128,22 @@ class _Change:
     first: int
     values: np.ndarray
 
+    @property
+    def name(self) -> str:
+        """Of the element."""
+        return self.group.names[self.number]
+
+    @property
+    def of_inputs(self) -> bool:
+        """Whether the element, as it is or as it becomes, may have a formula or a table of time."""
+        return _may_be_input(self.element) or _may_be_input(self.group.elements[self.number])
+
     def write(self) -> None:
         self.group.numbers[self.first : self.first + len(self.values)] = self.values
         self.group.elements[self.number] = self.element
 
 
-def _change(system: System, name: str, force: Element, data: ModelData) -> _Change | None:
+def _change(system: System, name: str, force: Element, data: ModelData) -> Change | None:
     """A force with its new numbers; None where it has other equations, bodies or tables of another length."""
     kind, found = sorted_out(force, data)
     group = next((group for group in system.groups if name in group.names), None)
@@ -117,7 +153,9 @@ def _change(system: System, name: str, force: Element, data: ModelData) -> _Chan
     index, values = group.index[element], found.flat()
     first = int(index[2 * kind.n_bodies])
     starts = np.append(group.index[:, 2 * kind.n_bodies], len(group.numbers) - 1)
-    bodies = [system.bodies[k] if k < len(system.bodies) else "ground" for k in group.bodies[element]]
-    if len(values) != starts[element + 1] - first or bodies != found.bodies:
+    bodies = [system.bodies[k] if k < len(system.bodies) else GROUND for k in group.bodies[element]]
+    rows = index[2 * kind.n_bodies + 1 :][: kind.n_joints]
+    joints = [system.equations[row][0] for row in rows]
+    if len(values) != starts[element + 1] - first or bodies != found.bodies or joints != found.joints:
         return None
-    return _Change(group, element, force, first, values)
+    return Change(group, element, force, first, values)

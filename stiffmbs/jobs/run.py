@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
@@ -35,12 +35,13 @@ from ..solve.events.input_ends import solve_up_to_the_inputs_end
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, consistent_values, initial_values
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
-from ..solve.storage import blocks, release
+from ..solve.storage import with_gaps
 from ..solve.subsystems import Subsystem, leave_out_coordinates, solve_subsystems, subsystem_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory
 from ..structure.messages.unconnected import unconnected_sentence
 from ..structure.redundancy import Redundancy, examine
+from .given_inputs import Given, with_inputs
 from .load_scene import load_scene
 from .presolve_report import presolve_sentences
 from .python_faults import told_faults, up_to_a_fault
@@ -207,6 +208,7 @@ def run(
     settings: RunSettings | None = None,
     watch: ProgressCallback | None = None,
     start_from: StartFrom | None = None,
+    inputs: Mapping[str, Given] | None = None,
     **changes: Unpack[Settings],
 ) -> Solution:
     """Solve a model.
@@ -222,6 +224,9 @@ def run(
     start_from : Solution, str, Path or SavedState, optional
         A state to start from in place of the described one, at its time unless `start` is given: the last of a solution
         or of a file of results, or ``solution.state(at=2.0)``.
+    inputs : mapping of str to float, callable or (times, values), optional
+        Values of the model's inputs: constants, functions of t, s, which are read at the output instants, or times and values;
+        with straight lines between.
     **changes
         Fields of the settings to change: ``duration=2.0, rtol=1e-8``.
 
@@ -237,6 +242,10 @@ def run(
     AssemblyError
         When no consistent start is found.
     """
+    if inputs:
+        data = data_of(model)
+        chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), {**changes})
+        model = with_inputs(data, inputs, chosen)
     return solved(prepare(model, settings, start_from, **changes), watch)
 
 
@@ -257,7 +266,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     wrong = tuple(senseless(job.dynamics, rows, job.settings))
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
-    known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
+    known = {name: values[solved_there] for name, values in with_gaps(channels).items()}
     wrong = (
         *wrong,
         *singular_passage_sentence(job.dynamics, rows),
@@ -294,16 +303,6 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
         trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
         message=sentence,
     )  # fmt: skip
-
-
-def _all_finite(values: np.ndarray) -> bool:
-    """Whether all are numbers, block by block: a channel of a large run lies in a file, whose memory is let go of."""
-    for block in blocks(len(values)):
-        finite = np.isfinite(values[block]).all()
-        release(values)
-        if not finite:
-            return False
-    return True
 
 
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:

@@ -20,9 +20,9 @@ CROSSED = 1e-3
 REQUEST_ROUNDING = 1e-14
 """Part of the largest number of all channels below which a request, whose unit nobody knows, is nothing but rounding."""
 MEASURED = {
-    "position": "x y z", "angle": "angle", "orientation": "q0 q1 q2 q3", "velocity": "vx vy vz",
+    "position": "x y z deflection", "angle": "angle slip_angle camber", "orientation": "q0 q1 q2 q3", "velocity": "vx vy vz",
     "angular velocity": "omega wx wy wz", "acceleration": "ax ay az", "angular acceleration": "alpha wdx wdy wdz",
-    "force": "fx fy fz", "torque": "torque tx ty tz", "energy": "kinetic potential total",
+    "force": "fx fy fz longitudinal lateral load", "torque": "torque tx ty tz overturning rolling aligning", "energy": "kinetic potential total",
 }  # fmt: skip
 KINDS = {ending: kind for kind, endings in MEASURED.items() for ending in endings.split()}
 UNITS = {

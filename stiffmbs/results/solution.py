@@ -129,6 +129,12 @@ class Solution(Mapping[str, np.ndarray]):
     def __repr__(self) -> str:
         return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} instants, {self.message}>"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from ..show.html import solution_html
+
+        return solution_html(self)
+
     def __array__(self, *_: Any, **__: Any) -> NoReturn:
         raise InputError(
             "found a whole solution in place of an array, expected one channel, solution['energy.total'], or solution.to_pandas()"

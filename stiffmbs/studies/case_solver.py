@@ -12,11 +12,13 @@ import numpy as np
 from ..describe.files.unchanged import Unchanged
 from ..describe.files.written_scene import WrittenScene
 from ..describe.scene import Scene, made_scene
+from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
 from ..jobs.renumber import renumbered
 from ..jobs.run import Job, prepare, solved
 from ..results.channels import channels_of
 from ..results.solution import Solution
+from ..solve.settings import changed
 from ..solve.trajectory import Outcome
 from .outputs import Output
 
@@ -118,11 +120,16 @@ class CaseSolver:
         told = "; ".join(([] if done else [solution.message]) + list(solution.notes))
         return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs)
 
-    def job(self, scene: Scene) -> Job:
-        """A job for a scene: one of the same structure with other numbers, or a new one; errors as for `stiffmbs.run`."""
-        from ..solve.settings import changed
+    def job(self, scene: Scene, settings: RunSettings | None = None) -> Job:
+        """A job for a scene: one of the same structure with other numbers, or a new one; errors as for `stiffmbs.run`.
 
-        settings = changed(scene.run, dict(self._task.settings))
+        Parameters
+        ----------
+        scene : Scene
+        settings : RunSettings, optional
+            Those of the scene with the task's changes by default.
+        """
+        settings = settings or changed(scene.run, dict(self._task.settings))
         for k, known in enumerate(self._jobs):
             if known.settings == settings:
                 found = renumbered(known, scene)

@@ -104,8 +104,8 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
-def read_variation(text: str) -> Variation:
-    """What ``--vary`` asks for: ``k_b=1e5:1e9:200:log``, ``k_b=1e5:1e9:log``, ``zeta=0.02,0.1``.
+def read_variation(text: str, option: str = "--vary") -> Variation:
+    """What ``--vary``, or another option, asks for: ``k_b=1e5:1e9:200:log``, ``k_b=1e5:1e9:log``, ``zeta=0.02,0.1``.
 
     Values may have units (``0.1 m:0.5 m:5``).
 
@@ -116,30 +116,41 @@ def read_variation(text: str) -> Variation:
     """
     name, equals, given = (part.strip() for part in text.partition("="))
     if not (name and equals and given):
-        raise InputError(f"--vary {text}: found no values, expected NAME=LOW:HIGH:COUNT[:log] or NAME=VALUE,VALUE,...")
+        raise InputError(
+            f"{option} {text}: found no values, expected NAME=LOW:HIGH:COUNT[:log] or NAME=VALUE,VALUE,..."
+        )
     if ":" not in given or given.startswith(("[", "{", '"', "'")):
-        return Variation(name, tuple(_listed(text, given)))
+        return Variation(name, tuple(_listed(f"{option} {text}", given)))
     parts = [part.strip() for part in given.split(":")]
     log = parts[-1] == "log"
     ends = parts[:-1] if log else parts
     if len(ends) not in (2, 3):
         raise InputError(
-            f"--vary {text}: found {len(ends)} numbers, expected LOW:HIGH:COUNT or LOW:HIGH, and :log or nothing"
+            f"{option} {text}: found {len(ends)} numbers, expected LOW:HIGH:COUNT or LOW:HIGH, and :log or nothing"
         )
     try:
-        chosen = Range(_number(ends[0]), _number(ends[1]), log)
+        chosen = Range(number(ends[0]), number(ends[1]), log)
     except InputError as error:
-        raise InputError(f"--vary {text}: {error}") from None
-    return Variation(name, tuple(chosen.at(_spread(text, ends[2])).tolist()) if len(ends) == 3 else (), chosen)
+        raise InputError(f"{option} {text}: {error}") from None
+    return Variation(
+        name, tuple(chosen.at(_spread(f"{option} {text}", ends[2])).tolist()) if len(ends) == 3 else (), chosen
+    )
 
 
-def _spread(text: str, count: str) -> np.ndarray:
+def _spread(place: str, count: str) -> np.ndarray:
     if not count.isdigit() or not 2 <= int(count) <= MOST_VALUES:
-        raise InputError(f"--vary {text}: found the count '{count}', expected a whole number of 2 or more")
+        raise InputError(f"{place}: found the count '{count}', expected a whole number of 2 or more")
     return np.linspace(0.0, 1.0, int(count))
 
 
-def _number(text: str) -> float:
+def number(text: str) -> float:
+    """A number, or one with a unit, in SI units.
+
+    Raises
+    ------
+    InputError
+        When it is neither.
+    """
     try:
         return float(text)
     except ValueError:
@@ -150,20 +161,20 @@ def _number(text: str) -> float:
         raise InputError(str(error)) from None
 
 
-def _listed(text: str, given: str) -> list[Any]:
+def _listed(place: str, given: str) -> list[Any]:
     """The values between commas that stand outside of brackets."""
     from ..describe.files.yaml_text import read_yaml
 
-    found = read_yaml(f"[{given}]", f"--vary {text}")
+    found = read_yaml(f"[{given}]", place)
     if not isinstance(found, list) or not found or None in found:
-        raise InputError(f"--vary {text}: found no list of values, expected such as zeta=0.02,0.1")
-    return [_as_number(value) for value in found]
+        raise InputError(f"{place}: found no list of values, expected such as zeta=0.02,0.1")
+    return [_asnumber(value) for value in found]
 
 
-def _as_number(value: Any) -> Any:
+def _asnumber(value: Any) -> Any:
     """Text such as ``1e5``, which YAML leaves as it is, as a number."""
     if isinstance(value, list):
-        return [_as_number(part) for part in value]
+        return [_asnumber(part) for part in value]
     try:
         return float(value) if isinstance(value, str) else value
     except ValueError:

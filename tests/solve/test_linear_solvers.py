@@ -1,11 +1,12 @@
-"""Elimination along a fixed order, by entries and by pairs of columns, against numpy's dense solution."""
+"""Elimination along a fixed order, by entries, by pairs of columns and by blocks, against numpy's dense solution."""
 
 import ctypes
 
 import numpy as np
 import pytest
 
-from stiffmbs.compile.machine.layout import PAIRED_COLUMNS, cells
+from stiffmbs.compile.machine.layout import BLOCK_LU, PAIRED_COLUMNS, cells
+from stiffmbs.solve.ida.block_lu import COORDINATE, MULTIPLIER, BlockLU
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.paired_columns import PairedColumns
 from stiffmbs.solve.linear.elimination_order import EliminationOrder
@@ -17,13 +18,19 @@ SAME_ADDRESS = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p)(lambda vector:
 class Solver:
     """The routines on one pattern, with the memory that IDA would keep for them."""
 
-    def __init__(self, kind, pattern):
+    def __init__(self, kind, pattern, sizes=(3, 1, 4, 7, 2), kinds=None):
         self.columns, self.rows = np.nonzero(pattern.T)
         n = len(pattern)
-        self.matrix = kind(n, self.rows, self.columns, EliminationOrder(np.arange(n), n * n, n**3))
+        order = EliminationOrder(np.arange(n), n * n, n**3)
+        parts = (nodes_of(n, sizes), np.full(n, COORDINATE) if kinds is None else kinds) if kind is BlockLU else ()
+        self.matrix = kind(n, self.rows, self.columns, order, *parts)
         self.memory = self.matrix.memory(ctypes.cast(SAME_ADDRESS, ctypes.c_void_p).value)
         self.factors, self.arrays = self.memory.factors, self.memory.arrays
         self.solver = np.array([self.memory.content.ctypes.data])
+
+    def counted(self, name):
+        """A count of the blocks' solver."""
+        return cells(self.memory.content, BLOCK_LU)[name]
 
     def solved(self, dense, b):
         self.factors["a"][:] = dense[self.rows, self.columns]
@@ -31,6 +38,12 @@ class Solver:
         x = np.full(len(b), np.nan)
         assert self.matrix.solve.load()(self.solver.ctypes.data, 0, x.ctypes.data, b.ctypes.data, 0.0) == 0
         return x
+
+
+def nodes_of(n, sizes):
+    """Unknowns in nodes whose sizes repeat."""
+    ends = np.cumsum(np.tile(sizes, n))
+    return [node for node in np.split(np.arange(n), ends[ends < n]) if len(node)]
 
 
 def in_blocks(rng, n_blocks, size):
@@ -46,7 +59,7 @@ def scattered(rng, n):
     return (rng.uniform(size=(n, n)) < 0.08) | np.eye(n, dtype=bool)
 
 
-@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns])
+@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns, BlockLU])
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("pattern", ["one", "blocks", "odd", "scattered", "full"])
 def test_solutions_are_those_of_numpy(kind, pattern, seed):
@@ -75,3 +88,66 @@ def test_most_columns_of_blocks_are_paired():
     solver.solved(np.where(pattern > 0, 0.1, 0.0) + np.eye(n), np.ones(n))
     entries = solver.factors["l_start"][n] + solver.factors["u_start"][n] - 2 * n
     assert cells(solver.memory.content, PAIRED_COLUMNS)["n_items"] < 0.6 * entries
+
+
+def test_blocks_serve_where_pivots_are_good():
+    rng = np.random.default_rng(1)
+    pattern = in_blocks(rng, 6, 5)
+    solver = Solver(BlockLU, pattern)
+    for _ in range(5):
+        dense = np.where(pattern, rng.uniform(-0.1, 0.1, pattern.shape), 0.0) + np.eye(30)
+        x = solver.solved(dense, np.ones(30))
+        np.testing.assert_allclose(dense @ x, np.ones(30), rtol=1e-13)
+    assert solver.counted("refused") == 0
+
+
+def test_blocks_that_share_nothing():
+    solver = Solver(BlockLU, np.eye(5, dtype=bool), sizes=(1,))
+    np.testing.assert_allclose(solver.solved(np.diag([1.0, 2, 3, 4, 5]), np.ones(5)), 1 / np.arange(1.0, 6), rtol=1e-15)
+
+
+def test_a_block_without_a_regular_pivot_is_left_to_pivots():
+    """The first node is singular, in sizes and in zeros; the matrix is not."""
+    dense = np.array([[1.0, 1.0, 1.0, 0.0], [1.0, 1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]])
+    solver = Solver(BlockLU, np.ones((4, 4), dtype=bool), sizes=(2,))
+    b = np.array([1.0, 2.0, 3.0, 4.0])
+    np.testing.assert_allclose(solver.solved(dense, b), np.linalg.solve(dense, b), rtol=1e-14)
+    assert solver.counted("refused") == 1
+
+
+@pytest.mark.parametrize("factor", [1.9, 30.0, 1e4])
+def test_pivots_that_fade_are_noticed(factor):
+    """A pivot shrinks with each factorisation: a trial that served before must not be relied on."""
+    solver = Solver(BlockLU, np.ones((3, 3), dtype=bool), sizes=(1,))
+    b = np.array([1.0, -2.0, 0.5])
+    pivot = 1.0
+    while pivot > 1e-25:
+        dense = np.array([[pivot, 1.0, 0.3], [1.0, 2.0, 0.2], [0.1, 0.5, 1.0]])
+        np.testing.assert_allclose(solver.solved(dense, b), np.linalg.solve(dense, b), rtol=1e-7)
+        pivot /= factor
+    assert solver.counted("refused") > 0
+
+
+def test_pivots_that_grow_out_of_a_singular_pose_are_taken_again():
+    """Factors with pivots serve for a while after a refusal, those of blocks again afterwards."""
+    solver = Solver(BlockLU, np.ones((2, 2), dtype=bool), sizes=(1,))
+    b = np.array([1.0, 2.0])
+    for pivot in [1e-20, *([1.0] * 40)]:
+        dense = np.array([[pivot, 2.0], [-1.0, 1.0]])
+        np.testing.assert_allclose(solver.solved(dense, b), np.linalg.solve(dense, b), rtol=1e-13)
+    assert solver.counted("refused") == 1 and not solver.counted("pivoted")
+
+
+@pytest.mark.parametrize("relaxed", [1e-12, 1e-10, 1e-8])
+def test_two_equal_constraints_are_left_to_pivots(relaxed):
+    """The inverse of their block would leave residuals of the size of the coordinates."""
+    dense = np.array(
+        [[1e3, 0, 1, 1], [0, 1e-3, 1, 1], [1, 1, -relaxed, 0], [1, 1, 0, -relaxed]], dtype=float
+    )  # fmt: skip
+    kinds = np.array([COORDINATE, COORDINATE, MULTIPLIER, MULTIPLIER])
+    solver = Solver(BlockLU, dense != 0, sizes=(1, 1, 2), kinds=kinds)
+    b = dense @ np.array([1.0, -1.0, 3.0, 3.0])
+    x = solver.solved(dense, b)
+    np.testing.assert_allclose(x[:2], [1.0, -1.0], rtol=1e-9)
+    np.testing.assert_allclose(x[2] + x[3], 6.0, rtol=1e-9)
+    assert solver.counted("refused") == 1

@@ -18,6 +18,7 @@ from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.formulations.si2 import SI2_EXACT
 from stiffmbs.solve.ida import choice, libraries, operations
+from stiffmbs.solve.ida.block_lu import BlockLU
 from stiffmbs.solve.ida.choice import chosen
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.ida import NativeIda
@@ -120,10 +121,14 @@ def test_the_steps_are_those_of_scikit_sundae(name, end, request):
 
 
 def in_fixed_order(equations, kind=FixedOrder):
-    return kind(equations.n, *equations.pattern, elimination_order(equations))
+    order = elimination_order(equations)
+    return BlockLU.of(equations, order) if kind is BlockLU else kind(equations.n, *equations.pattern, order)
 
 
-@pytest.mark.parametrize("kind", ["banded", "SuperLU_MT", "fixed order", "fixed order, columns in pairs"])
+KINDS = ["banded", "SuperLU_MT", "fixed order", "fixed order, columns in pairs", "blocks in a fixed order"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_all_matrices_give_the_same_motion(chain, kind):
     equations = chain.equations
     n, pattern = equations.n, equations.pattern
@@ -132,6 +137,7 @@ def test_all_matrices_give_the_same_motion(chain, kind):
         "SuperLU_MT": Sparse(n, *pattern),
         "fixed order": in_fixed_order(equations),
         "fixed order, columns in pairs": in_fixed_order(equations, PairedColumns),
+        "blocks in a fixed order": in_fixed_order(equations, BlockLU),
     }
     assert matrix[kind].sentence().startswith(kind)
     times = np.array([0.2, 0.4])
@@ -155,7 +161,9 @@ def test_a_band_is_found_in_a_chain(chain):
 
 
 def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, monkeypatch):
-    assert isinstance(chosen(chain.equations)[1], FixedOrder)
+    assert isinstance(chosen(chain.equations)[1], BlockLU)
+    monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
+    assert type(chosen(chain.equations)[1]) is FixedOrder
     monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
     _, matrix = chosen(chain.equations)
     assert isinstance(matrix, Banded)
@@ -173,7 +181,7 @@ def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
     assert isinstance(chosen(chain.equations)[1], FixedOrder)
 
 
-@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns])
+@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns, BlockLU])
 def test_pivots_are_sought_anew_where_they_have_become_small(chain, kind):
     """The order found far from the start, where the matrix is another one, serves all the same."""
     ida = chain.native(matrix=in_fixed_order(chain.equations, kind))

@@ -6,7 +6,7 @@ derivatives of a long equation (a cam) that is most of the time of its first run
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import sympy as sp
 
@@ -31,6 +31,7 @@ class Derivatives:
         self._symbols: dict[sp.Expr, frozenset[sp.Symbol]] = {}
         self._variables: dict[sp.Symbol, frozenset[sp.Symbol]] = {}
         self._names: dict[sp.Expr, sp.Symbol] = {}
+        self._functions: dict[sp.Expr, sp.Symbol] = {}
         self.meanings: dict[sp.Symbol, sp.Expr] = {}
 
     def define(self, symbol: sp.Symbol, by: Mapping[sp.Symbol, sp.Expr], meaning: sp.Expr | None = None) -> None:
@@ -54,10 +55,35 @@ class Derivatives:
         if x.could_extract_minus_sign():
             return -self.named(-x)
         if x not in self._names:
-            symbol = sp.Symbol(f"named{len(self.meanings)}", real=True)
-            self._names[x], self.meanings[symbol] = symbol, x
-            self._variables[symbol] = self.variables(x)
+            self._names[x] = self._new("named", x)
         return self._names[x]
+
+    def variable(self, x: sp.Expr, state: Iterable[sp.Symbol]) -> sp.Symbol:
+        """A symbol that stands for an expression and changes with the state alone: not with other variables in its meaning."""
+        if isinstance(x, sp.Symbol) and x not in self.meanings:
+            return x
+        if x not in self._functions:
+            symbol = self._functions[x] = self._new("variable", x)
+            self._chain[symbol] = {v: self.partial(x, v) for v in state if v in self._variables[symbol]}
+        return self._functions[x]
+
+    def composed(self, x: sp.Expr, variables: Sequence[sp.Symbol], state: Iterable[sp.Symbol]) -> sp.Expr:
+        """A symbol for an expression of a few variables: its derivatives by the state go through those by the variables."""
+        if x not in self._functions:
+            slopes = [(self.named(self.partial(x, variable)), variable) for variable in variables]
+            symbol = self._functions[x] = self._new("composed", x)
+            self._chain[symbol] = {
+                v: sp.Add(*(slope * self.partial(variable, v) for slope, variable in slopes))
+                for v in state
+                if v in self._variables[symbol]
+            }
+        return self._functions[x]
+
+    def _new(self, stem: str, x: sp.Expr) -> sp.Symbol:
+        symbol = sp.Symbol(f"{stem}{len(self.meanings)}", real=True)
+        self.meanings[symbol] = x
+        self._variables[symbol] = self.variables(x) | {symbol}
+        return symbol
 
     def jacobian(self, column: Iterable[sp.Expr], variables: Iterable[sp.Symbol]) -> sp.Matrix:
         """The matrix d(column)/d(variables)."""

@@ -35,8 +35,13 @@ def power_of_joint(e: SymbolicElement, V: sp.Matrix, lam: sp.Matrix) -> sp.Expr:
     return sp.Add(*(factor * without(e, row, at_rest) for factor, row in zip(lam, V, strict=True)))
 
 
-def power_of_force(stated: Stated, symbols: Symbols) -> tuple[sp.Expr, list[int] | None]:
+def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> tuple[sp.Expr, list[int] | None]:
     """A force's power beyond the rate of its potential, and which of its numbers must be zero for it to be zero.
+
+    Parameters
+    ----------
+    may_keep : bool
+        `Force.may_keep_energy`.
 
     Returns
     -------
@@ -47,6 +52,8 @@ def power_of_force(stated: Stated, symbols: Symbols) -> tuple[sp.Expr, list[int]
     """
     e, powers, potential = symbols.element, stated.powers, stated.potential
     work = sp.Add(*(Q * v for Q, v in powers))
+    if not may_keep:
+        return work if potential == 0 else work + e.rate(potential), None
     if potential == 0:
         return (sp.Integer(0), []) if _vanishes(work) else (work, None)
     losses = _losses(symbols, [Q for Q, _ in powers])
@@ -68,7 +75,7 @@ def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:
     at_rest = [without(e, Q, velocities) for Q in efforts]
     lost = _numbers_in(symbols, efforts) - _numbers_in(symbols, at_rest)
     kept = [without(e, Q, lost) for Q in efforts]
-    changing = [e.t, *velocities, *(symbol for lam in symbols.joint_lam for symbol in lam)]
+    changing = [e.t, *velocities, *e.states, *(symbol for lam in symbols.joint_lam for symbol in lam)]
     if any(Q.has(*NO_VALUE) or e.depends(Q, changing) for Q in kept):
         return None
     return [k for k, number in enumerate(symbols.numbers) if number in lost]

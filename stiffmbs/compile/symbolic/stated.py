@@ -30,6 +30,7 @@ class Stated:
         Of a force: efforts and rates.
     potential : Expr
     limits : tuple of Expr
+    measured : tuple of Expr
     """
 
     point: tuple[sp.Expr, ...]
@@ -39,6 +40,7 @@ class Stated:
     powers: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
     potential: sp.Expr = sp.S.Zero
     limits: tuple[sp.Expr, ...] = ()
+    measured: tuple[sp.Expr, ...] = ()
 
 
 def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
@@ -71,8 +73,14 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
     asked = _Asked(kind.element, symbols)
     powers = asked.pairs()
     (potential,) = asked.column("potential")
-    limits = asked.column("limits")
-    found = Stated(asked.column("point"), asked.event_functions(), powers=powers, potential=potential, limits=limits)
+    limits, measured = asked.column("limits"), asked.column("measured")
+    if len(measured) != len(kind.element.channels):  # type: ignore[attr-defined]
+        raise InputError(
+            f"{kind.element.__name__}.measured: found {len(measured)} expressions, expected one for each of its channels "
+            f"({', '.join(kind.element.channels) or 'none'})"  # type: ignore[attr-defined]
+        )
+    point, events = asked.column("point"), asked.event_functions()
+    found = Stated(point, events, powers=powers, potential=potential, limits=limits, measured=measured)
     return asked.known(found)
 
 
@@ -93,6 +101,7 @@ def text_of(kind: Kind) -> str:
             stated.velocity,
             stated.potential,
             stated.limits,
+            stated.measured,
         )
     ]
     powers = [(sp.srepr(effort), sp.srepr(rate)) for effort, rate in stated.powers]
@@ -140,6 +149,7 @@ class _Asked:
             stated.velocity,
             (stated.potential,),
             stated.limits,
+            stated.measured,
         )
         parts = [x for column in (*columns, *stated.powers) for x in column]
         meant = self.symbols.known()

@@ -60,9 +60,9 @@ class Unchanged:
         return isinstance(entry, dict) and bool(entry == before)
 
     def _changed_names(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> set[str]:
-        """Parameters, tables and variables that have other values, or whose variables have."""
+        """Parameters, tables, roads and variables that have other values, or whose variables have."""
         changed: set[str] = set()
-        for kind in ("parameters", "tables"):
+        for kind in ("parameters", "tables", "roads"):
             new, old = context[kind], self._context[kind]
             changed |= {name for name in {*new, *old} if name not in new or name not in old or new[name] != old[name]}
         new, old = (found.get("variables") or {} for found in (raw, self._raw))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 from ..files.quoted import quoted, written
@@ -13,8 +14,19 @@ from ..formula.functions import FUNCTIONS, IN_NUMBERS, check_functions
 from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
 from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one
 
+TEXTS = 4096
+"""Whose trees are kept."""
 LARGEST = 1e100
 """In SI units; products of three such numbers overflow."""
+
+
+@lru_cache(maxsize=TEXTS)
+def _parsed(text: str) -> ast.expr:
+    """The tree of a text, which is not to be changed: studies read the same texts again and again."""
+    tree = parse(text)
+    if "(" in text:
+        check_functions(tree, IN_NUMBERS)
+    return tree
 
 
 def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Quantity:
@@ -33,9 +45,7 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
         For an unknown name or function, mixed units, or a value that is not finite.
     """
     known = parameters or {}
-    tree = parse(text)
-    if "(" in text:
-        check_functions(tree, IN_NUMBERS)
+    tree = _parsed(text)
 
     def named(name: str) -> Quantity:
         owner, _, last = name.rpartition(".")

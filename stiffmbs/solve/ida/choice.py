@@ -6,6 +6,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ..linear.elimination_order import EliminationOrder, elimination_order
+from .block_lu import BlockLU
 from .fixed_order import FixedOrder
 from .libraries import Unavailable, ida_libraries
 from .matrices import Banded, Dense, Matrix, Sparse
@@ -24,6 +25,10 @@ FIXED = (1.2, 1.5, 0.5, 1.0)
 an unknown in a solution.  All figures are measured on the examples, 10 to 1000 unknowns."""
 PAIRED = (0.25, 3.0, 0.75, 1.0)
 """The same where columns are taken in pairs: their loops cost as much as some ten updates."""
+BLOCKS = (0.05, 50.0, 0.04, 5.0, 11.0)
+"""ns for an update in blocks of bodies and joints, for a node; in a solution for an entry of full blocks, an unknown, and a node."""
+WITH_ZEROS = 8
+"""Numbers that the blocks hold at the most, relative to the entries of a triangle of full ones."""
 SUPERLU = (0.5, 0.75, 600.0, 8.0)
 """The same of SuperLU_MT, which works in dense blocks where there are any, and starts anew with every factorisation."""
 WORTH_A_BAND = 50
@@ -52,6 +57,14 @@ def fixed_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float
     return update * updates + (entry + SOLUTIONS * solution) * entries + SOLUTIONS * unknown * n
 
 
+def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
+    """The same by dense blocks of so many nodes; they are numbered by 32 bits."""
+    if WITH_ZEROS * order.fill > np.iinfo(np.int32).max:
+        return np.inf
+    update, node, entry, unknown, of_node = BLOCKS
+    return update * order.updates + node * n_nodes + SOLUTIONS * (entry * order.fill + unknown * n + of_node * n_nodes)
+
+
 def superlu_cost(n: int, order: EliminationOrder) -> float:
     """The same for SuperLU_MT."""
     update, solution, start, unknown = SUPERLU
@@ -78,6 +91,8 @@ def chosen(equations: Equations) -> tuple[Equations, Matrix]:
     if replaceable(ida_libraries()):
         offers.append((fixed_cost(n, order, FIXED), equations, FixedOrder(n, *pattern, order)))
         offers.append((fixed_cost(n, order, PAIRED), equations, PairedColumns(n, *pattern, order)))
+        blocks = BlockLU.of(equations, order)
+        offers.append((block_cost(n, order, len(blocks.nodes)), equations, blocks))
     offers.append((superlu_cost(n, order), equations, Sparse(n, *pattern)))
     half = int(np.bincount(pattern[0]).max()) // 2
     if n >= WORTH_A_BAND and banded_cost(n, half, half) < min(cost for cost, *_ in offers):

@@ -112,7 +112,7 @@ class NativeIda:
         self._statistics = Statistics(session.libraries, ida.memory)
         self._flag, self._begun = 0, False
         self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
-        self._look = self._pace
+        self._look = self._usual_pace = self._pace
         ida.set_tolerances(rtol, atol)
         self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
         if suppressed is not None:
@@ -147,7 +147,7 @@ class NativeIda:
 
     def pause_after(self, steps: int) -> None:
         """Have `advance` and `steps` return after so many steps at the latest."""
-        self._pace = min(self._pace, steps)
+        self._pace = min(self._usual_pace, steps)
 
     def look_after(self, steps: int) -> None:
         """Have the next call of `advance` or `steps` return after so many steps at the latest."""

@@ -143,6 +143,10 @@ class NativeEngine:
                 return f"; the largest error was in {system.name_of(k, labels)}"
         return ""
 
+    def at(self, t: float) -> np.ndarray:
+        """All unknowns at a time within the last step."""
+        return self._ida.interpolate(t)
+
     def pause_after(self, steps: int) -> None:
         """Report at the latest after so many steps."""
         self._ida.pause_after(steps)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.machine.layout import OUTPUT_CORRECTION, cells, fill
-from .matrices import Matrix
+from .matrices import Assembled, Matrix
 from .session import Session
 
 VECTORS = "y", "yp", "defect", "correction", "weight"
@@ -30,12 +30,13 @@ class OutputCorrection:
         self.table = np.zeros(len(OUTPUT_CORRECTION), dtype=np.int64)
         self._cells = cells(self.table, OUTPUT_CORRECTION)
         self._cells["long"] = np.inf
-        self._kept: tuple[object, ...] = ()
+        self._assembled: Assembled | None = None
+        self._vectors: dict[str, np.ndarray] = {}
 
     @property
     def ready(self) -> bool:
         """Whether the memory is there."""
-        return bool(self._kept)
+        return self._assembled is not None
 
     def make_ready(self, session: Session, matrix: Matrix, memory: int, y_vector: int) -> None:
         """Make the matrix, its solver and the vectors.
@@ -68,12 +69,14 @@ class OutputCorrection:
                 **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
             },
         )  # fmt: skip
-        self._kept = (assembled, vectors)
+        self._assembled, self._vectors = assembled, vectors
 
     def limit(self, long_step: float, part: float) -> None:
         """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left."""
         self._cells["long"], self._cells["enough"] = long_step, part
 
     def forget(self) -> None:
-        """Have the matrix factored anew."""
+        """Have the matrix factored anew, with pivots that are sought anew."""
         self._cells["factored"] = 0.0
+        if self._assembled is not None and self._assembled.pivots is not None:
+            self._assembled.pivots["ready"] = 0

@@ -12,17 +12,23 @@ class EliminatedBodies:
     rank in the columns of B.  Rows of joints whose bodies are all in B do, as J has.  A joint with a body outside of B
     counts as one to ground, so that it can close a loop that is not there, with more rows than freedoms or a dead
     centre of its own.  A group therefore has either joints to ground or one such open joint: the open joint alone holds
-    a group that moves freely, and its rows are independent of those inside.
+    a group that moves freely, and its rows are independent of those inside.  Where bodies have few coordinates of their
+    own, as one that slides along an axis, a group must have as many freedoms as its joints have rows.
 
     Parameters
     ----------
     bodies_of : sequence of sequences of int
         The bodies of each joint, ground left out.
-    n_bodies : int
+    freedoms : sequence of int
+        Velocities of each body.
+    rows : sequence of int
+        Equations of each joint.
     """
 
-    def __init__(self, bodies_of: Sequence[Sequence[int]], n_bodies: int) -> None:
-        self._bodies_of = bodies_of
+    def __init__(self, bodies_of: Sequence[Sequence[int]], freedoms: Sequence[int], rows: Sequence[int]) -> None:
+        n_bodies = len(freedoms)
+        self._bodies_of, self._rows = bodies_of, rows
+        self._left = list(freedoms)
         self._gone = [False] * n_bodies
         self._parent = list(range(n_bodies))
         self._grounded = [False] * n_bodies
@@ -46,7 +52,10 @@ class EliminatedBodies:
         n_open = sum(self._open[group] for group in groups) + bool(ahead)
         if not groups or n_open > 1 or (n_open and grounded):
             return False
+        if n_open and sum(self._left[group] for group in groups) < self._rows[joint]:
+            return False
         group = self._joined(joint)
+        self._left[group] -= self._rows[joint]
         self._grounded[group], self._open[group] = grounded, n_open
         for body in ahead:
             self._waiting[body].append(joint)
@@ -66,4 +75,5 @@ class EliminatedBodies:
             self._parent[other] = first
             self._grounded[first] |= self._grounded[other]
             self._open[first] += self._open[other]
+            self._left[first] += self._left[other]
         return first

@@ -47,19 +47,42 @@ def elimination_order(equations: Equations) -> EliminationOrder:
     by_owner = natural[np.argsort(owner[natural], kind="stable")]
     sizes = np.bincount(owner, minlength=n_bodies + len(equations.system.joint_start) - 1)
     starts = np.concatenate([[0], np.cumsum(sizes)]).tolist()
-    neighbours: list[set[int]] = [set() for _ in sizes]
-    for a, b in np.unique(owner[np.stack(equations.pattern)], axis=1).T.tolist():
+    size = sizes.tolist()
+    neighbours: list[set[int]] = [set() for _ in size]
+    rows, columns = equations.pattern
+    for both in np.unique(owner[rows] * len(size) + owner[columns]).tolist():
+        a, b = divmod(both, len(size))
         if a != b:
             neighbours[a].add(b)
             neighbours[b].add(a)
     order, fill, updates = [], 0, 0
-    size = sizes.tolist()
-    for node, around in _least_degree(neighbours, n_bodies):
+    for node, around in _least_degree(neighbours, _counted(equations, owner, len(size)), n_bodies):
         order.append(by_owner[starts[node] : starts[node + 1]])
         height = size[node] + sum(size[other] for other in around)
         fill += size[node] * height
         updates += size[node] * height * height
     return EliminationOrder(np.concatenate([np.empty(0, dtype=np.int64), *order]), fill, updates)
+
+
+def nodes_in_order(equations: Equations, order: EliminationOrder) -> list[np.ndarray]:
+    """The unknowns of each body's coordinates, then of its velocities, and of each joint, as they are eliminated.
+
+    The diagonal block of coordinates is next to cj times the unit matrix whatever the forces; with them gone, that of
+    velocities holds what masses, dampers and stiff springs resist with.
+    """
+    _, owner = _owners(equations)
+    place = np.full(equations.n, -1)
+    kinds = [name for name in ("q", "u", "mu", "lam") if name in equations.at]
+    part = np.zeros(equations.n, dtype=np.int64)
+    for k, name in enumerate(kinds):
+        at = equations.at[name]
+        part[at[at != ABSENT]] = k
+    place[order.unknowns] = np.arange(equations.n)
+    first = np.full(int(owner.max(initial=-1)) + 1, equations.n)
+    np.minimum.at(first, owner, place)
+    node = 2 * first[owner] + (part == kinds.index("u") if "u" in kinds else 0)
+    sequence = np.lexsort((np.arange(equations.n), part, node))
+    return np.split(sequence, np.flatnonzero(np.diff(node[sequence])) + 1)
 
 
 def _owners(equations: Equations) -> tuple[int, np.ndarray]:
@@ -75,12 +98,22 @@ def _owners(equations: Equations) -> tuple[int, np.ndarray]:
     return n_bodies, owner
 
 
-def _least_degree(neighbours: list[set[int]], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
+def _counted(equations: Equations, owner: np.ndarray, n_owners: int) -> list[int]:
+    """The freedoms of each body, and the equations of each joint, on one level."""
+    at = equations.at
+    level = [at["u"] if "u" in at else at["q"], at["lam"] if "lam" in at else at["mu"]]
+    unknowns = np.concatenate(level)
+    counted: list[int] = np.bincount(owner[unknowns[unknowns != ABSENT]], minlength=n_owners).tolist()
+    return counted
+
+
+def _least_degree(neighbours: list[set[int]], counted: list[int], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
     """Nodes, bodies before joints, in the order of least degree, and the neighbours that each has then.
 
-    A joint that has to wait is looked at again after each neighbour's elimination: what it waits for is one of them.
+    Counted are the velocities of bodies and the equations of joints.  A joint that has to wait is looked at again after each neighbour's elimination: what it waits for is one of them.
     """
-    bodies = EliminatedBodies([sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]], n_bodies)
+    bodies_of = [sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]]
+    bodies = EliminatedBodies(bodies_of, counted[:n_bodies], counted[n_bodies:])
     queue = [(len(neighbours[node]), node) for node in range(n_bodies)]
     heapq.heapify(queue)
     gone = [False] * len(neighbours)

@@ -152,6 +152,7 @@ FORCES_IN_SPACE = {
     "field": "f: {type: field, i: one.b, j: two, stiffness: [50, 20, 30, 4, 5, 6], free: [0.1, 0.2, 0.1, 0.2, 0.1, 0.05]}",
     "force": 'f: {type: force, i: one.b, force: ["2 - one.wx", "vz(one.b, mount, mount)", "wx(one, mount, two)"], axes: body}',
     "torque": 'f: {type: torque, i: one, j: two, torque: [0.3, "0.2*wy(one, mount, two)", "0.1*dz(one, two, two)"], frame: two}',
+    "vertical_tyre": "f: {type: vertical_tyre, i: one.b, j: mount, radius: 0.9, stiffness: 300, damping: 2}",
     "sphere_contact": "f: {type: sphere_contact, i: one.b, j: two, radius: 0.6, surface: plane, stiffness: 1e3}",
     "torsion_spring": "f: {type: torsion_spring, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}, stiffness: 3, free_angle: 1, preload: 0.5, damper_law: v^2}",
     "line_force": 'f: {type: line_force, i: one, j: two, force: "sin(t) + 3*wm(one, two) - vr(one, two)"}',

@@ -15,8 +15,9 @@ LLVM_TYPES = {
     "ints": "ptr",
     "indices": "ptr",
     "floats": "ptr",
+    "quad": "<4 x double>",
 }
-"""The kinds of values: numbers, truth values, C's int, pointers to int64, int32 and float64."""
+"""The kinds of values: numbers, truth values, C's int, pointers to int64, int32 and float64, four floats side by side."""
 ITEMS = {"ints": "int", "indices": "int32", "floats": "float"}
 """What a pointer points to."""
 POINTERS_TO = {item: pointer for pointer, item in ITEMS.items()}

@@ -1,0 +1,142 @@
+"""The commands ``stiffmbs fit`` and ``stiffmbs optimise``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from ..errors import InputError, StiffmbsError
+from ..jobs.load_scene import load_scene
+from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options
+
+if TYPE_CHECKING:
+    from ..studies.fit import Fit
+    from ..studies.optimise import Optimum
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def _sought_options(command: Command) -> Command:
+    options = (
+        click.option(
+            "--parameter",
+            "parameters",
+            multiple=True,
+            required=True,
+            metavar="NAME=LOW:HIGH[:log]",
+            help="What is sought, a parameter or a path, with its bounds; any number of times.",
+        ),
+        click.option("--start", "start", multiple=True, metavar="NAME=VALUE", help="Where the search starts."),
+        click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table."),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+@click.command(short_help="Fit parameters to measured channels.")
+@click.argument("scene")
+@click.option("--data", required=True, metavar="FILE", help="Measured channels over time: .csv, .npz or .nc.")
+@_sought_options
+@solving_options
+def fit(
+    scene: str, data: str, parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool, **options: Any
+) -> None:
+    """Find the parameters with which SCENE follows the channels in FILE best, with 95 % confidence intervals.
+
+    Exit status: 0 done, 1 the search did not converge, 2 the input is wrong.
+    """
+    from ..studies.fit import fit as fitted
+
+    try:
+        loaded = load_scene(scene, changes_of(options))
+        with in_file(scene):
+            found = fitted(loaded, data, _ranges(parameters), start=_values(start))
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    click.echo(json.dumps({"scene": scene, **found.as_dict()}) if as_json else _fit_text(found))
+    sys.exit(0 if found.success else STOPPED_EARLY)
+
+
+@click.command(short_help="Find the parameters that make an output least.")
+@click.argument("scene")
+@click.option("--minimise", required=True, metavar="FORMULA", help="What is made least: 'rms(chassis.ay)'.")
+@click.option(
+    "--keep", multiple=True, metavar="'FORMULA <= VALUE'", help="A constraint, with <= or >=; any number of times."
+)
+@_sought_options
+@solving_options
+def optimise(
+    scene: str, minimise: str, keep: tuple[str, ...], parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool,
+    **options: Any,
+) -> None:  # fmt: skip
+    """Find the parameters of SCENE that make an output least, within bounds and under constraints.
+
+    Exit status: 0 done, 1 the search did not converge, 2 the input is wrong.
+    """
+    from ..studies.optimise import optimise as optimised
+
+    try:
+        loaded = load_scene(scene, changes_of(options))
+        with in_file(scene):
+            found = optimised(loaded, minimise, _ranges(parameters), _limits(keep), start=_values(start))
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    click.echo(json.dumps({"scene": scene, **found.as_dict()}) if as_json else _optimum_text(minimise, found))
+    sys.exit(0 if found.success else STOPPED_EARLY)
+
+
+def _ranges(parameters: tuple[str, ...]) -> dict[str, Any]:
+    from ..studies.variation import read_variation
+
+    found = [read_variation(text, "--parameter") for text in parameters]
+    for one in found:
+        if one.range is None:
+            raise InputError(f"--parameter {one.name}: found no range, expected NAME=LOW:HIGH[:log]")
+    return {one.name: one.range for one in found}
+
+
+def _values(pairs: tuple[str, ...]) -> dict[str, float]:
+    from ..studies.variation import number
+
+    found = {}
+    for text in pairs:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"--start {text}: found no value, expected NAME=VALUE")
+        found[name.strip()] = number(value)
+    return found
+
+
+def _limits(keep: tuple[str, ...]) -> dict[str, tuple[float | None, float | None]]:
+    from ..studies.variation import number
+
+    found: dict[str, tuple[float | None, float | None]] = {}
+    for text in keep:
+        sign = "<=" if "<=" in text else ">="
+        formula, between, bound = (part.strip() for part in text.partition(sign))
+        if not between or not formula or not bound:
+            raise InputError(f"--keep {text}: found no bound, expected such as 'peak(rail.fy) <= 100'")
+        low, high = found.get(formula, (None, None))
+        found[formula] = (low, number(bound)) if sign == "<=" else (number(bound), high)
+    return found
+
+
+def _fit_text(found: Fit) -> str:
+    lines = [f"{found.message} ({found.runs} runs)"]
+    for name, value in found.values.items():
+        low, high = found.intervals[name]
+        lines.append(f"  {name} = {value:.6g}, 95 % confidence interval {low:.6g} to {high:.6g}")
+    lines += [f"  {name}: rms of model - data {rms:.4g}" for name, rms in found.residuals.items()]
+    return "\n".join(lines)
+
+
+def _optimum_text(minimise: str, found: Optimum) -> str:
+    lines = [f"{found.message} ({found.runs} runs)", f"  {minimise}: {found.before:.6g} -> {found.objective:.6g}"]
+    lines += [f"  {name} = {value:.6g}" for name, value in found.values.items()]
+    lines += [f"  {name}: {value:.6g}" for name, value in found.constraints.items()]
+    return "\n".join(lines)

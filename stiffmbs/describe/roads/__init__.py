@@ -1,0 +1,1 @@
+"""Roads, one kind per file."""

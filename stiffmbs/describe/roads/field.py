@@ -1,0 +1,88 @@
+"""Roads as fields of elements: by name, as a mapping, or as made in Python; and the section of a scene that names them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic import ValidationError as PydanticError
+from pydantic_core import core_schema
+
+from ...errors import InputError
+from ..fields import NAME_PATTERN, sentence
+from ..files.quoted import quoted, written
+from .cosine_bump import CosineBump
+from .flat import FlatRoad
+from .formula import FormulaRoad
+from .iso8608 import Iso8608Road
+from .profile import TableRoad
+from .road import Road
+from .sine_sweep import SineSweep
+from .step import StepRoad
+
+ROADS: Mapping[str, type[Road]] = MappingProxyType(
+    {road.kind: road for road in (FlatRoad, FormulaRoad, TableRoad, StepRoad, CosineBump, SineSweep, Iso8608Road)}
+)
+"""The kinds of roads."""
+
+
+def read_road(found: object, context: Mapping[str, Any] | None) -> Road:
+    """The road that a field has."""
+    if isinstance(found, Road):
+        return found
+    if isinstance(found, str):
+        known = (context or {}).get("roads") or {}
+        if found not in known:
+            raise ValueError(f"found the unknown road '{quoted(found)}', expected one of {', '.join(known) or 'none'}")
+        return known[found]  # type: ignore[no-any-return]
+    if not isinstance(found, dict):
+        raise ValueError(f"found {written(found)}, expected the name of a road, or a mapping with its type")
+    kind = found.get("type")
+    if not isinstance(kind, str) or kind not in ROADS:
+        expected = ", ".join(f"'{each}'" for each in ROADS)
+        raise ValueError(f"found the type {written(kind)} of a road, expected one of {expected}")
+    return ROADS[kind].model_validate(found, context=dict(context or {}))
+
+
+class _RoadField:
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        def read(found: object, info: ValidationInfo) -> Road:
+            return read_road(found, info.context)
+
+        return core_schema.with_info_plain_validator_function(read)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        name = {"type": "string", "description": "the name of a road of the scene"}
+        ways = [handler(core_schema.definitions_schema(road.__pydantic_core_schema__, [])) for road in ROADS.values()]
+        return {"anyOf": [name, *ways]}
+
+
+AnyRoad = Annotated[Road, _RoadField()]
+
+
+def read_roads(found: Any, context: Mapping[str, Any]) -> dict[str, Road]:
+    """The scene's roads, which its tyres call by name.
+
+    Raises
+    ------
+    InputError
+        When a name is no identifier, or a road cannot be read.
+    """
+    if found is None:
+        return {}
+    if not isinstance(found, dict):
+        raise InputError(f"roads: found {written(found)}, expected a mapping of names to roads")
+    roads: dict[str, Road] = {}
+    for name, road in found.items():
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            raise InputError(f"roads: found the name {written(name)}, expected letters, digits and _")
+        try:
+            roads[name] = read_road(road, context)
+        except PydanticError as error:
+            raise InputError(f"roads.{name}.{sentence(error)}") from None
+        except ValueError as error:
+            raise InputError(f"roads.{name}: {error}") from None
+    return roads

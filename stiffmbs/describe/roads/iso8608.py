@@ -1,0 +1,133 @@
+"""A random road after ISO 8608."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from ..element import Symbolic
+from ..table import Table
+from ..units import si
+from .profile import two_tracks
+from .road import Road
+
+if TYPE_CHECKING:
+    import numpy as np
+
+CLASSES = "ABCDEFGH"
+SMOOTHEST = 16e-6
+"""Gd(n0) of class A, m^3; each class has four times that of the one before (geometric means of ISO 8608, table C.1)."""
+REFERENCE = 0.1
+"""n0, the wavenumber to which classes refer, 1/m."""
+POINTS = 4
+"""Of a table for the shortest wave: a cubic spline is then within 1 % of its amplitude."""
+
+
+class Iso8608Road(Road):
+    """A random road of a class of ISO 8608, the same for the same seed, with tracks for left and right wheels.
+
+    The displacement power spectral density of each track is Gd(n) = Gd(n0) (n/n0)^-2, n0 = 0.1/m, with the class's geometric
+    mean Gd(n0) = 16e-6 m^3 for A, four times more for each further class.  It is a sum of waves of random phase whose
+    lengths are whole fractions of `length`, after which it repeats, down to `shortest`.  Left and right are at
+    y = track/2 and -track/2; between them the height goes over by a cubic, and beyond it stays.
+
+    With ``coherence: isotropic`` both are tracks of one surface with the same spectrum in all directions: their coherence is
+    (2 pi n track) K1(2 pi n track), near 1 for long waves and near 0 for those shorter than the track.
+
+    ISO 8608:2016; Robson, Road surface description and vehicle response, Int. J. Vehicle Design 1 (1979) 25-35 (isotropy).
+    """
+
+    kind: ClassVar[str] = "iso8608"
+
+    roughness: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(description="its class, from A (very good) to H")
+    seed: int = Field(0, ge=0, description="of the random phases")
+    track: si.PositiveLength = Field(1.5, description="distance of the left and the right track, m")
+    length: si.PositiveLength = Field(250.0, description="after which the road repeats, m")
+    longest: si.PositiveLength = Field(100.0, description="longest wave, m")
+    shortest: si.PositiveLength = Field(0.2, description="shortest wave, m")
+    coherence: Literal["isotropic", "full", "none"] = Field("isotropic", description="between left and right")
+    start: si.Length | None = Field(None, description="x where it begins, m; it begins nowhere by default")
+    entry: si.PositiveLength = Field(5.0, description="over which it grows from nothing behind its start, m")
+
+    @model_validator(mode="after")
+    def _waves(self) -> Iso8608Road:
+        if not self.shortest < min(self.longest, self.length):
+            raise ValueError(
+                f"found waves down to {self.shortest:g} m, expected shorter ones than longest and length, {self.longest:g} and "
+                f"{self.length:g} m"
+            )
+        if POINTS * self.length / self.shortest > 1e5:
+            raise ValueError(
+                f"found waves of {self.shortest:g} m on {self.length:g} m of road, expected at most 25000 times longer"
+            )
+        return self
+
+    def in_equations(self) -> dict[str, Any]:
+        left, right = _tables(
+            CLASSES.index(self.roughness),
+            self.seed,
+            self.track,
+            self.length,
+            self.longest,
+            self.shortest,
+            self.coherence,
+        )
+        own = {name: getattr(self, name) for name in ("friction", "track", "start", "entry")}
+        return {**own, "left": left, "right": right}
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        from .road import ramp
+
+        height = two_tracks(r, x, y)
+        if r.start is None:
+            return height
+        s = ramp(x, r.start, r.entry)
+        return height * s**2 * (3 - 2 * s)
+
+
+@lru_cache(maxsize=32)
+def _tables(
+    roughness: int, seed: int, track: float, length: float, longest: float, shortest: float, coherence: str
+) -> tuple[Table, Table]:
+    """Tables of the left and the right track."""
+    import numpy as np
+
+    first, last = max(1, math.ceil(length / longest)), math.floor(length / shortest)
+    k = np.arange(first, last + 1)
+    n = k / length
+    density = SMOOTHEST * 4.0**roughness * (n / REFERENCE) ** -2.0
+    amplitude = np.sqrt(2 * density / length)
+    common, opposite = np.exp(2j * math.pi * np.random.default_rng(seed).random((2, len(k))))
+    g = _coherence(coherence, 2 * math.pi * n * track)
+    sums, differences = np.sqrt((1 + g) / 2) * common, np.sqrt((1 - g) / 2) * opposite
+    count = POINTS * last
+    return _table(amplitude * (sums + differences), k, count, length), _table(
+        amplitude * (sums - differences), k, count, length
+    )
+
+
+def _coherence(coherence: str, x: np.ndarray) -> np.ndarray:
+    """Cross over power spectral density of the tracks."""
+    import numpy as np
+
+    if coherence == "isotropic":
+        from scipy.special import k1
+
+        return np.asarray(x * k1(x))
+    return np.ones_like(x) if coherence == "full" else np.zeros_like(x)
+
+
+def _table(waves: np.ndarray, k: np.ndarray, count: int, length: float) -> Table:
+    """The sum of the real parts of waves of k periods each, at points."""
+    import numpy as np
+
+    spectrum = np.zeros(count // 2 + 1, dtype=complex)
+    spectrum[k] = waves * count / 2
+    heights = np.fft.irfft(spectrum, count)
+    x = np.linspace(0.0, length, count + 1)
+    rows = zip(x.tolist(), [*heights.tolist(), float(heights[0])], strict=True)
+    return Table.model_construct(table=tuple(rows), ends="periodic", lines=False, akima=False)

@@ -1,0 +1,58 @@
+"""A road by tables."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from ..element import Symbolic
+from ..table import Table
+from ..units import si
+from .road import Road, clipped
+
+
+class TableRoad(Road):
+    """A road whose height is a table over x, or two: for the tracks of left and right wheels.
+
+    Between the tracks, which lie at y = track/2 and -track/2, the height goes over from one to the other by a cubic with flat
+    ends; beyond them it is that of the nearer track.
+    """
+
+    kind: ClassVar[str] = "table"
+
+    profile: Table | None = Field(None, description="height over x, m, the same for all y; a table or its name")
+    left: Table | None = Field(None, description="height over x at y = track/2 and beyond")
+    right: Table | None = Field(None, description="height over x at y = -track/2 and beyond")
+    track: si.PositiveLength | None = Field(None, description="distance of the tracks left and right, m")
+
+    @field_validator("profile", "left", "right", mode="before")
+    @classmethod
+    def _by_name(cls, found: Any, info: ValidationInfo) -> Any:
+        """A table of the scene by its name."""
+        if not isinstance(found, str):
+            return found
+        tables = (info.context or {}).get("tables") or {}
+        if found not in tables:
+            raise ValueError(f"found the unknown table '{found}', expected one of {', '.join(tables) or 'none'}")
+        return tables[found]
+
+    @model_validator(mode="after")
+    def _one_or_two(self) -> TableRoad:
+        two = (self.left, self.right, self.track)
+        if (self.profile is None) == (None in two) or (self.profile is not None and two != (None, None, None)):
+            raise ValueError("found neither or both, expected a 'profile', or 'left', 'right' and 'track'")
+        return self
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        return r.profile(x) if r.profile is not None else two_tracks(r, x, y)
+
+
+def two_tracks(r: Symbolic, x: Any, y: Any) -> Any:
+    """The height of a road with tables `left` and `right`, a `track` apart."""
+    from sympy import Rational
+
+    s = clipped(y / r.track + Rational(1, 2))
+    right, left = r.right(x), r.left(x)
+    return right + (left - right) * s**2 * (3 - 2 * s)

@@ -1,0 +1,35 @@
+"""Waves of growing or falling frequency in a road."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ..element import Symbolic
+from ..units import si
+from .road import Road, ramp
+
+
+class SineSweep(Road):
+    """A level road with sine waves whose wavelength changes along them.
+
+    With s = (x - start)/length between 0 and 1 the height is amplitude sin(2 pi length (n0 s + (n1 - n0) s^2/2)), with the
+    wavenumbers n0 = 1/first_wavelength at the start and n1 = 1/last_wavelength at the end.  Behind it the height stays.
+    """
+
+    kind: ClassVar[str] = "sine_sweep"
+
+    start: si.Length = Field(description="x where it begins, m")
+    length: si.PositiveLength = Field(description="over which the waves go on, m")
+    amplitude: si.Length = Field(description="of the waves, m")
+    first_wavelength: si.PositiveLength = Field(description="at the start, m")
+    last_wavelength: si.PositiveLength = Field(description="at the end, m; the same: a plain sine wave")
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        from sympy import Rational, pi, sin
+
+        s = ramp(x, r.start, r.length)
+        first, last = 1 / r.first_wavelength, 1 / r.last_wavelength
+        return r.amplitude * sin(2 * pi * r.length * (first * s + (last - first) * s**2 * Rational(1, 2)))

@@ -1,0 +1,26 @@
+"""A step in a road."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ..element import Symbolic
+from ..units import si
+from .road import Road, ramp
+
+
+class StepRoad(Road):
+    """A level road that rises, or falls, over a short length by a cubic with flat ends: a kerb, a pothole's edge."""
+
+    kind: ClassVar[str] = "step"
+
+    start: si.Length = Field(description="x where it begins, m")
+    length: si.PositiveLength = Field(description="over which it rises, m")
+    rise: si.Length = Field(description="height behind it, m; below zero it falls")
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        s = ramp(x, r.start, r.length)
+        return r.rise * s**2 * (3 - 2 * s)

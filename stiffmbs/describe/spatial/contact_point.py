@@ -1,0 +1,123 @@
+"""Where a wheel meets a road, and how it slips there.
+
+The point of contact lies in the wheel's plane, below its centre: on the line through the centre that is perpendicular to
+the spin axis and to the wheel's heading on the road (Pacejka, Tire and Vehicle Dynamics, 2012, sec. 2.2 and 9.2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..element import Symbolic
+from ..roads.road import above_zero, magnitude
+from .wrench import velocity
+
+
+@dataclass(frozen=True)
+class ContactPoint:
+    """A wheel on a road, in ground axes.
+
+    Attributes
+    ----------
+    point : Matrix
+        Of contact, m.
+    forward, left, normal : Matrix
+        Unit vectors of the ISO axes at the contact: heading of the wheel in the road, across it, out of the road.
+    radius : Expr
+        From the wheel's centre to the point of contact, m.
+    camber : Expr
+        Angle of the wheel's plane to the road's normal, rad; above zero the top leans to the right.
+    vx, vy, vz : Expr
+        Velocity of the point of contact, which doesn't turn with the wheel, along the axes, m/s.
+    spin : Expr
+        Angular velocity of the wheel about its axis, rad/s; above zero when it rolls forward.
+    friction : Expr
+        The road's factor.
+    """
+
+    point: Any
+    forward: Any
+    left: Any
+    normal: Any
+    radius: Any
+    camber: Any
+    vx: Any
+    vy: Any
+    vz: Any
+    spin: Any
+    friction: Any
+
+
+def contact_point(e: Symbolic) -> ContactPoint:
+    """Where the wheel of marker i, whose y axis is its spin axis, meets the road of j."""
+    from sympy import asin
+
+    centre, axis = e.named(e.i.point), e.named(e.i.y)
+    x, y, below, n = _surface(e, centre)
+    forward, up = _heading(e, axis, n)
+    radius = e.named(below / up.dot(n))
+    if not e.road.level:
+        point = e.named(centre - radius * up)
+        x, y, below, n = _surface(e, point)
+        forward, up = _heading(e, axis, n)
+        radius = e.named(radius + below / up.dot(n))
+    left = e.named(n.cross(forward))
+    arm = e.named(-radius * up)
+    spin, v = _motion(e, centre, axis, arm)
+    vx, vy, vz = (e.named(v.dot(along)) for along in (forward, left, n))
+    camber, friction = e.named(asin(axis.dot(n))), e.named(e.road.factor(x, y))
+    return ContactPoint(e.named(centre + arm), forward, left, n, radius, camber, vx, vy, vz, spin, friction)
+
+
+def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
+    """Below or above a point: x and y along the road's axes, the point's distance from the road's tangent plane there, and
+    its normal."""
+    from sympy import Matrix, sqrt
+
+    local = point if e.j is None else Matrix([(point - e.j.point).dot(axis) for axis in e.j.axes])
+    x, y = e.variable(local[0]), e.variable(local[1])
+    height = e.named(e.road.height(x, y))
+    slopes = e.named([e.slope(height, x), e.slope(height, y)])
+    upright = e.named(1 / sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2))
+    components = Matrix([-slopes[0] * upright, -slopes[1] * upright, upright])
+    n = (
+        components
+        if e.j is None
+        else sum((c * a for c, a in zip(components, e.j.axes, strict=True)), Matrix([0, 0, 0]))
+    )
+    return x, y, e.named((local[2] - height) * upright), e.named(n)
+
+
+def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:
+    """The wheel's heading in the road, and the direction in its plane away from the road."""
+    from sympy import sqrt
+
+    across = e.named(axis.cross(n))
+    forward = e.named(across / sqrt(across.dot(across)))
+    return forward, e.named(forward.cross(axis))
+
+
+def _motion(e: Symbolic, centre: Any, axis: Any, arm: Any) -> tuple[Any, Any]:
+    """The spin, and the velocity of the point of contact, both against the road."""
+    omega, v = e.named(e.i.omega), e.rate(e.i.point)
+    if e.j is not None:
+        omega = e.named(omega - e.j.omega)
+        v = v - velocity(e, e.j, centre)
+    spin = e.named(omega.dot(axis))
+    return spin, e.named(v + (omega - spin * axis).cross(arm))
+
+
+def slips(e: Symbolic, contact: ContactPoint, rolling_radius: Any, slow: Any) -> tuple[Any, Any, Any]:
+    """Longitudinal slip, slip angle and the speed that they refer to.
+
+    kappa = (Re Omega - Vx)/V and alpha = atan(Vy/V), with V = abs(Vx), below the speed `slow` (slow^2 + Vx^2)/(2 slow): smooth
+    through a standstill.
+    """
+    from sympy import atan
+
+    forward = magnitude(contact.vx)
+    missing = above_zero(e.named(slow - forward))
+    speed = e.named(forward + missing**2 / (2 * slow))
+    slip = e.named((rolling_radius * contact.spin - contact.vx) / speed)
+    return slip, e.named(atan(contact.vy / speed)), speed

@@ -1,0 +1,60 @@
+"""Fiala's tyre."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ...element import Symbolic
+from ...roads.road import clipped, magnitude
+from ...units import si
+from ..tyre import Rolling, Tyre
+
+TINY = 1e-30
+"""Beside forces, so that nothing is divided by zero in the air."""
+
+
+class FialaTyre(Tyre):
+    """Fiala's tyre: slip stiffnesses, and a friction that falls with the whole slip.
+
+    With S = min(1, sqrt(kappa^2 + tan(alpha)^2)) and U = mu_static + (mu_sliding - mu_static) S, on a load N:
+
+    - Fx = C_kappa kappa up to abs(kappa) = U N/(2 C_kappa), beyond sign(kappa) (U N - (U N)^2/(4 C_kappa abs(kappa)));
+    - Fy = -U N (1 - H^3) sign(alpha), H = max(0, 1 - C_alpha abs(tan(alpha))/(3 U N));
+    - Mz = U N width (1 - H) H^3 sign(alpha), and My = -rolling_resistance N forward.
+
+    Camber gives no force.  Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979; MSC Adams/Tire,
+    Fiala tire model.
+    """
+
+    kind: ClassVar[str] = "fiala_tyre"
+
+    radius: si.PositiveLength = Field(description="without load, m")
+    stiffness: si.Stiffness = Field(description="radial, N/m")
+    damping: si.Damping = Field(0.0, description="radial, N s/m")
+    slip_stiffness: si.PositiveForce = Field(description="C_kappa: longitudinal force over slip, N")
+    cornering_stiffness: si.PositiveForce = Field(description="C_alpha: lateral force over slip angle, N/rad")
+    mu_static: si.PositiveNumber = Field(description="friction without slip")
+    mu_sliding: si.NumberOrZero = Field(description="friction at full slip")
+    width: si.LengthOrZero = Field(0.0, description="of the tyre, for its aligning torque, m")
+    rolling_resistance: si.LengthOrZero = Field(0.0, description="torque over load, m")
+
+    @staticmethod
+    def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+        from sympy import Float, Rational, sqrt, tan
+
+        across, slip = e.named(tan(rolling.slip_angle)), rolling.slip
+        whole = e.named(clipped(sqrt(slip**2 + across**2 + Float("1e-60"))))
+        mu = rolling.friction * (e.mu_static + (e.mu_sliding - e.mu_static) * whole)
+        most = e.named(mu * rolling.load + Float(str(TINY)))
+        size, sideways = e.named(magnitude(slip)), e.named(magnitude(across))
+        critical = e.named(most / (2 * e.slip_stiffness))
+        apart = magnitude(size - critical)
+        below, above = e.named((size + critical - apart) / 2), e.named((size + critical + apart) / 2)
+        fx = slip / size * (e.slip_stiffness * below + most * Rational(1, 2) - most**2 / (4 * e.slip_stiffness * above))
+        h = e.named(clipped(1 - e.cornering_stiffness * sideways / (3 * most)))
+        left = across / sideways
+        fy = -most * (1 - h**3) * left
+        mz = most * e.width * (1 - h) * h**3 * left
+        return fx, fy, 0, -e.rolling_resistance * rolling.load * rolling.direction, mz

@@ -1,0 +1,140 @@
+"""What tyres share: the contact of a wheel with a road, its load, and the wrench of a law on the wheel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ..element import Force, Symbolic
+from ..roads.field import AnyRoad
+from ..roads.flat import FlatRoad
+from ..roads.road import above_zero
+from ..units import si
+from .contact_point import contact_point, slips
+from .marker import Marker
+from .wrench import Pairs, velocity
+
+CHANNELS = (
+    "longitudinal", "lateral", "load", "overturning", "rolling", "aligning", "slip", "slip_angle", "camber", "deflection",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """What the law of a tyre depends on, a symbol each.
+
+    Attributes
+    ----------
+    load : Symbol
+        Normal force of the road on the tyre, N, zero or above.
+    slip : Symbol
+        kappa, above zero when driving.
+    slip_angle : Symbol
+        alpha, rad; above zero the tyre moves to its left, and its lateral force is below zero.
+    camber : Symbol
+        gamma, rad; above zero the top leans to the right.
+    speed : Symbol
+        abs(Vx), m/s, that slips refer to: never zero.
+    direction : Symbol
+        Vx over `speed`: 1 forward, -1 backward, in between near a standstill.
+    friction : Symbol
+        The road's factor.
+    """
+
+    load: Any
+    slip: Any
+    slip_angle: Any
+    camber: Any
+    speed: Any
+    direction: Any
+    friction: Any
+
+
+class Tyre(Force):
+    """Base of tyres in space (it has no kind).  A subclass is its fields, its `law`, and perhaps how it carries its load.
+
+    Marker i is the centre of the wheel on the body that spins, its y axis the spin axis, to the left of its heading.  The road
+    meets the wheel in one point (`stiffmbs.describe.spatial.contact_point`).  Channels, besides the wrench on the wheel, are
+    those of the ISO axes at that point, x forward, y to the left, z out of the road: the forces ``longitudinal``, ``lateral``
+    and ``load`` (N), the torques ``overturning``, ``rolling`` and ``aligning`` (N m), ``slip``, ``slip_angle`` and ``camber``
+    (rad), and ``deflection`` (m).  The elastic energy of a tyre is not counted in energy.total.
+    """
+
+    channels: ClassVar[tuple[str, ...]] = CHANNELS
+    may_keep_energy: ClassVar[bool] = False
+    reflected: ClassVar[dict[str, str] | None] = {"j": "z"}
+
+    i: Marker = Field(description="centre of the wheel, its y axis the spin axis, to the left of the heading")
+    j: Marker | None = Field(
+        None, description="whose axes the road's x, y and z are, on a body that carries it; ground by default"
+    )
+    road: AnyRoad = Field(
+        FlatRoad(), description="the name of a road of the scene, or a road; level at z = 0 by default"
+    )
+    slow: si.PositiveVelocity = Field(
+        1.0, description="speed below which slips refer to (slow^2 + Vx^2)/(2 slow) in place of abs(Vx), m/s"
+    )
+
+    @staticmethod
+    def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+        """Fx, Fy, Mx, My, Mz on the tyre at the point of contact, along the ISO axes, N and N m."""
+        raise NotImplementedError
+
+    @staticmethod
+    def unloaded_radius(e: Symbolic) -> Any:
+        """Radius without load, m."""
+        return e.radius
+
+    @staticmethod
+    def carried(e: Symbolic, deflection: Any, rate: Any) -> Any:
+        """The load at a deflection above zero, N; it is never taken below zero."""
+        return e.stiffness * deflection + e.damping * rate
+
+    @classmethod
+    def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
+        """Effective rolling radius, m: with a third of the deflection below the unloaded one."""
+        from sympy import Rational
+
+        return cls.unloaded_radius(e) - deflection * Rational(1, 3)
+
+    @classmethod
+    def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
+        """The contact, what the law depends on, the deflection, and the law's forces and torques."""
+        from sympy import Max, Piecewise
+
+        contact = contact_point(e)
+        closed = e.named(cls.unloaded_radius(e) - contact.radius)
+        deflection = e.named(above_zero(closed))
+        load = Piecewise((Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True))
+        slip, slip_angle, speed = slips(e, contact, e.named(cls.rolling_radius(e, deflection)), e.slow)
+        of = (load, slip, slip_angle, contact.camber, speed, contact.vx / speed, contact.friction)
+        rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))
+        variables = [x for x in vars(rolling).values() if e.in_state(x)]
+        return contact, rolling, deflection, e.composed(cls.law(e, rolling), variables)
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """The wrench at the point of contact on the wheel, and the opposite on the road's body."""
+        contact, rolling, _, (fx, fy, mx, my, mz) = cls._acting(e)
+        axes = contact.forward, contact.left, contact.normal
+        force = e.named(_along(axes, (fx, fy, rolling.load)))
+        torque = e.named(_along(axes, (mx, my, mz)))
+        v, w = velocity(e, e.i, contact.point), e.i.omega
+        if e.j is not None:
+            v, w = v - velocity(e, e.j, contact.point), w - e.j.omega
+        return [*zip(force, v, strict=True), *zip(torque, w, strict=True)]
+
+    @classmethod
+    def measured(cls, e: Symbolic) -> list[Any]:
+        """In the order of `channels`."""
+        _, rolling, deflection, (fx, fy, mx, my, mz) = cls._acting(e)
+        return [
+            fx, fy, rolling.load, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection,
+        ]  # fmt: skip
+
+
+def _along(axes: Any, components: Any) -> Any:
+    (x, y, z), (along_x, along_y, along_z) = axes, components
+    return x * along_x + y * along_y + z * along_z

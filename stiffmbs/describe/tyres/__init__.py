@@ -1,0 +1,1 @@
+"""The Magic Formula and files of tyre properties."""

@@ -1,0 +1,173 @@
+"""The Magic Formula, MF-Tyre 5.2 and PAC2002: forces and torques of steady slip.
+
+Written once, for symbols and for numbers: `p` has the coefficients by name, `f` names what occurs more than once.
+
+Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2, with slip angle and camber as angles, and the nominal load FNOMIN where
+its text has the adapted one, as MF-Tyre 5.2 and MSC Adams/Tire (PAC2002) have it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from sympy import Expr, Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
+
+from ..roads.road import above_zero, magnitude
+
+Name = Callable[[Any], Any]
+NOTHING = Float("1e-12")
+"""N, beside loads that are divided by: in the air nothing is divided by zero, and on the road it is below rounding."""
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A state of slip: load (N), kappa, alpha and gamma (rad), the speed over the reference speed, its sign, and the road's
+    factor on friction."""
+
+    load: Expr
+    kappa: Expr
+    alpha: Expr
+    gamma: Expr
+    speed: Expr
+    direction: Expr
+    friction: Expr
+
+
+@dataclass(frozen=True)
+class Curve:
+    """D sin(C atan(B x - E (B x - atan(B x)))) + Sv of one direction, and what other equations use of it."""
+
+    force: Expr
+    stiffness: Expr
+    B: Expr
+    C: Expr
+    mu: Expr
+    horizontal: Expr
+    vertical: Expr
+
+
+def magic(b: Any, x: Any, c: Any, curvature: Any) -> Any:
+    """The argument of sine or cosine: C atan(B x - E (B x - atan(B x)))."""
+    return c * atan(b * x - curvature * (b * x - atan(b * x)))
+
+
+def sign(x: Any) -> Any:
+    """Its sign, 0 at zero."""
+    return x / magnitude(x)
+
+
+def at_most_one(x: Any) -> Any:
+    """The lesser of a number and 1."""
+    return 1 - above_zero(1 - x)
+
+
+def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
+    """Pure longitudinal slip."""
+    gamma = s.gamma * p.LGAX
+    shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX)
+    kappa = f(s.kappa + shift)
+    mu = f((p.PDX1 + p.PDX2 * dfz) * (1 - p.PDX3 * gamma**2) * p.LMUX * s.friction)
+    E = f(at_most_one((p.PEX1 + p.PEX2 * dfz + p.PEX3 * dfz**2) * (1 - p.PEX4 * sign(kappa)) * p.LEX))
+    K = f(s.load * (p.PKX1 + p.PKX2 * dfz) * exp(p.PKX3 * dfz) * p.LKX)
+    C = p.PCX1 * p.LCX
+    B = f(K / (C * mu * s.load + NOTHING))
+    vertical = f(s.load * (p.PVX1 + p.PVX2 * dfz) * p.LVX * p.LMUX * s.friction)
+    force = f(mu * s.load * sin(magic(B, kappa, C, E)) + vertical)
+    return Curve(force, K, B, C, mu, shift, vertical)
+
+
+def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
+    """Pure side slip."""
+    gamma = f(s.gamma * p.LGAY)
+    shift = f((p.PHY1 + p.PHY2 * dfz) * p.LHY + p.PHY3 * gamma)
+    alpha = f(s.alpha + shift)
+    mu = f((p.PDY1 + p.PDY2 * dfz) * (1 - p.PDY3 * gamma**2) * p.LMUY * s.friction)
+    E = f(at_most_one((p.PEY1 + p.PEY2 * dfz) * (1 - (p.PEY3 + p.PEY4 * gamma) * sign(alpha)) * p.LEY))
+    nominal = p.FNOMIN * p.LFZO
+    upright = p.PKY1 * p.FNOMIN * sin(2 * atan(s.load / (p.PKY2 * nominal))) * p.LFZO * p.LKY
+    K = f(upright * (1 - p.PKY3 * magnitude(gamma)))
+    C = p.PCY1 * p.LCY
+    B = f(K / (C * mu * s.load + NOTHING))
+    vertical = f(s.load * ((p.PVY1 + p.PVY2 * dfz) * p.LVY + (p.PVY3 + p.PVY4 * dfz) * gamma) * p.LMUY * s.friction)
+    force = f(mu * s.load * sin(magic(B, alpha, C, E)) + vertical)
+    return Curve(force, K, B, C, mu, shift, vertical)
+
+
+def weight(b: Any, slip: Any, shift: Any, c: Any, curvature: Any, f: Name) -> Any:
+    """A weight of combined slip: 1 where the slip is zero."""
+    return f(cos(magic(b, f(slip + shift), c, curvature)) / cos(magic(b, shift, c, curvature)))
+
+
+def combined(p: Any, s: Slip, x: Curve, y: Curve, dfz: Any, f: Name) -> tuple[Any, Any, Any]:
+    """Fx, Fy, and the lateral force that longitudinal slip induces."""
+    over_alpha = f(p.RBX1 * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
+    E = at_most_one(p.REX1 + p.REX2 * dfz)
+    fx = f(x.force * weight(over_alpha, s.alpha, p.RHX1, p.RCX1, f(E), f))
+    over_kappa = f(p.RBY1 * cos(atan(p.RBY2 * (s.alpha - p.RBY3))) * p.LYKA)
+    E = at_most_one(p.REY1 + p.REY2 * dfz)
+    lessened = weight(over_kappa, s.kappa, f(p.RHY1 + p.RHY2 * dfz), p.RCY1, f(E), f)
+    most = y.mu * s.load * (p.RVY1 + p.RVY2 * dfz + p.RVY3 * s.gamma) * cos(atan(p.RVY4 * s.alpha))
+    induced = f(most * sin(p.RVY5 * atan(p.RVY6 * s.kappa)) * p.LVYKA)
+    return fx, f(y.force * lessened + induced), induced
+
+
+def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], dfz: Any, f: Name) -> Any:
+    """The aligning torque: of the pneumatic trail, the residual one, and that of Fx on its arm."""
+    fx, fy, induced = forces
+    gamma, R = f(s.gamma * p.LGAZ), p.UNLOADED_RADIUS
+    stiffer = p.LKY / p.LMUY
+    B = f((p.QBZ1 + p.QBZ2 * dfz + p.QBZ3 * dfz**2) * (1 + p.QBZ4 * gamma + p.QBZ5 * magnitude(gamma)) * stiffer)
+    D = f(s.load * (p.QDZ1 + p.QDZ2 * dfz) * (1 + p.QDZ3 * gamma + p.QDZ4 * gamma**2) * (R / p.FNOMIN) * p.LTR)
+    of_trail = f(s.alpha + p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma)
+    of_rest = f(s.alpha + y.horizontal + y.vertical / (y.stiffness + sign(y.stiffness) * NOTHING + NOTHING**2))
+    E = f(
+        at_most_one(
+            (p.QEZ1 + p.QEZ2 * dfz + p.QEZ3 * dfz**2)
+            * (1 + (p.QEZ4 + p.QEZ5 * gamma) * (2 / pi) * atan(B * p.QCZ1 * of_trail))
+        )
+    )
+    driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * NOTHING + NOTHING**2) * s.kappa) ** 2)
+    straight = cos(s.alpha)
+    trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
+    residual_load = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES + (p.QDZ8 + p.QDZ9 * dfz) * gamma
+    residual_most = f(s.load * residual_load * R * p.LMUY * s.friction)
+    slope = f(p.QBZ9 * stiffer + p.QBZ10 * y.B * y.C)
+    residual = f(residual_most * cos(atan(slope * equivalent(of_rest, driving))) * straight)
+    arm = f((p.SSZ1 + p.SSZ2 * fy / p.FNOMIN + (p.SSZ3 + p.SSZ4 * dfz) * s.gamma) * R * p.LS)
+    return -trail * (fy - induced) + residual + arm * fx
+
+
+def equivalent(alpha: Any, driving: Any) -> Any:
+    """A slip angle that stands for both slips, without the sign of the slip angle: trail and residual torque are even in it,
+    and with the sign it would jump."""
+    return atan(sqrt(tan(alpha) ** 2 + driving + Float("1e-60")))
+
+
+def wrench(p: Any, s: Slip, f: Name, is_combined: bool = True) -> tuple[Any, Any, Any, Any, Any]:
+    """Fx, Fy, Mx, My, Mz at the point of contact.
+
+    Parameters
+    ----------
+    is_combined : bool
+        Whether the coefficients have the weights of combined slip; without them Fx and Fy are held on the friction ellipse.
+    """
+    nominal = p.FNOMIN * p.LFZO
+    dfz = f((s.load - nominal) / nominal)
+    x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
+    forces = combined(p, s, x, y, dfz, f) if is_combined else on_ellipse(s, x, y, f)
+    fx, fy, _ = forces
+    R = p.UNLOADED_RADIUS
+    mx = R * s.load * (p.QSX1 * p.LVMX + (-p.QSX2 * s.gamma + p.QSX3 * fy / p.FNOMIN) * p.LMX)
+    resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4
+    my = -R * s.load * resistance * p.LMY * s.direction
+    return fx, fy, mx, my, aligning(p, s, x, y, forces, dfz, f)
+
+
+def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
+    """Fx and Fy of pure slips, both less where together they are beyond the ellipse of mu_x N and mu_y N."""
+    most_x, most_y = x.mu * s.load + NOTHING, y.mu * s.load + NOTHING
+    beyond = f(sqrt((x.force / most_x) ** 2 + (y.force / most_y) ** 2 + Float("1e-60")))
+    less = f(1 / (1 + above_zero(beyond - 1)))
+    return f(x.force * less), f(y.force * less), Rational(0)

@@ -1,0 +1,118 @@
+"""What notebooks show of models, reports and solutions: tables, and pictures where matplotlib is installed."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Iterable, Sequence
+from html import escape
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+from ..errors import StiffmbsError
+from ..results.solution import channel_ranges
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
+
+    from ..jobs.check import Report
+    from ..results.solution import Solution
+
+MOST_ROWS = 40
+"""Of a table; the others are counted."""
+MOST_DRAWN = 200
+"""Bodies and elements up to which a model is drawn without being asked."""
+
+
+def model_html(model: Any) -> str:
+    """A model's content by sections, with its drawing as described.
+
+    Parameters
+    ----------
+    model : Model or Scene
+    """
+    sections = {name: getattr(model, name) for name in ("bodies", "joints", "forces")}
+    rows = [
+        (section, name, getattr(part, "kind", "") or "body", _placed(part))
+        for section, parts in sections.items()
+        for name, part in parts.items()
+    ]
+    return _page(
+        model.name or type(model).__name__, _drawing(model, len(rows)), _table(("", "name", "type", "between"), rows)
+    )
+
+
+def report_html(report: Report) -> str:
+    """What `stiffmbs.check` found."""
+    rows = [
+        ("degrees of freedom", report.degrees_of_freedom), ("constraint equations", report.equations), ("rank", report.rank),
+        ("redundant", ", ".join(f"{joint}.{equation}" for joint, equation in report.redundant) or "none"),
+        ("reactions without a unique value", ", ".join(report.not_unique) or "none"),
+        ("unknowns", f"{report.unknowns[0]}, solved for {report.unknowns[1]}"),
+    ]  # fmt: skip
+    told = [("", sentence) for sentence in (*report.inconsistencies, *report.presolve, *report.messages)]
+    return _page(report.name, "", _table(("", ""), [*rows, *told]))
+
+
+def solution_html(solution: Solution) -> str:
+    """How a run ended, its figure, and the range of every channel."""
+    ranges = channel_ranges(solution)
+    rows = [
+        (
+            name,
+            solution.unit(name),
+            *(f"{found[key]:.6g}" for key in ("first", "last", "min", "max")),
+        )
+        for name, found in ranges.items()
+    ]
+    told = "".join(f"<p>{escape(sentence)}</p>" for sentence in (solution.message, *solution.notes))
+    return _page(
+        solution.name, told + _figure(solution), _table(("channel", "unit", "first", "last", "min", "max"), rows)
+    )
+
+
+def _placed(part: Any) -> str:
+    """The bodies that an element acts between."""
+    return ", ".join(str(getattr(part, name)) for name in ("i", "j") if getattr(part, name, None) is not None)
+
+
+def _page(title: str, above: str, table: str) -> str:
+    return f"<div><b>{escape(title)}</b>{above}{table}</div>"
+
+
+def _table(heads: Sequence[str], rows: Sequence[Iterable[Any]]) -> str:
+    lines = ["".join(f"<td>{escape(str(cell))}</td>" for cell in row) for row in rows[:MOST_ROWS]]
+    if len(rows) > MOST_ROWS:
+        lines.append(f'<td colspan="{len(heads)}">and {len(rows) - MOST_ROWS} more</td>')
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in heads)
+    return f"<table><tr>{head}</tr>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+
+
+def _drawing(model: Any, count: int) -> str:
+    """The model as it is described; nothing where it cannot be drawn."""
+    if find_spec("matplotlib") is None or count > MOST_DRAWN:
+        return ""
+    from .drawing.draw import state_drawn
+    from .drawing.picture import Shown, picture
+    from .drawing.view import view_named
+
+    try:
+        drawing, poses = state_drawn(model, described=True)
+        sheet = picture(drawing, poses, view_named("", drawing.dimensions, drawing.gravity), Shown(True, False))
+    except StiffmbsError:  # a model that is not complete yet
+        return ""
+    return _picture(sheet)
+
+
+def _figure(solution: Solution) -> str:
+    if find_spec("matplotlib") is None or solution.figure is None or len(solution.time) < 2:
+        return ""
+    from .figure import drawn
+
+    return _picture(drawn(solution, solution.figure))
+
+
+def _picture(sheet: Sheet) -> str:
+    content = io.BytesIO()
+    sheet.savefig(content, format="png", dpi=90)
+    return f'<br><img alt="" src="data:image/png;base64,{base64.b64encode(content.getvalue()).decode("ascii")}">'

@@ -1,0 +1,96 @@
+"""The iteration matrix factored by dense blocks of bodies and joints without pivots, in place of a solver of SUNDIALS' own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ...compile.equations import ABSENT, Equations
+from ...compile.machine.layout import BLOCK_LU, Layout
+from ...compile.machine.own_memory import packed_with_memory
+from ...compile.machine.routines import Routine
+from ..linear.block_updates import updates
+from ..linear.blocks import QUAD, Blocks, filled
+from ..linear.elimination_order import EliminationOrder, nodes_in_order
+from .fixed_order import FixedOrder, Memory
+from .paired_columns import PairedColumns
+
+_MODULE = "stiffmbs.solve.linear.native.block_lu"
+SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
+SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
+MULTIPLIER, COORDINATE, VELOCITY = range(3)
+"""Kinds of unknowns, as in `stiffmbs.solve.linear.native.block_lu`."""
+SEED = 14
+"""Of the state that factors are tried on: numbers between 0.5 and 1, as whole ones hide what rounding does."""
+
+
+@dataclass(frozen=True)
+class BlockLU(FixedOrder):
+    """Block LU along a fixed order, tried by its residual; columns in pairs with pivots where that is too large.
+
+    Attributes
+    ----------
+    nodes : list of ndarray of int
+        The unknowns that are eliminated together, in order.
+    kinds : ndarray of int, shape (n,)
+        What each unknown is.
+    """
+
+    setup: ClassVar[Routine] = SETUP
+    solve: ClassVar[Routine] = SOLVE
+    layout: ClassVar[Layout] = BLOCK_LU
+
+    nodes: list[np.ndarray]
+    kinds: np.ndarray
+
+    @classmethod
+    def of(cls, equations: Equations, order: EliminationOrder) -> BlockLU:
+        """That of a formulation along an order of its bodies and joints."""
+        kinds = np.full(equations.n, MULTIPLIER)
+        for name, kind in (("q", COORDINATE), ("u", VELOCITY)):
+            at = equations.at.get(name, np.empty(0, dtype=np.int64))
+            kinds[at[at != ABSENT]] = kind
+        return cls(equations.n, *equations.pattern, order, nodes_in_order(equations, order), kinds)
+
+    def sentence(self) -> str:
+        """What the summary says of it."""
+        return f"blocks in a fixed order, {self.n} unknowns, {len(self.rows)} entries"
+
+    @cached_property
+    def blocks(self) -> Blocks:
+        """The blocks that are filled."""
+        return filled(self.nodes, self.rows, self.columns)
+
+    @cached_property
+    def _plan(self) -> dict[str, Any]:
+        """What stays as it is, and serves all memories of the solver."""
+        blocks = self.blocks
+        diagonal = np.flatnonzero((self.rows == self.columns) & (self.kinds[self.rows] == COORDINATE))
+        lists = {
+            "size": blocks.sizes, "start": blocks.starts, "down_width": blocks.down_width, "right_width": blocks.right_width,
+            "node_start": blocks.node_starts, "place": blocks.places, "kind": self.kinds, "diagonal": diagonal,
+            **blocks.quads("down", blocks.below), **blocks.quads("right", blocks.right),
+        }  # fmt: skip
+        random = np.random.default_rng(SEED)
+        signs = random.choice([-1.0, 1.0], self.n)
+        return {
+            "n": self.n, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
+            **{name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}, **updates(blocks),
+            "slot": blocks.slots(self.rows, self.columns), "state": signs * random.uniform(0.5, 1.0, self.n),
+        }  # fmt: skip
+
+    def memory(self, array_of: int) -> Memory:
+        """What the compiled routines work on, given the address of N_VGetArrayPointer."""
+        with_pivots = PairedColumns(self.n, self.rows, self.columns, self.order).memory(array_of)
+        blocks = self.blocks
+        scratch = max([*blocks.right_width, *(2 * QUAD * size for size in blocks.sizes)])
+        arrays = {
+            **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"],
+            "with_pivots": np.array([with_pivots.content.ctypes.data]), "kept": with_pivots,
+            "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(scratch),
+            **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
+        }  # fmt: skip
+        return Memory(packed_with_memory(BLOCK_LU, arrays), arrays, with_pivots.factors)

@@ -1,0 +1,148 @@
+"""What the elimination of each node takes out of later blocks, as lists of small products of one shape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+
+import numpy as np
+
+from .blocks import QUAD, Blocks
+
+ROWS, QUADS = (4, 3, 2, 1), (2, 1)
+"""Rows and quads of columns of the products: what fits into a processor's registers."""
+DOWN, RIGHT = 0, 1
+"""Kinds of targets: lines of first panels, of second ones."""
+SHAPES = tuple(product((DOWN, RIGHT), ROWS, QUADS))
+"""Shapes of products, in order."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """Lines of one node's panel that the elimination of an earlier one changes.
+
+    Attributes
+    ----------
+    k : int
+        The node that is eliminated.
+    kind : int
+    start, stride : int
+        Of the panel's lines.
+    factors : int
+        Where the numbers begin that the lines are multiplied by, one for each line.
+    size : int
+        Number of lines.
+    runs : list of tuple of int
+        Neighbouring quads: where they stand in the lines that are taken, in the target's lines, and how many there are.
+    """
+
+    k: int
+    kind: int
+    start: int
+    stride: int
+    factors: int
+    size: int
+    runs: list[tuple[int, int, int]]
+
+
+def updates(blocks: Blocks) -> dict[str, np.ndarray]:
+    """All products, node by node and shape by shape, and where those of each node and shape end.
+
+    A product is told by its target, the stride there, the factors, and the lines that are taken.
+    """
+    targets = [target for k in range(len(blocks.nodes)) for target in _targets(blocks, k)]
+    line_target, line, rows = _spread([_lines(target.size) for target in targets], 2)
+    run_target, own, into, quads = _spread([target.runs for target in targets], 3)
+    piece_run, shift, count = _spread([_pieces(n) for n in quads.tolist()], 2)
+    piece_target = run_target[piece_run]
+    column = [
+        np.array([getattr(target, name) for target in targets], dtype=np.int64)
+        for name in ("k", "kind", "start", "stride", "factors")
+    ]
+    n_lines, n_pieces = (np.bincount(of, minlength=len(targets)) for of in (line_target, piece_target))
+    of, within = _numbered(n_lines * n_pieces)
+    at_line = (np.cumsum(n_lines) - n_lines)[of] + within // np.maximum(n_pieces[of], 1)
+    at_piece = (np.cumsum(n_pieces) - n_pieces)[of] + within % np.maximum(n_pieces[of], 1)
+    k, kind, start, stride, factors = (part[of] for part in column)
+    shape = len(SHAPES) // 2 * kind + len(QUADS) * (max(ROWS) - rows[at_line]) + (max(QUADS) - count[at_piece])
+    run, ahead = piece_run[at_piece], shift[at_piece]
+    listed = np.stack(
+        [start + line[at_line] * stride + into[run] + ahead, stride, factors + line[at_line], own[run] + ahead], axis=1
+    )
+    order = np.argsort(len(SHAPES) * k + shape, kind="stable")
+    counts = np.bincount(len(SHAPES) * k + shape, minlength=len(SHAPES) * len(blocks.nodes))
+    return {
+        "update_end": np.cumsum(counts, dtype=np.int64),
+        "update": np.ascontiguousarray(listed[order], dtype=np.int32).reshape(-1),
+    }
+
+
+@cache
+def split(rows: int) -> list[int]:
+    """So many rows in parts of at most four, none alone where that can be."""
+    if rows <= max(ROWS):
+        return [rows] if rows else []
+    first = 3 if rows in (5, 6, 9) else 4
+    return [first, *split(rows - first)]
+
+
+@cache
+def _lines(size: int) -> list[tuple[int, int]]:
+    """First line and number of lines of each part of a block."""
+    parts = split(size)
+    return list(zip(np.cumsum([0, *parts]).tolist(), parts, strict=False))
+
+
+@cache
+def _pieces(quads: int) -> list[tuple[int, int]]:
+    """Shift and number of quads of each part of a run."""
+    most = max(QUADS)
+    return [(QUAD * first, min(most, quads - first)) for first in range(0, quads, most)]
+
+
+def _targets(blocks: Blocks, k: int) -> Iterator[Target]:
+    """Columns of the nodes right of k, from their own diagonals down; rows of the nodes below k, right of their own diagonals."""
+    down, right = (int(start) for start in blocks.starts[2 * k : 2 * k + 2])
+    down_at, right_at = blocks.down_at[k], blocks.right_at[k]
+    below, beside = blocks.below[k], blocks.right[k]
+    for b in beside:
+        runs = _runs(blocks, [a for a in below if a >= b], down_at, blocks.down_at[b], down)
+        yield Target(
+            k, DOWN, int(blocks.starts[2 * b]), blocks.down_width[b], right + right_at[b], blocks.sizes[b], runs
+        )
+    for a in below:
+        runs = _runs(blocks, [b for b in beside if b > a], right_at, blocks.right_at[a], right)
+        yield Target(
+            k, RIGHT, int(blocks.starts[2 * a + 1]), blocks.right_width[a], down + down_at[a], blocks.sizes[a], runs
+        )
+
+
+def _runs(
+    blocks: Blocks, nodes: list[int], own: dict[int, int], into: dict[int, int], start: int
+) -> list[tuple[int, int, int]]:
+    """The quads of some nodes' blocks, those that are neighbours in both panels together."""
+    runs: list[tuple[int, int, int]] = []
+    for a in nodes:
+        here, there, quads = start + own[a], into[a], blocks.widths[a] // QUAD
+        if runs:
+            first, first_there, before = runs[-1]
+            if (here, there) == (first + QUAD * before, first_there + QUAD * before):
+                runs[-1] = first, first_there, before + quads
+                continue
+        runs.append((here, there, quads))
+    return runs
+
+
+def _spread(lists: Sequence[Sequence[tuple[int, ...]]], width: int) -> tuple[np.ndarray, ...]:
+    """All members of some lists, one after the other: the list that each is of, and its numbers, `width` of them."""
+    of, _ = _numbered(np.array([len(part) for part in lists], dtype=np.int64))
+    members = np.array([number for part in lists for member in part for number in member], dtype=np.int64)
+    return of, *members.reshape(-1, width).T
+
+
+def _numbered(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For so many members of each list, the list's number and the member's number in it."""
+    of = np.repeat(np.arange(len(counts)), counts)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)

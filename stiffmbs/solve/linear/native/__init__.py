@@ -1,0 +1,1 @@
+"""Compiled factorisations of the iteration matrix."""

@@ -1,0 +1,247 @@
+"""Parameters that make a model follow measured channels best: least squares, with confidence intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError, SolverError, StiffmbsError
+from ..jobs.run import Runnable, solved
+from ..results.solution import Solution
+from ..solve.settings import changed
+from ..solve.trajectory import Grid, Outcome
+from .case_solver import CaseSolver, Task, written_scene
+from .measured import Measured, measured
+from .outputs import Output, outputs_of
+from .parameters import Sought, sought
+
+CONFIDENCE = 0.95
+ROUNDS = 3
+"""Times that channels are weighted by what they were off by in the fit before."""
+INSIDE = 1e-6
+"""How far from its bounds a search starts, as a part of each range."""
+FAR = 1e3
+"""Weighted residual where a model cannot be solved."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Fitted parameters.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        The parameters, SI units.
+    intervals : dict of str to (float, float)
+        95 % confidence intervals, by the linearised model and Student's distribution.
+    standard_errors : dict of str to float
+    correlation : ndarray
+        Of the estimates, in the order of `values`.
+    residuals : dict of str to float
+        Root mean square of model - data, by channel.
+    solution : Solution
+        Of the fitted model at the times of the data.
+    runs : int
+        Integrations that it took.
+    success : bool
+        Whether the search converged.
+    message : str
+        How the search ended.
+    """
+
+    values: dict[str, float]
+    intervals: dict[str, tuple[float, float]]
+    standard_errors: dict[str, float]
+    correlation: np.ndarray
+    residuals: dict[str, float]
+    solution: Solution
+    runs: int
+    success: bool
+    message: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """What ``stiffmbs fit --json`` prints."""
+        return {
+            "status": "done" if self.success else "stopped", "message": self.message, "runs": self.runs,
+            "parameters": {
+                name: {"value": value, "interval": list(self.intervals[name]), "standard_error": self.standard_errors[name]}
+                for name, value in self.values.items()
+            },
+            "residuals": self.residuals,
+        }  # fmt: skip
+
+
+def fit(
+    scene: Runnable,
+    data: Any,
+    parameters: Mapping[str, Any],
+    *,
+    start: Mapping[str, float] | None = None,
+    sigma: Mapping[str, float] | None = None,
+    **settings: Any,
+) -> Fit:
+    """Find the parameters with which a model follows measured channels best.
+
+    The sum of squares of (model - data) / sigma is made least by `scipy.optimize.least_squares` within the bounds.  Derivatives are
+    central differences of runs whose numbers are changed in place.
+
+    Parameters
+    ----------
+    scene : str, Path, Scene or Model
+    data : mapping, Solution, pandas.DataFrame, str or Path
+        Measured channels over ``time``, or formulas of channels; values that are nan are left out.
+    parameters : mapping of str to Range or (float, float)
+        What is sought, parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
+    start : mapping of str to float, optional
+        Where the search starts; the middle of each range by default.
+    sigma : mapping of str to float, optional
+        Standard deviation of each channel's noise, up to a common factor; by default estimated from what is left.
+    **settings
+        Fields of the run's settings to change, such as ``rtol=1e-8``.
+
+    Raises
+    ------
+    InputError
+        When the scene, the data or a parameter is wrong, or data do not determine a parameter.
+    SolverError
+        When the model cannot be solved where the search starts.
+
+    References
+    ----------
+    Seber and Wild, Nonlinear Regression, 1989, chapter 5: confidence intervals.
+    """
+    found, ranges = measured(data), sought(parameters)
+    model = _Model(written_scene(scene), ranges, found, settings)
+    weights = _weights(found, sigma)
+    point = ranges.point(start or {})
+    model.check(point)
+    point = np.clip(point, INSIDE, 1 - INSIDE)
+    for _ in range(1 if sigma is not None or len(found.channels) == 1 else ROUNDS):
+        result = model.searched(point, weights)
+        point = result.x
+        if sigma is None:
+            off = model.residual_rms(point)
+            weights = {name: 1 / max(rms, 1e-9 / weights[name]) for name, rms in off.items()}
+    return _concluded(model, ranges, point, weights, result)
+
+
+def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, float]:
+    if sigma is None:
+        return {name: 1 / (float(np.nanstd(values)) or 1.0) for name, values in found.channels.items()}
+    for name in found.channels:
+        if not sigma.get(name, 0) > 0:
+            raise InputError(
+                f"sigma: found {sigma.get(name)} for '{name}', expected a number greater than 0 for each channel"
+            )
+    return {name: 1 / sigma[name] for name in found.channels}
+
+
+class _Model:
+    """The model at points of the unit cube, beside the data."""
+
+    def __init__(self, scene: Any, ranges: Sought, data: Measured, settings: Mapping[str, Any]) -> None:
+        self._outputs: tuple[Output, ...] = outputs_of({name: name for name in data.channels})
+        self._solver = CaseSolver(Task(scene, ranges.names, {}, self._outputs))
+        self._ranges, self._data, self._runs = ranges, data, 0
+        known = self._solver.scene(ranges.values(ranges.point({})))
+        begin, end = known.run.start, float(data.time[-1])
+        if data.time[0] < begin:
+            raise InputError(f"data: found a time of {data.time[0]:g} s, expected none before the start at {begin:g} s")
+        self._settings = changed(known.run, {**settings, "duration": end - begin, "points": 2})
+        self._times = np.union1d([begin], data.time)
+        self._step = max(1e-4, self._settings.rtol ** (1 / 3))
+
+    @property
+    def runs(self) -> int:
+        """Integrations so far."""
+        return self._runs
+
+    def solution(self, point: np.ndarray) -> Solution:
+        """At the times of the data; errors as for `stiffmbs.run`."""
+        scene = self._solver.scene(self._ranges.values(point))
+        job = self._solver.job(scene, self._settings)
+        self._runs += 1
+        grid = Grid(job.grid.start, job.grid.end, self._times)
+        return solved(replace(job, grid=grid))
+
+    def check(self, point: np.ndarray) -> None:
+        """Refuse a start that cannot be solved."""
+        solution = self.solution(point)
+        if solution.outcome is not Outcome.DONE:
+            raise SolverError(f"the model where the search starts: {solution.message}")
+        for output in self._outputs:
+            output.refuse_unknown(solution)
+
+    def searched(self, point: np.ndarray, weights: Mapping[str, float]) -> Any:
+        """What `scipy.optimize.least_squares` finds from a point on."""
+        from scipy.optimize import least_squares
+
+        return least_squares(
+            lambda at: self.residuals(at, weights), point, jac=lambda at: self.jacobian(at, weights), bounds=(0, 1)
+        )
+
+    def _differences(self, solution: Solution) -> dict[str, np.ndarray]:
+        rows = np.searchsorted(solution.time, self._data.time)
+        return {
+            one.name: np.broadcast_to(one.value(solution), solution.time.shape)[rows] - self._data.channels[one.name]
+            for one in self._outputs
+        }
+
+    def residuals(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
+        """Weighted, those of all channels."""
+        kept = {name: np.isfinite(values) for name, values in self._data.channels.items()}
+        try:
+            solution = self.solution(point)
+        except StiffmbsError:
+            return np.full(sum(int(rows.sum()) for rows in kept.values()), FAR)
+        if solution.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if solution.outcome is not Outcome.DONE:
+            return np.full(sum(int(rows.sum()) for rows in kept.values()), FAR)
+        off = self._differences(solution)
+        return np.concatenate([weights[name] * off[name][rows] for name, rows in kept.items()])
+
+    def jacobian(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
+        """By central differences, one-sided at the bounds."""
+        columns = []
+        for k in range(len(point)):
+            ends = [point.copy(), point.copy()]
+            ends[0][k], ends[1][k] = max(point[k] - self._step, 0.0), min(point[k] + self._step, 1.0)
+            below, above = (self.residuals(end, weights) for end in ends)
+            columns.append((above - below) / (ends[1][k] - ends[0][k]))
+        return np.column_stack(columns)
+
+    def residual_rms(self, point: np.ndarray) -> dict[str, float]:
+        """Of each channel."""
+        off = self._differences(self.solution(point))
+        return {name: float(np.sqrt(np.nanmean(values**2))) for name, values in off.items()}
+
+
+def _concluded(model: _Model, ranges: Sought, point: np.ndarray, weights: Mapping[str, float], result: Any) -> Fit:
+    from scipy.stats import t as student
+
+    J, r = model.jacobian(point, weights), model.residuals(point, weights)
+    freedom = len(r) - len(point)
+    if freedom < 1:
+        raise InputError(f"data: found {len(r)} values, expected more than the {len(point)} parameters")
+    singular = np.linalg.svd(J, compute_uv=False)
+    if not singular[-1] > 1e-10 * singular[0]:
+        flat = ranges.names[int(np.argmax(np.abs(np.linalg.svd(J)[2][-1])))]
+        raise InputError(
+            f"data: found that they do not determine '{flat}', expected channels that depend on it, or fewer parameters"
+        )
+    covariance = np.linalg.inv(J.T @ J) * float(r @ r) / freedom
+    errors = np.sqrt(np.diag(covariance))
+    values, half = ranges.values(point), float(student.ppf((1 + CONFIDENCE) / 2, freedom)) * errors
+    low, high = (ranges.values(point + side * half) for side in (-1, 1))
+    rms = model.residual_rms(point)
+    slopes = ranges.slopes(point)
+    return Fit(
+        dict(zip(ranges.names, values, strict=True)),
+        {name: (a, b) for name, a, b in zip(ranges.names, low, high, strict=True)},
+        {name: float(error) for name, error in zip(ranges.names, errors * slopes, strict=True)},
+        covariance / np.outer(errors, errors), rms, model.solution(point), model.runs, bool(result.success), str(result.message),
+    )  # fmt: skip

@@ -1,0 +1,134 @@
+"""Inputs of a simulation: values of the scene that stand in its forces, changed between steps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..describe.scene import Scene
+from ..errors import InputError
+from ..jobs.renumber import Change, changes_of_numbers, write_numbers
+from ..jobs.run import Job
+from .case_solver import CaseSolver
+
+TRIED = (-1.7, -0.4, 0.3, 1.0, 2.9, 1e3)
+"""Values at which it is tried whether numbers of forces are linear in an input, apart from zero."""
+ROUNDING = 8 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """Numbers of a force in which an input stands: numbers[places] = offset + slope * value."""
+
+    numbers: np.ndarray
+    places: np.ndarray
+    offset: np.ndarray
+    slope: np.ndarray
+
+    def write(self, value: float) -> None:
+        self.numbers[self.places] = self.offset + self.slope * value
+
+
+class InputNumbers:
+    """What inputs change in a compiled model.
+
+    Parameters
+    ----------
+    job : Job
+        Whose forces they stand in.
+    solver : CaseSolver
+        Of the scene with these inputs.
+    values : mapping of str to float
+        The inputs, parameters or paths of the scene, with their first values.
+
+    Raises
+    ------
+    InputError
+        When an input changes more than numbers of forces.
+    """
+
+    def __init__(self, job: Job, solver: CaseSolver, values: Mapping[str, float]) -> None:
+        self._job, self._solver, self._names = job, solver, tuple(values)
+        self.values = dict(values)
+        for name in self._names:
+            if not changes_of_numbers(job, self._scene({**self.values, name: self.values[name] + 1.0})):
+                raise InputError(
+                    f"input '{name}': found a value that more than numbers of forces follow from, expected one of forces alone"
+                )
+        self._quick = self._linear()
+
+    def _scene(self, values: Mapping[str, float]) -> Scene:
+        return self._solver.scene([float(values[name]) for name in self._names])
+
+    def set(self, values: Mapping[str, float]) -> bool:
+        """Change inputs; whether any of them has another value than before.
+
+        Raises
+        ------
+        InputError
+            When there is no such input, or its value does not fit.
+        """
+        changed = {name: value for name, value in values.items() if self.values.get(name) != value}
+        if not changed:
+            return False
+        for name, value in changed.items():
+            if name not in self.values:
+                raise InputError(
+                    f"input '{name}': found no such input, expected one of {', '.join(self.values) or 'none'}"
+                )
+            if not np.isfinite(value):
+                raise InputError(f"input '{name}': found {value}, expected a finite number")
+        self.values.update(changed)
+        if self._quick is None:
+            write_numbers(self._job, self._scene(self.values))
+            return True
+        for name in changed:
+            for part in self._quick[name]:
+                part.write(self.values[name])
+        return True
+
+    def _linear(self) -> dict[str, Sequence[_Linear]] | None:
+        """Where each input stands, each in numbers of its own and linearly; None where forces must be read anew."""
+        found: dict[str, Sequence[_Linear]] = {}
+        taken: set[tuple[int, int]] = set()
+        for name in self._names:
+            parts = self._linear_parts(name)
+            if parts is None:
+                return None
+            places = {(id(part.numbers), int(place)) for part in parts for place in part.places}
+            if places & taken:
+                return None
+            taken |= places
+            found[name] = parts
+        return found
+
+    def _linear_parts(self, name: str) -> Sequence[_Linear] | None:
+        """Numbers that are offset + slope * value at all values that are tried; None where they are not."""
+        tried = {value: self._changes(name, value) for value in (0.0, 1.0, *TRIED)}
+        known = {value: changes for value, changes in tried.items() if changes is not None}
+        if len(known) < len(tried):
+            return None
+        forces = {at: change for changes in known.values() for at, change in changes.items()}
+        parts = []
+        for at, force in forces.items():
+            if force.of_inputs:
+                return None
+            present = force.group.numbers[force.first :][: len(force.values)].copy()
+            found = {value: changes[at].values if at in changes else present for value, changes in known.items()}
+            offset, slope = found[0.0], found[1.0] - found[0.0]
+            for value, numbers in found.items():
+                if not np.allclose(numbers, offset + slope * value, rtol=ROUNDING, atol=ROUNDING * abs(value)):
+                    return None
+            places = np.flatnonzero(slope)
+            parts.append(_Linear(force.group.numbers, force.first + places, offset[places], slope[places]))
+        return parts
+
+    def _changes(self, name: str, value: float) -> dict[tuple[int, int], Change] | None:
+        """The forces that differ from the present ones where an input has some value, by their places."""
+        try:
+            found = changes_of_numbers(self._job, self._scene({**self.values, name: value}))
+        except InputError:
+            return None
+        return None if found is None else {(id(change.group), change.number): change for change in found}

@@ -1,0 +1,188 @@
+"""Parameters that make an output least, within bounds and under constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError, SolverError
+from ..jobs.run import Runnable
+from .case_solver import CaseSolver, Task, written_scene
+from .outputs import Output, outputs_of
+from .parameters import Sought, sought
+
+STEP = 1e-3
+"""Of central differences, as a part of each range."""
+REMEMBERED = 10_000
+FEASIBLE = 1e-6
+"""Part of a bound by which a constraint may be off."""
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """What was found.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        The parameters, SI units.
+    objective : float
+    before : float
+        The objective where the search started.
+    constraints : dict of str to float
+        The constrained outputs.
+    runs : int
+        Integrations that it took.
+    success : bool
+        Whether the search converged with all constraints satisfied.
+    message : str
+    """
+
+    values: dict[str, float]
+    objective: float
+    before: float
+    constraints: dict[str, float]
+    runs: int
+    success: bool
+    message: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """What ``stiffmbs optimise --json`` prints."""
+        return {
+            "status": "done" if self.success else "stopped", "message": self.message, "runs": self.runs,
+            "parameters": self.values, "objective": self.objective, "before": self.before, "constraints": self.constraints,
+        }  # fmt: skip
+
+
+def optimise(
+    scene: Runnable,
+    objective: str,
+    parameters: Mapping[str, Any],
+    constraints: Mapping[str, tuple[float | None, float | None]] | None = None,
+    *,
+    start: Mapping[str, float] | None = None,
+    tolerance: float = 1e-6,
+    **settings: Any,
+) -> Optimum:
+    """Find the parameters that make an output of a scene least: a local minimum, by sequential quadratic programming.
+
+    Parameters
+    ----------
+    scene : str, Path, Scene or Model
+    objective : str
+        A formula of channels and of ``peak``, ``rms`` and the like, as in `stiffmbs.sweep`: ``"rms(chassis.ay)"``.
+    parameters : mapping of str to Range or (float, float)
+        What is varied, parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
+    constraints : mapping of str to (float or None, float or None), optional
+        Least and largest value of further outputs: ``{"peak(travel)": (None, 0.08)}``.
+    start : mapping of str to float, optional
+        Where the search starts; the middle of each range by default.
+    tolerance : float
+        Part of the objective by which the last step may still improve it.
+    **settings
+        Fields of the run's settings to change.
+
+    Raises
+    ------
+    InputError
+        When the scene, an output or a parameter is wrong.
+    SolverError
+        When the model cannot be solved where the search starts.
+
+    References
+    ----------
+    Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28, 1988 (`scipy.optimize.minimize`, SLSQP).
+    """
+    limits, ranges = dict(constraints or {}), sought(parameters)
+    model = _Model(scene, objective, limits, ranges, settings)
+    point = ranges.point(start or {})
+    first = model.check(point)
+    scale = abs(first[0]) or 1.0
+    from scipy.optimize import minimize
+
+    result = minimize(
+        lambda at: model.outputs(at)[0] / scale, point, jac=lambda at: model.slopes(at)[0] / scale, method="SLSQP",
+        bounds=[(0, 1)] * len(point), constraints=list(model.sides()), options={"ftol": tolerance, "maxiter": 200},
+    )  # fmt: skip
+    best = np.clip(result.x, 0, 1)
+    found = model.outputs(best)
+    feasible = all(side["fun"](best) >= -FEASIBLE for side in model.sides())
+    message = str(result.message) if feasible else f"{result.message}; not all constraints are satisfied"
+    return Optimum(
+        dict(zip(ranges.names, ranges.values(best), strict=True)), float(found[0]), float(first[0]),
+        dict(zip(limits, found[1:].tolist(), strict=True)), model.runs, bool(result.success and feasible), message,
+    )  # fmt: skip
+
+
+class _Model:
+    """Objective and constrained outputs at points of the unit cube, each point solved once."""
+
+    def __init__(
+        self, scene: Runnable, objective: str, limits: Mapping[str, tuple[float | None, float | None]], ranges: Sought,
+        settings: Mapping[str, Any],
+    ) -> None:  # fmt: skip
+        self._texts = [objective, *limits]
+        outputs = outputs_of({str(k): text for k, text in enumerate(self._texts)})
+        for output in outputs:
+            if output.is_series:
+                raise InputError(
+                    f"output '{output.text}': found a channel over time, expected a number such as peak(...)"
+                )
+        self._outputs: tuple[Output, ...] = outputs
+        self._solver = CaseSolver(Task(written_scene(scene), ranges.names, dict(settings), outputs))
+        self._ranges, self._limits = ranges, limits
+        self._known: dict[bytes, np.ndarray] = {}
+        self.runs = 0
+
+    def check(self, point: np.ndarray) -> np.ndarray:
+        """The outputs where the search starts."""
+        known = self._solver.channels(self._ranges.values(point))
+        for output in self._outputs:
+            output.refuse_unknown(known)
+        found = self.outputs(point)
+        if not np.isfinite(found).all():
+            raise SolverError(f"the model where the search starts: {self._message}")
+        return found
+
+    def outputs(self, point: np.ndarray) -> np.ndarray:
+        """The objective, then the constrained outputs; nan where the model cannot be solved."""
+        key = np.ascontiguousarray(point).tobytes()
+        if key not in self._known:
+            if len(self._known) >= REMEMBERED:
+                self._known.clear()
+            self.runs += 1
+            row = self._solver.row(0, self._ranges.values(np.clip(point, 0, 1)))
+            self._message = row.message
+            self._known[key] = np.array(row.values, dtype=float)
+        return self._known[key]
+
+    def slopes(self, point: np.ndarray) -> np.ndarray:
+        """Derivatives of all outputs, shape (outputs, parameters), by central differences, one-sided at the bounds."""
+        columns = []
+        for k in range(len(point)):
+            ends = [point.copy(), point.copy()]
+            ends[0][k], ends[1][k] = max(point[k] - STEP, 0.0), min(point[k] + STEP, 1.0)
+            below, above = map(self.outputs, ends)
+            columns.append((above - below) / (ends[1][k] - ends[0][k]))
+        return np.column_stack(columns)
+
+    def sides(self) -> list[dict[str, Any]]:
+        """The constraints as functions that must not be negative, in parts of their bounds."""
+        found = []
+        for k, (text, (low, high)) in enumerate(self._limits.items(), start=1):
+            if low is None and high is None:
+                raise InputError(f"constraint '{text}': found no bound, expected the least or the largest value")
+            for bound, sign in ((low, 1.0), (high, -1.0)):
+                if bound is not None:
+                    found.append(self._side(k, float(bound), sign / (abs(bound) or 1.0)))
+        return found
+
+    def _side(self, k: int, bound: float, sign: float) -> dict[str, Any]:
+        return {
+            "type": "ineq",
+            "fun": lambda at: sign * (self.outputs(at)[k] - bound),
+            "jac": lambda at: sign * self.slopes(at)[k],
+        }

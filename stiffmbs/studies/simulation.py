@@ -1,0 +1,216 @@
+"""A model solved step by step, with inputs that are changed in between."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Unpack
+
+import numpy as np
+
+from ..describe.settings import RunSettings, Settings, takes_settings
+from ..errors import AssemblyError, InputError
+from ..jobs.run import Job, Runnable, prepare
+from ..jobs.start_from import StartFrom, started_from, state_to_start_from
+from ..results.channels import channels_of, turns_of
+from ..results.saved_state import TURNS, SavedState
+from ..solve.failures import FAILURES
+from ..solve.settings import changed
+from .case_solver import CaseSolver, Task, written_scene
+from .input_numbers import InputNumbers
+from .stepping import stepper_of
+
+INPUT = "simulation/input/"
+"""Before the names of inputs in files of saved simulations."""
+
+
+@takes_settings
+def simulation(
+    model: Runnable,
+    inputs: Mapping[str, float] | None = None,
+    settings: RunSettings | None = None,
+    **changes: Unpack[Settings],
+) -> Simulation:
+    """A model to be solved step by step.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+    inputs : mapping of str to float, optional
+        What will be changed between steps, with its first values: parameters or paths of the scene that stand in forces alone, such
+        as ``{"F": 0.0}`` or ``{"forces.motor.torque": 0.0}``; SI units.
+    settings : RunSettings, optional
+        The scene's own by default.
+    **changes
+        Fields of the settings to change.
+
+    Raises
+    ------
+    InputError
+        When the model, a setting or an input is wrong.
+    AssemblyError
+        When no consistent start is found.
+
+    Examples
+    --------
+    >>> sim = stiffmbs.simulation("examples/cart_pendulum.yaml", inputs={"forces.spring.stiffness": 270.0})
+    >>> while sim.t < 1.0:
+    ...     sim.step(0.01, inputs={"forces.spring.stiffness": 270.0 if sim["cart.vx"] > 0 else 300.0})
+    """
+    given = dict(inputs or {})
+    solver = CaseSolver(Task(written_scene(model), tuple(given), {}, ()))
+    scene = solver.scene([float(value) for value in given.values()])
+    return Simulation(solver, given, changed(settings or scene.run, dict(changes)))
+
+
+class Simulation:
+    """A model that is solved step by step; made by `stiffmbs.simulation`.
+
+    Attributes
+    ----------
+    t : float
+        The present time, s.
+    q, u : ndarrays
+        Coordinates and velocities of all bodies at present.
+    """
+
+    def __init__(self, solver: CaseSolver, inputs: Mapping[str, float], settings: RunSettings) -> None:
+        scene = solver.scene([float(value) for value in inputs.values()])
+        job = prepare(scene, settings)
+        self._job: Job = prepare(scene, changed(settings, {"presolve": False})) if job.subsystems else job
+        self._first = dict(inputs)
+        self._inputs = InputNumbers(self._job, solver, self._first)
+        self._places = self._places_of_bodies()
+        self.reset()
+
+    def reset(self) -> None:
+        """Go back to the start, with the first values of the inputs."""
+        job = self._job
+        self._inputs.set(self._first)
+        job.dynamics.forget_pivots()
+        self.t, self.q, self.u = job.grid.start, job.start.q, job.start.u
+        self._stepper = stepper_of(job, job.start, self.t)
+        self._known: dict[str, float] | None = None
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        """The present values of the inputs."""
+        return dict(self._inputs.values)
+
+    def step(self, dt: float, inputs: Mapping[str, float] | None = None) -> None:
+        """Go on by a time, with inputs that hold from now on.
+
+        Where no input changes, the integrator goes on with its history, as in one run; where one does, it starts anew.
+
+        Parameters
+        ----------
+        dt : float
+            s, greater than 0.
+        inputs : mapping of str to float, optional
+            New values; those of others stay.
+
+        Raises
+        ------
+        InputError
+            When dt is not positive, or an input is unknown.
+        SolverError
+            When the solver cannot go on; the state is the one before.
+        """
+        if not 0 < dt < np.inf:
+            raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
+        if inputs and self._inputs.set(inputs):
+            self._stepper.restart(self.t, self.q, self.u)
+        end = self.t + dt
+        q, u = self._stepper.advance(end)
+        self.t, self.q, self.u, self._known = end, q, u, None
+
+    @property
+    def channels(self) -> dict[str, float]:
+        """Every channel at present, as in a solution.
+
+        Raises
+        ------
+        AssemblyError
+            When there are no accelerations and reactions at present.
+        """
+        if self._known is None:
+            self._known = {name: float(values[0]) for name, values in self._report()[0].items()}
+        return dict(self._known)
+
+    def __getitem__(self, channel: str) -> float:
+        """The present value of a channel."""
+        if channel in self._places:
+            of_positions, place = self._places[channel]
+            return float((self.q if of_positions else self.u)[place])
+        known = self.channels
+        if channel not in known:
+            raise InputError(f"found no channel '{channel}', expected one such as {', '.join(list(known)[:12])}")
+        return known[channel]
+
+    @property
+    def state(self) -> SavedState:
+        """The present state, from which a run may start: ``stiffmbs.run(model, start_from=sim.state)``."""
+        channels, turns = self._report()
+        at_present = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
+        return SavedState("the simulation", self.t, *at_present)
+
+    def _report(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Channels and counts of turns at present, one value each."""
+        job, dynamics = self._job, self._job.dynamics
+        with dynamics.state.unchanged():
+            rows = dynamics.report(np.array([self.t]), self.q[None], self.u[None], project=True)
+        if not len(rows.t):
+            raise AssemblyError(
+                f"no accelerations and reactions were found at t = {self.t:.9g} s: {FAILURES[rows.status]}"
+            )
+        return channels_of(job.data, dynamics.system, rows), turns_of(dynamics.system, rows.q)
+
+    def save(self, path: str | Path) -> None:
+        """Write the present state and inputs to a file .npz, which `load` and ``stiffmbs run --from`` read.
+
+        Raises
+        ------
+        InputError
+            For another ending.
+        """
+        file = Path(path)
+        if file.suffix != ".npz":
+            raise InputError(f"save {file}: found the ending '{file.suffix}', expected .npz")
+        state = self.state
+        content: dict[str, Any] = {name: np.array([value]) for name, value in state.channels.items()}
+        content |= {TURNS + name: np.array([value]) for name, value in state.turns.items()}
+        content |= {INPUT + name: np.array(value) for name, value in self._inputs.values.items()}
+        np.savez(file, time=np.array([self.t]), **content)
+
+    def load(self, path: StartFrom) -> None:
+        """Go on from a saved state: a file that `save` or ``stiffmbs run -o`` wrote, a `SavedState` or a `Solution`.
+
+        Raises
+        ------
+        InputError
+            When the file cannot be read, or is of another model.
+        """
+        found = state_to_start_from(path)
+        assert found is not None
+        job = self._job
+        placed = started_from(job.dynamics.system, job.data, found)
+        if isinstance(path, str | Path) and Path(path).suffix == ".npz":
+            with np.load(path) as archive:
+                self._inputs.set(
+                    {k.removeprefix(INPUT): float(archive[k]) for k in archive.files if k.startswith(INPUT)}
+                )
+        self._stepper.restart(found.t, placed.q, placed.u)
+        self.t, self.q, self.u, self._known = found.t, placed.q, placed.u, None
+
+    def _places_of_bodies(self) -> dict[str, tuple[bool, int]]:
+        """In the plane channels of bodies are coordinates and velocities themselves."""
+        system = self._job.dynamics.system
+        if system.of_body.dimensions == 3:
+            return {}
+        levels = ((True, system.of_body.positions), (False, system.of_body.velocities))
+        return {
+            f"{body}.{label}": (of_positions, len(labels) * k + n)
+            for of_positions, labels in levels
+            for k, body in enumerate(system.bodies)
+            for n, label in enumerate(labels)
+        }

@@ -1,0 +1,156 @@
+"""How a simulation goes from one instant to the next: with IDA's own steps, or by short runs of explicit solvers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Protocol
+
+import numpy as np
+
+from ..errors import SolverError
+from ..jobs.run import Job
+from ..solve import SOLVERS
+from ..solve.bdf import Integrator
+from ..solve.events.restart import restarted
+from ..solve.ida.engine import Reached
+from ..solve.ida.native_engine import NativeEngine
+from ..solve.initial import InitialValues
+from ..solve.trajectory import Grid, Outcome
+
+NO_PAUSE = 10**9
+"""Steps after which IDA need not come back."""
+
+
+class Stepper(Protocol):
+    """Goes on from consistent values."""
+
+    def advance(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """q and u at a later time.
+
+        Raises
+        ------
+        SolverError
+            When it cannot be reached.
+        """
+
+    def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Forget what was behind a state, as inputs jump there."""
+
+
+def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
+    """IDA's where bdf solves natively; short runs of any other solver."""
+    if job.settings.solver == "bdf":
+        integrator = Integrator(job.dynamics, job.settings)
+        if isinstance(integrator.engine, NativeEngine):
+            return ImplicitSteps(job, integrator, start, t)
+    return ShortRuns(job, start, t)
+
+
+class ImplicitSteps:
+    """IDA's own steps, as long as they would be in one run, and states within the last of them.
+
+    Behind a jump of inputs the first step of a simulation ends a step of IDA's too, as inputs mostly jump again there.
+
+    Parameters
+    ----------
+    job : Job
+    integrator : Integrator
+        With the native engine.
+    start : InitialValues
+    t : float
+        s.
+    """
+
+    def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
+        self._dynamics, self._integrator, self._span = job.dynamics, integrator, job.settings.duration
+        engine = integrator.engine
+        assert isinstance(engine, NativeEngine)
+        self._engine, self._end = engine, t
+        self._look_through(t)
+        self._begin(start, t)
+
+    def _look_through(self, t: float) -> None:
+        """Have the inputs looked through once for all steps that follow."""
+        if t >= self._end:
+            self._end = t + self._span
+            self._dynamics.input_features(t, self._end)
+
+    def _begin(self, start: InitialValues, t: float) -> None:
+        self._start, self._t, self._jumped, self._ended = start, t, False, False
+        self._engine.pause_after(1)
+        self._steps: Iterator[Reached] = self._integrator.run(start, Grid(t, self._end, None))
+
+    def advance(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """See `Stepper`."""
+        if self._jumped or self._ended:
+            self._look_through(self._t)
+        if self._jumped and t <= self._end:
+            return self._exactly(t)
+        if self._jumped or self._ended:
+            self._begin(self._start, self._t)
+        while self._t < t:
+            reached = next(self._steps, None)
+            if reached is None:  # the end of what was looked through
+                self._look_through(self._t)
+                self._begin(
+                    restarted(self._dynamics, self._t, *self._integrator.split(self._engine.at(self._t))), self._t
+                )
+            else:
+                self._t = self._sound(reached).t
+        return self._integrator.split(self._engine.at(t))
+
+    def _exactly(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Go to a time at which a step ends."""
+        self._engine.pause_after(NO_PAUSE)
+        for reached in self._integrator.run(self._start, Grid(self._t, t, np.array([t]))):
+            last = self._sound(reached)
+        state = self._integrator.split(last.y)
+        self._t, self._jumped, self._ended = t, False, True
+        self._start = restarted(self._dynamics, t, *state)
+        return state
+
+    def _sound(self, reached: Reached) -> Reached:
+        self._integrator.reached = reached
+        if reached.failure:
+            raise SolverError(f"stopped at t = {reached.t:.9g} s: {reached.failure}")
+        return reached
+
+    def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """See `Stepper`."""
+        self._start, self._t, self._jumped = restarted(self._dynamics, t, q, u), t, True
+
+
+class ShortRuns:
+    """A run from each instant to the next, of a solver that needs no history.
+
+    Parameters
+    ----------
+    job : Job
+    start : InitialValues
+    t : float
+        s.
+    """
+
+    def __init__(self, job: Job, start: InitialValues, t: float) -> None:
+        self._job, self._start, self._t = job, start, t
+        self._settings, self._end = job.settings, t
+
+    def advance(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """See `Stepper`."""
+        if t > self._t:
+            if t > self._end:  # inputs are looked through once for all steps that follow
+                self._end = t + self._settings.duration
+                self._job.dynamics.input_features(self._t, self._end)
+            grid = Grid(self._t, t, np.array([self._t, t]))
+            run = SOLVERS[self._settings.solver].solve
+            found = run(self._job.dynamics, self._start, grid, self._settings, lambda _: None)
+            if found.outcome is Outcome.INTERRUPTED:
+                raise KeyboardInterrupt
+            if found.outcome is not Outcome.DONE:
+                raise SolverError(found.message)
+            self.restart(t, found.q[-1], found.u[-1])
+        return self._start.q, self._start.u
+
+    def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """See `Stepper`."""
+        self._t, self._start = t, restarted(self._job.dynamics, t, q, u)

@@ -1,0 +1,13 @@
+"""Properties of tyres, and the base of own tyres.
+
+Examples
+--------
+>>> from stiffmbs.tyres import TyreProperties
+>>> tyre = TyreProperties.from_file("front.tir")
+>>> tyre.wrench(load=4000, slip_angle=0.05)["lateral"]
+"""
+
+from .describe.spatial.tyre import Rolling, Tyre
+from .describe.tyres.coefficients import TyreProperties
+
+__all__ = ["Rolling", "Tyre", "TyreProperties"]

@@ -1,0 +1,114 @@
+"""Stepping: the same motion as in one run, and inputs that jump between steps."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import Body, InputError, Model, simulation
+
+SLED = """
+parameters: {F: 0 N, k: 100 N/m}
+gravity: [0, -9.81]
+bodies: {sled: {mass: 2, inertia: 1}}
+joints: {rail: {type: prismatic, i: sled, j: ground}}
+forces:
+  push: {type: force, i: sled, force: [F, 0]}
+  spring: {type: force, i: sled, force: ["-k*sled.x", 0]}
+run: {duration: 2, rtol: 1e-9}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+@pytest.mark.parametrize("name", ["cart_pendulum.yaml", "half_car.yaml", "bouncing_ball.yaml", "heavy_top.yaml"])
+def test_steps_give_the_states_of_one_run(examples, name, solver):
+    settings = {"duration": 1.0, "rtol": 1e-10, "solver": solver, "points": 101}
+    expected, sim = stiffmbs.run(examples / name, **settings), simulation(examples / name, **settings)
+    channels = [channel for channel in expected if channel.rpartition(".")[2] in ("x", "y", "vx", "vy")]
+    for k in range(1, 101):
+        sim.step(0.01)
+        assert sim.t == pytest.approx(expected.time[k], abs=1e-12)
+        for channel in channels:
+            assert sim[channel] == pytest.approx(expected[channel][k], abs=1e-8), (channel, k)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected", "auto"])
+def test_a_force_that_jumps_between_steps_moves_a_sled_as_it_should(solver):
+    """m x'' + k x = F with F constant within each step: the exact solution, step by step."""
+    sim = simulation(stiffmbs.read_scene(SLED), inputs={"F": 0.0}, solver=solver)
+    w, x, v = np.sqrt(100.0 / 2), 0.0, 0.0
+    for k in range(200):
+        force = [0.0, 50.0, -30.0, -30.0][k % 4]
+        sim.step(0.01, inputs={"F": force})
+        rest = force / 100.0
+        x, v = (
+            rest + (x - rest) * np.cos(w * 0.01) + v / w * np.sin(w * 0.01),
+            v * np.cos(w * 0.01) - (x - rest) * w * np.sin(w * 0.01),
+        )
+        assert sim["sled.x"] == pytest.approx(x, abs=1e-7)
+        assert sim["sled.vx"] == pytest.approx(v, abs=1e-6)
+        assert sim["rail.fy"] == pytest.approx(2 * 9.81, rel=1e-9)
+    assert sim.inputs == {"F": -30.0}
+
+
+def test_an_input_that_is_not_linear_in_a_force_is_followed_too():
+    text = SLED.replace("force: [F, 0]", "force: [F^2/1 N, 0]").replace("-k*sled.x", "0*sled.x")
+    sim = simulation(stiffmbs.read_scene(text), inputs={"F": 1.0})
+    sim.step(1.0)
+    sim.step(1.0, inputs={"F": 4.0})
+    assert sim["sled.vx"] == pytest.approx(1 / 2 + 16 / 2, rel=1e-8)
+
+
+def test_a_reset_and_a_saved_state_go_on_as_before(tmp_path):
+    sim = simulation(stiffmbs.read_scene(SLED), inputs={"F": 20.0})
+    sim.step(0.3)
+    sim.step(0.2, inputs={"F": 5.0})
+    sim.save(tmp_path / "half.npz")
+    halfway = sim["sled.x"]
+    sim.step(0.5)
+    end = sim["sled.x"]
+    sim.reset()
+    assert sim.t == 0 and sim.inputs == {"F": 20.0} and sim["sled.x"] == 0
+    sim.load(tmp_path / "half.npz")
+    assert sim.t == 0.5 and sim["sled.x"] == halfway and sim.inputs == {"F": 5.0}
+    sim.step(0.5)
+    assert sim["sled.x"] == pytest.approx(end, abs=1e-8)
+    sim.reset()
+    sim.step(0.3)
+    sim.step(0.2, inputs={"F": 5.0})
+    assert sim["sled.x"] == halfway
+
+
+def test_a_run_starts_from_the_state_of_a_simulation(examples):
+    path = examples / "cart_pendulum.yaml"
+    sim = simulation(path, rtol=1e-9)
+    sim.step(1.0)
+    found = stiffmbs.run(path, start_from=sim.state, duration=1.0, rtol=1e-9)
+    sim.step(1.0)
+    assert found["bar.angle"][-1] == pytest.approx(sim["bar.angle"], abs=1e-7)
+
+
+def test_a_model_built_in_python_is_stepped_beyond_its_duration():
+    model = Model("Fall", gravity=(0, -10))
+    model.add("ball", Body(mass=1, inertia=1))
+    sim = model.simulation(duration=0.5)
+    for _ in range(30):
+        sim.step(0.1)
+    assert sim["ball.y"] == pytest.approx(-45.0, abs=1e-4)
+    assert sim["ball.ay"] == pytest.approx(-10.0)
+
+
+def test_what_is_no_input_is_refused(examples):
+    scene = stiffmbs.read_scene(SLED)
+    with pytest.raises(InputError, match=r"input 'bodies\.sled\.mass': found a value that more than numbers of forces"):
+        simulation(scene, inputs={"bodies.sled.mass": 2.0})
+    with pytest.raises(InputError, match="found the unknown key 'G'"):
+        simulation(scene, inputs={"G": 2.0})
+    sim = simulation(scene, inputs={"F": 0.0})
+    with pytest.raises(InputError, match="input 'k': found no such input, expected one of F"):
+        sim.step(0.1, inputs={"k": 2.0})
+    with pytest.raises(InputError, match="input 'F': found nan"):
+        sim.step(0.1, inputs={"F": float("nan")})
+    with pytest.raises(InputError, match="found dt = 0"):
+        sim.step(0)
+    with pytest.raises(InputError, match=r"found no channel 'sled\.z'"):
+        sim["sled.z"]
