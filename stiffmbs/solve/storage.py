@@ -68,6 +68,16 @@ def blocks(count: int) -> Iterator[slice]:
         yield slice(first, min(first + BLOCK, count))
 
 
+def all_finite(values: np.ndarray) -> bool:
+    """Whether all are numbers, block by block: a channel of a large run lies in a file, whose memory is let go of."""
+    for block in blocks(len(values)):
+        finite = np.isfinite(values[block]).all()
+        release(values)
+        if not finite:
+            return False
+    return True
+
+
 def _mapped(array: np.ndarray) -> mmap.mmap | None:
     """The mapping that an array, or what it is a view of, lies in."""
     owner: object = array
