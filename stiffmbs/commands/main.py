@@ -20,17 +20,31 @@ from .report import report
 from .response import response
 from .run import run
 from .schema import schema
+from .starting.examples import examples
+from .starting.init import init
+from .starting.version import show_version
 from .stress import stress
 from .study import study
+from .terminal.logging_options import with_logging_options
+
+COMPLETION = """\b
+Completion of commands and options by the Tab key, from the next shell on:
+  bash  echo 'eval "$(_STIFFMBS_COMPLETE=bash_source stiffmbs)"' >> ~/.bashrc
+  zsh   echo 'eval "$(_STIFFMBS_COMPLETE=zsh_source stiffmbs)"' >> ~/.zshrc
+  fish  echo '_STIFFMBS_COMPLETE=fish_source stiffmbs | source' >> ~/.config/fish/config.fish
+"""
 
 
-@click.group(cls=Process, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Process, context_settings={"help_option_names": ["-h", "--help"]}, epilog=COMPLETION)
 @click.version_option(package_name="stiffmbs")
 def main() -> None:
-    """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes."""
+    """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes.
+
+    Begin with: stiffmbs init, stiffmbs run scene.yaml, stiffmbs examples list.
+    """
 
 
 for command in (
-    run, check, equilibrium, modes, response, study, compare, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress,
+    run, check, equilibrium, modes, response, study, compare, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress, init, examples, show_version,
 ):  # fmt: skip
-    main.add_command(command)
+    main.add_command(with_logging_options(command))

@@ -7,7 +7,7 @@ import math
 import mmap
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -68,8 +68,12 @@ def blocks(count: int) -> Iterator[slice]:
         yield slice(first, min(first + BLOCK, count))
 
 
-def all_finite(values: np.ndarray) -> bool:
-    """Whether all are numbers, block by block: a channel of a large run lies in a file, whose memory is let go of."""
+def with_gaps(channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The channels of which not all values are finite, by blocks of rows: one of a large run lies in a file."""
+    return {name: values for name, values in channels.items() if not _finite(values)}
+
+
+def _finite(values: np.ndarray) -> bool:
     for block in blocks(len(values)):
         finite = np.isfinite(values[block]).all()
         release(values)

@@ -1,0 +1,1 @@
+"""Commands to begin with: examples, a first scene, what is installed."""

@@ -1,0 +1,45 @@
+"""The command ``stiffmbs version``."""
+
+from __future__ import annotations
+
+import json
+import platform
+import string
+from importlib.metadata import PackageNotFoundError, requires, version
+
+import click
+
+PACKAGE = "stiffmbs"
+LETTERS = f"{string.ascii_letters}{string.digits}-_."
+"""Of the name of a package, with which a requirement begins."""
+
+
+@click.command("version", short_help="Show the versions of stiffmbs and of what it depends on.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+def show_version(as_json: bool) -> None:
+    """Show the versions of stiffmbs, Python, and every package it depends on; add it to a report of a fault."""
+    found = {
+        PACKAGE: installed(PACKAGE),
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        **{name: installed(name) for name in dependencies()},
+    }
+    if as_json:
+        click.echo(json.dumps(found))
+        return
+    for name, value in found.items():
+        click.echo(f"{name:20} {value or 'not installed'}")
+
+
+def installed(package: str) -> str | None:
+    """The version of an installed package; None where there is none."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def dependencies() -> list[str]:
+    """The packages that a plain run needs; those of the extras are left out."""
+    plain = [text for text in requires(PACKAGE) or () if "extra ==" not in text]
+    return [text[: len(text) - len(text.lstrip(LETTERS))] for text in plain]

@@ -1,0 +1,1 @@
+"""What a command tells on standard error while it is at work."""
