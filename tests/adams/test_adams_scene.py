@@ -84,7 +84,10 @@ def test_a_point_mass_keeps_its_orientation():
             "PART/4, MASS=1, CM=41, IP=-1,1,1\nMARKER/41, PART=4",
             "PART/4: found principal moments of inertia -1, 1 and 1",
         ),
-        ("PART/4, MASS=1, CM=41, IP=1,1,3\nMARKER/41, PART=4", "PART/4: found principal moments of inertia 1, 1 and 3"),
+        (
+            "PART/4, MASS=1, CM=41, IP=1,1,-3\nMARKER/41, PART=4",
+            "PART/4: found principal moments of inertia -3, 1 and 1",
+        ),
         ("PART/4, GROUND", "PART/4: found GROUND, which PART/1 is already"),
         ("MARKER/41, PART=4", "MARKER/41: found PART = 4, which the dataset does not have"),
         ("JOINT/1, FIXED, I=1, J=99", "JOINT/1: found J = 99, expected the number of a marker"),
