@@ -78,6 +78,11 @@ class Kind:
     fields: tuple[tuple[str, Shape], ...]
 
 
+def with_place(kind: Kind, place: str) -> str:
+    """A kind by its name, and its place among others in brackets where it is known."""
+    return f"{kind.element.kind} ({place})" if place else kind.element.kind
+
+
 @dataclass
 class ElementData:
     """What distinguishes an element from others of its kind.
