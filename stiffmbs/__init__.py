@@ -25,6 +25,8 @@ from .describe.python_function import PythonFunction
 from .describe.scene import Scene, read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings, SteadyMotion
+from .describe.states.linear_system import PID, LinearSystem, TransferFunction
+from .describe.states.state import State
 from .describe.table import Table
 from .describe.units import si
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
@@ -47,8 +49,8 @@ _LATER = {
 """The modules of what is loaded when it is used."""
 
 __all__ = [
-    "AssemblyError", "Body", "Force", "InputError", "Joint", "Marker", "Model", "PythonFunction", "RunSettings", "Scene",
-    "SolverError", "StiffmbsError", "Table", "ground", "load_scene", "SteadyMotion", "read_scene", "register", "scene_schema", "si",
+    "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
+    "SolverError", "State", "SteadyMotion", "StiffmbsError", "Table", "TransferFunction", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
     *_LATER, *_ELEMENTS,
 ]  # fmt: skip
 

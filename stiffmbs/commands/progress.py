@@ -42,7 +42,7 @@ class ProgressBar:
             return
         self._shown = now
         reached = f"t = {t:.4g} s" + (self._listener.step if self._listener else "")
-        self._show(reached=reached, total=self._end - self._start, completed=t - self._start)
+        self._show(reached=reached, after="left", total=self._end - self._start, completed=t - self._start)
 
     def _tell_stage(self, stage: str, slow: bool) -> None:
         """Show what is done before and between steps: at once where it takes long, as deriving and compiling do."""
@@ -55,7 +55,7 @@ class ProgressBar:
 
             self._bar = bar()
             self._bar.start()
-            self._task = self._bar.add_task("solving", total=None, reached="")
+            self._task = self._bar.add_task(changed.get("description", "solving"), total=None, reached="", after="")
         self._bar.update(self._task, **changed)
 
     def __enter__(self) -> ProgressBar:

@@ -56,7 +56,10 @@ def response(
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = {
-                name: force_on(loaded, name) if "." in name else parameter_of(scene, name, changes) for name in inputs
+                name: force_on(loaded, name)
+                if "." in name or name in loaded.inputs
+                else parameter_of(scene, name, changes)
+                for name in inputs
             }
             found = transfer(loaded, given, outputs, at=at)
     except StiffmbsError as error:

@@ -77,7 +77,7 @@ class BodyKind:
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """q' = Z(q) u; what stands behind the bodies' coordinates is taken to rest."""
         if self.n_q == self.n_u:
-            return u
+            return _with_rest(u, q)
         of_q, of_u, rest = self._parted(q, u)
         turning = 0.5 * times_vector(of_q[:, 3:], of_u[:, 3:])
         return np.concatenate([np.column_stack([of_u[:, :3], turning]).ravel(), np.zeros(len(rest))])
@@ -91,7 +91,7 @@ class BodyKind:
     def moved(self, q: np.ndarray, step: np.ndarray) -> np.ndarray:
         """The pose after a move that is given as velocities times time; quaternions stay of length 1."""
         if self.n_q == self.n_u:
-            return q + step
+            return q + _with_rest(step, q)
         of_q, of_u, rest = self._parted(q, step)
         half = 0.5 * of_u[:, 3:]
         angle = np.linalg.norm(half, axis=1, keepdims=True)
@@ -107,6 +107,11 @@ class BodyKind:
         of_q, of_there = q.reshape(-1, self.n_q), there.reshape(-1, self.n_q)
         turned = rotation_vector(times(CONJUGATE * of_q[:, 3:], of_there[:, 3:]))
         return np.concatenate([of_there[:, :3] - of_q[:, :3], turned], axis=1).ravel()
+
+
+def _with_rest(u: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Rates of the bodies' coordinates, and zeros for what stands behind these."""
+    return u if len(u) == len(q) else np.append(u, np.zeros(len(q) - len(u)))
 
 
 PLANE = BodyKind(

@@ -47,13 +47,16 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
     }
     rows, equations, holonomic = _rows(sorted_elements, records)
     n_counters = sum(records[kind].n_counters * len(members) for kind, members in sorted_elements.items())
-    places = _Places(of_body, bodies, rows, n_counters)
+    states = model.state_values()
+    places = _Places(of_body, bodies, rows, n_counters, tuple(states))
     groups = [_group(kind, records[kind], of_body, members, places) for kind, members in sorted_elements.items()]
     coordinates = [c for body in model.bodies.values() for c in body.coordinates()]
     return System(
         bodies=bodies,
+        states=tuple(states),
+        state_scales=np.array([value.scale for value in states.values()]),
         of_body=of_body,
-        q=np.array(coordinates + [0.0] * n_counters),
+        q=np.array([*coordinates, *[0.0] * n_counters, *(value.start for value in states.values())]),
         u=np.array([c for body in model.bodies.values() for c in body.rates()]),
         open_rates=np.array([way for body in model.bodies.values() for way in body.open_rates()]),
         mass=np.array([m for body in model.bodies.values() for m in body.masses()]),
@@ -120,13 +123,22 @@ def _rows(
 
 
 class _Places:
-    """Where bodies, equations and counters of turns stand in a system; counters are given out one after the other."""
+    """Where bodies, equations, counters of turns and states stand in a system; counters are given out one after the other."""
 
-    def __init__(self, of_body: BodyKind, bodies: tuple[str, ...], rows: Mapping[str, int], n_counters: int) -> None:
+    def __init__(
+        self,
+        of_body: BodyKind,
+        bodies: tuple[str, ...],
+        rows: Mapping[str, int],
+        n_counters: int,
+        states: tuple[str, ...],
+    ) -> None:
         n_q, n_u = of_body.n_q, of_body.n_u
         self.rows = rows
+        first_state = n_q * len(bodies) + n_counters
+        self._state = {name: first_state + k for k, name in enumerate(states)}
         self._of_body = {name: (n_q * k, n_u * k) for k, name in enumerate(bodies)}
-        self._of_body[GROUND] = n_q * len(bodies) + n_counters, n_u * len(bodies)
+        self._of_body[GROUND] = first_state + len(states), n_u * len(bodies)
         self._counter = n_q * len(bodies)
 
     def index(self, data: ElementData, first_number: int, n_counters: int) -> list[int]:
@@ -134,7 +146,8 @@ class _Places:
         counters = range(self._counter, self._counter + n_counters)
         self._counter += n_counters
         bodies = (place for body in data.bodies for place in self._of_body[body])
-        return [*bodies, first_number, *(self.rows[joint] for joint in data.joints), *counters]
+        states = (self._state[name] for name in data.states)
+        return [*bodies, first_number, *(self.rows[joint] for joint in data.joints), *states, *counters]
 
 
 def _group(kind: Kind, record: KindRecord, of_body: BodyKind, members: list[_Member], places: _Places) -> Group:

@@ -25,9 +25,9 @@ class Group:
         Those of these names; may be changed together with their numbers, as inputs are looked through by their formulas.
     of_body : BodyKind
         Coordinates and velocities of the bodies.
-    index : ndarray of int, shape (count, 2 * bodies + 1 + joints + counters)
+    index : ndarray of int, shape (count, 2 * bodies + 1 + joints + states + counters)
         Offsets of each body in q and u (the ground's are past the end), of the element's first number, of the
-        first row of each joint that it refers to, and of its counters of turns in q.
+        first row of each joint that it refers to, and of its states and its counters of turns in q.
     numbers : ndarray
         Kernel parameters and tables, element after element; may be changed in place.
     first_row : int
@@ -56,6 +56,16 @@ class Group:
     def bodies(self) -> np.ndarray:
         """Numbers of the bodies that each element acts on, shape (count, bodies); the ground's is behind the last body's."""
         return self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u
+
+    @property
+    def first_behind(self) -> int:
+        """The first column of `index` that leads to coordinates behind those of the bodies."""
+        return 2 * self.kind.n_bodies + 1 + self.kind.n_joints
+
+    @property
+    def states(self) -> np.ndarray:
+        """Numbers of the coordinates that are states of each element, shape (count, states)."""
+        return self.index[:, self.first_behind : self.first_behind + self.kind.n_states]
 
     @property
     def counters(self) -> np.ndarray:
@@ -112,13 +122,12 @@ class Group:
                 return np.broadcast_to(own[None, :], (self.count, len(own)))
 
     def _of_bodies(self, axis: str, own: np.ndarray) -> np.ndarray:
-        """For coordinates or velocities of the elements' bodies, behind which stand the elements' counters of turns."""
+        """For coordinates or velocities of the elements' bodies, behind which stand their states and counters of turns."""
         width = self.of_body.n_q if axis == "q" else self.of_body.n_u
         body, offset = own // width, own % width
-        counter = own - width * self.kind.n_bodies
-        of_counter = self.index.shape[1] - self.record.n_counters + counter
-        first = self.index[:, np.where(counter < 0, 2 * body + (axis == "u"), of_counter)]
-        return first + np.where(counter < 0, offset, 0)
+        behind = own - width * self.kind.n_bodies
+        first = self.index[:, np.where(behind < 0, 2 * body + (axis == "u"), self.first_behind + behind)]
+        return first + np.where(behind < 0, offset, 0)
 
     def _joint_of_column(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """For columns that count the equations of all joints referred to: which joint, and which of its equations."""

@@ -15,17 +15,23 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..describe.element import Component, Element, Joint, JointName
-from ..describe.formula.field import TIME, Formula, is_measure, measured_markers
+from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
 from ..describe.python_function import PythonFunction
+from ..describe.states.name import StateName
+from ..describe.states.state import StateValue
 from ..describe.table import Table
 from ..errors import InputError
 from .callbacks import callback_of
 from .table_values import spline_data
 
 Shape = tuple[Any, ...]
+REACTION = "reaction"
+"""Before the number of a joint's reaction in a formula's shape."""
+STATE = "state"
+"""Before the slot of a state in a formula's shape."""
 OWN = "own_"
 """Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
 
@@ -45,6 +51,12 @@ class Compilable(Protocol):
 
     def elements(self) -> Iterator[tuple[str, Element]]:
         """Every joint, force, counter of turns and weight with its name."""
+
+    def state_outputs(self) -> Mapping[str, Formula]:
+        """Formulas that others use by a name."""
+
+    def state_values(self) -> Mapping[str, StateValue]:
+        """The states of the user's own."""
 
     def carried(self, marker: Any) -> tuple[str, Any]:
         """The body that carries a marker, and where it sits on it."""
@@ -67,6 +79,8 @@ class Kind:
         Bodies that one element acts on.
     n_joints : int
         Joints that it refers to.
+    n_states : int
+        States of the user's own that it reads or determines.
     fields : tuple of (str, Shape)
         Its fields by name; a shape says of what form a field is, never its numbers.
     """
@@ -75,12 +89,14 @@ class Kind:
     dimensions: int
     n_bodies: int
     n_joints: int
+    n_states: int
     fields: tuple[tuple[str, Shape], ...]
 
 
 def with_place(kind: Kind, place: str) -> str:
     """A kind by its name, and its place among others in brackets where it is known."""
-    return f"{kind.element.kind} ({place})" if place else kind.element.kind
+    name = kind.element.kind or kind.element.__name__.lower()
+    return f"{name} ({place})" if place else name
 
 
 @dataclass
@@ -97,18 +113,27 @@ class ElementData:
         Which of the numbers stands for a table, by its offset in `flat`, and the table's spline data.
     joints : list of str
         Joints whose multipliers the equations use.
+    states : list of str
+        By slot.
     """
 
     bodies: list[str] = field(default_factory=list)
     numbers: list[float] = field(default_factory=list)
     tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
     joints: list[str] = field(default_factory=list)
+    states: list[str] = field(default_factory=list)
 
     def slot(self, body: str) -> int:
         """The slot of a body, a new one where it is new."""
         if body not in self.bodies:
             self.bodies.append(body)
         return self.bodies.index(body)
+
+    def state_slot(self, state: str) -> int:
+        """The slot of a state, a new one where it is new."""
+        if state not in self.states:
+            self.states.append(state)
+        return self.states.index(state)
 
     def flat(self) -> np.ndarray:
         """Numbers and tables in one row, each table's number being its offset from the start of the row."""
@@ -126,7 +151,7 @@ def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
     """An element's kind, and what is its own."""
     data = ElementData()
     fields = _fields(element, model, data)
-    return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), fields), data
+    return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), len(data.states), fields), data
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
@@ -147,6 +172,8 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             fields = _fields(joint, model, data)
             data.joints.append(value.joint)
             return ("joint", type(joint), fields, len(data.joints) - 1, value.coordinate_of(joint))
+        case StateName():
+            return ("state", data.state_slot(value))
         case None | bool() | str():
             return ("choice", value)
         case int() | float():
@@ -182,7 +209,7 @@ def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:
 class _FormulaShape(ast.NodeTransformer):
     """Takes numbers, bodies, measures and tables out of a formula.
 
-    Bodies become ``b0.x``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
+    Bodies become ``b0.x``, states ``state0``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
     constant one number ``p0``; whole exponents stay, as they decide about the derivatives.  What a formula repeats word
     for word is the same once more, numbers included: the road's phase in a sine and in a cosine is then computed once.
     """
@@ -192,6 +219,7 @@ class _FormulaShape(ast.NodeTransformer):
         self.numbers: list[float] = []
         self.measures: list[tuple[str, tuple[Any, ...]]] = []
         self.tables: list[Table] = []
+        self.reactions: list[tuple[str, str]] = []
         self._found: dict[str, ast.AST] = {}
 
     def shape(self) -> Shape:
@@ -206,7 +234,12 @@ class _FormulaShape(ast.NodeTransformer):
         self.data.tables += [(first + k, spline_data(table)) for k, table in enumerate(self.tables)]
         self.data.numbers += [0.0] * len(self.tables)
         counts = len(self.formula.variables), len(self.numbers), len(self.tables)
-        return ("formula", ast.unparse(tree), counts, measures)
+        joints = {
+            joint: _shape(JointName(joint), self.model, self.data)
+            for joint in dict.fromkeys(j for _, j in self.reactions)
+        }
+        reactions = tuple((name, joints[joint]) for name, joint in self.reactions)
+        return ("formula", ast.unparse(tree), counts, measures, *([reactions] if reactions else []))
 
     def visit(self, node: ast.AST) -> Any:
         """A placeholder for a number, and the number noted."""
@@ -235,6 +268,9 @@ class _FormulaShape(ast.NodeTransformer):
         if is_measure(node):
             self.measures.append((node.func.id, measured_markers(node)))  # type: ignore[attr-defined]
             return ast.Name(f"measure{len(self.measures) - 1}")
+        if is_reaction(node):
+            self.reactions.append((node.func.id, joint_of(node)))  # type: ignore[attr-defined]
+            return ast.Name(f"{REACTION}{len(self.reactions) - 1}")
         arguments = [self.visit(argument) for argument in node.args]
         table = self.formula.tables.get(node.func.id)  # type: ignore[attr-defined]
         if table is None:
@@ -243,7 +279,24 @@ class _FormulaShape(ast.NodeTransformer):
         return ast.Call(ast.Name(f"table{len(self.tables) - 1}"), arguments, [])
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
+        if node.id in self.formula.states:
+            output = self.model.state_outputs().get(node.id)
+            if output is not None:
+                return self._inlined(output)
+            return ast.Name(f"{STATE}{self.data.state_slot(node.id)}")
         return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
+
+    def _inlined(self, output: Formula) -> ast.AST:
+        """The shape of another formula that stands in this one."""
+        inner = _FormulaShape(output, self.model, self.data)
+        inner.numbers, inner.measures, inner.tables, inner.reactions = (
+            self.numbers,
+            self.measures,
+            self.tables,
+            self.reactions,
+        )
+        tree: ast.AST = inner.visit(copy.deepcopy(output.tree))
+        return tree
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         assert isinstance(node.value, ast.Name)
@@ -258,7 +311,9 @@ def _constant_value(node: ast.AST, formula: Formula) -> float | None:
     if not isinstance(node, ast.expr):
         return None
     for part in ast.walk(node):
-        if is_measure(part) or (isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables)):
+        if is_named(part) or (
+            isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)
+        ):
             return None
         if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
             return None

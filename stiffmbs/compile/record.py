@@ -9,13 +9,14 @@ import inspect
 import json
 import logging
 import sys
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..describe.element import Component, Element
-from .kind import Kind, with_place
+from .kind import Kind, Shape, with_place
 from .machine import cache as store
 from .machine.told import Told
 from .terms import TERM_SETS
@@ -157,7 +158,7 @@ def _derived(kind: Kind) -> KindRecord:
 def _entry(kind: Kind, *part: str) -> str | None:
     """The cache's name for everything that the record, or a part of its own, follows from; None where the element's source
     cannot be read."""
-    classes = [kind.element, *(shape[1] for _, shape in kind.fields if shape[0] in ("joint", "component"))]
+    classes = [kind.element, *(found for _, shape in kind.fields for found in _classes_in(shape))]
     bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element | Component)]
     try:
         texts = _files(bases) if all(map(_is_shipped, bases)) else _equations(kind)
@@ -168,9 +169,18 @@ def _entry(kind: Kind, *part: str) -> str | None:
         _compile_text(),
         *texts,
         kind.element.__qualname__,
-        repr((kind.dimensions, kind.n_bodies, kind.n_joints, kind.fields)),
+        repr((kind.dimensions, kind.n_bodies, kind.n_joints, kind.n_states, kind.fields)),
         *part,
     )
+
+
+def _classes_in(shape: Shape) -> Iterator[type]:
+    """The classes of the joints and components that a field, or a formula in it, refers to."""
+    if shape and shape[0] in ("joint", "component"):
+        yield shape[1]
+    for part in shape:
+        if isinstance(part, tuple):
+            yield from _classes_in(part)
 
 
 def _is_shipped(element: type) -> bool:

@@ -59,7 +59,7 @@ class State:
         return packed(
             STATE,
             {
-                "n_q": system.n_q, "n_u": system.n_u, "n_c": system.n_c, "spatial": system.of_body.dimensions == 3,
+                "n_q": system.n_q, "n_pose": system.n_pose, "n_u": system.n_u, "n_c": system.n_c, "spatial": system.of_body.dimensions == 3,
                 "q": self._q, "turn": self._turn, "n_turned": self._n_turned, "turned": self._turned_at, "u": self._u, "a": self._a, "lam": self.lam, "mu": self.mu,
                 "n_calls": n_calls, "calls": calls_at, "values": self._values_at,
                 "n_joints": len(system.joint_start) - 1, "joint_start": system.joint_start, "left_open": self._left_open,

@@ -39,11 +39,15 @@ class System:
     ----------
     bodies : tuple of str
         In the order of their coordinates.
+    states : tuple of str
+        Those of the user's own, whose values are the last coordinates.
+    state_scales : ndarray, shape (states,)
+        Sizes of them that matter.
     of_body : BodyKind
         The coordinates and velocities that each of them has.
     q, u : ndarrays
         Coordinates (m, rad; quaternions) and velocities at the start, as described.  Behind the bodies' coordinates
-        stand the counters of turns (`stiffmbs.compile.symbolic.continuous_angle`).
+        stand the counters of turns (`stiffmbs.compile.symbolic.continuous_angle`) and the states.
     open_rates : ndarray of bool, shape (n_u,)
         Which velocities at the start are not given, so that constraints decide about them first.
     mass : ndarray, shape (n_u,)
@@ -61,6 +65,8 @@ class System:
     """
 
     bodies: tuple[str, ...]
+    states: tuple[str, ...]
+    state_scales: np.ndarray
     of_body: BodyKind
     q: np.ndarray
     u: np.ndarray
@@ -89,19 +95,31 @@ class System:
         return len(self.equations)
 
     def per_coordinate(self, linear: float, angular: float) -> np.ndarray:
-        """One number for the coordinates of every centre of mass, and another for those of orientations, shape (n_q,)."""
-        return np.append(self._per_body(self.of_body.n_q, linear, angular), np.full(self.n_counters, angular))
+        """One number for the coordinates of every centre of mass, and another for those of orientations and all behind them,
+        shape (n_q,)."""
+        behind = np.full(self.n_q - self.n_pose, angular)
+        return np.append(self._per_body(self.of_body.n_q, linear, angular), behind)
+
+    @property
+    def n_pose(self) -> int:
+        """Coordinates of the bodies, the first of all."""
+        return self.of_body.n_q * len(self.bodies)
+
+    @property
+    def first_state(self) -> int:
+        """The number of the first coordinate that is a state."""
+        return self.n_q - len(self.states)
 
     @property
     def n_counters(self) -> int:
         """Coordinates that count whole turns of angles."""
-        return self.n_q - self.of_body.n_q * len(self.bodies)
+        return self.first_state - self.n_pose
 
     @property
     def quaternions(self) -> np.ndarray:
         """The numbers of the coordinates that are parts of quaternions; none in the plane."""
         straight, _ = self.of_body.straight(len(self.bodies))
-        return np.setdiff1d(np.arange(self.n_q - self.n_counters), straight)
+        return np.setdiff1d(np.arange(self.n_pose), straight)
 
     def per_velocity(self, linear: float, angular: float) -> np.ndarray:
         """One number for the velocities of every centre of mass, and another for angular ones, shape (n_u,)."""
@@ -114,11 +132,13 @@ class System:
 
     def move(self, q: np.ndarray, there: np.ndarray) -> np.ndarray:
         """What takes the bodies from one pose to another, as velocities times time, shape (n_u,)."""
-        of_bodies = slice(self.n_q - self.n_counters)
+        of_bodies = slice(self.n_pose)
         return self.of_body.move(q[of_bodies], there[of_bodies])
 
     def name_of(self, k: int, labels: tuple[str, ...]) -> str:
         """Such as ``cart.x``: the body of a coordinate or velocity, and which of a body's labels for these it has."""
+        if k >= self.first_state:
+            return self.states[k - self.first_state]
         if k >= len(labels) * len(self.bodies):
             return "a count of turns"
         return f"{self.bodies[k // len(labels)]}.{labels[k % len(labels)]}"

@@ -34,14 +34,28 @@ DOTTED_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
 """Of what may stand in a part: ``front.left.arm``."""
 
 
+class _SignatureWhenAsked:
+    """The signature of a class that is built when it is used: being asked for it is a use."""
+
+    def __get__(self, instance: object, described: Any) -> Any:
+        described.model_rebuild()
+        made = vars(described)["__signature__"]
+        if made is self:
+            raise AttributeError("__signature__")
+        return made.__get__(instance, described)
+
+
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]
     """Makes a direct construction, and a class that cannot be made, fail with the package's own error."""
 
     def __new__(mcs, name: str, *arguments: Any, **options: Any) -> Any:
         try:
-            return super().__new__(mcs, name, *arguments, **options)
+            made = super().__new__(mcs, name, *arguments, **options)
         except PydanticUserError as error:
             raise InputError(f"{name}: {_first_line(error)}") from error
+        if not made.__pydantic_complete__:
+            made.__signature__ = _SignatureWhenAsked()
+        return made
 
     def __call__(cls, *unnamed: Any, **fields: Any) -> Any:
         if unnamed:

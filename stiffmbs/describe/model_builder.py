@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack, overload
+
+from pydantic import TypeAdapter
+from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
 from .body import check_names
 from .element import Element, Force, Joint
-from .fields import Described
+from .fields import Described, sentence
 from .formula.names import NAMES
 from .formula.text import FormulaError
 from .given import Law
@@ -22,6 +25,9 @@ from .requests.check import ByChannel, by_channel, check_output
 from .requests.order import dimensions, with_named
 from .requests.output_field import RequestField
 from .settings import RunSettings, Settings, SteadyMotion, takes_settings
+from .states.inputs import InputValue
+from .states.linear_system import StateEntry
+from .states.section import check_states, names_in_formulas
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,6 +36,7 @@ if TYPE_CHECKING:
 
     from ..jobs.check import Report
     from ..jobs.equilibrium import EquilibriumFound
+    from ..jobs.given_inputs import Given
     from ..jobs.modes import Modes
     from ..jobs.start_from import StartFrom
     from ..results.solution import Solution
@@ -61,6 +68,8 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         self.gravity = gravity
         self.markers: dict[str, Any] = {}
         self.bodies: dict[str, Body] = {}
+        self.states: dict[str, StateEntry] = {}
+        self.inputs: dict[str, Any] = {}
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
         self.requests: dict[str, Any] = {}
@@ -78,16 +87,16 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
     def add(self, name: str, part: Body) -> BodyHandle: ...
 
     @overload
-    def add(self, name: str, part: Joint | Force) -> None: ...
+    def add(self, name: str, part: Joint | Force | StateEntry) -> None: ...
 
     def add(self, name: str, part: Any) -> BodyHandle | None:
-        """Add a body, a joint or a force.
+        """Add a body, a joint, a force or a state.
 
         Parameters
         ----------
         name : str
             Letters, digits and ``_``; no other part has it.
-        part : Body, Joint or Force
+        part : Body, Joint, Force or State
 
         Returns
         -------
@@ -160,7 +169,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         return self.handle_type(name, self) if name in self.bodies else None
 
     def _sections(self) -> tuple[dict[str, Any], ...]:
-        return self.bodies, self.joints, self.forces, self.requests
+        return self.bodies, self.states, self.inputs, self.joints, self.forces, self.requests
 
     def _found(self, name: str) -> dict[str, Any]:
         """The section that holds a part."""
@@ -173,6 +182,8 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         """The section that a part belongs to."""
         if isinstance(part, self.body_type):
             return self.bodies
+        if isinstance(part, StateEntry):
+            return self.states
         if not isinstance(part, Joint | Force):
             raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
         check_class(type(part))
@@ -187,6 +198,7 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         try:
             for other, element in (*self.joints.items(), *self.forces.items()):
                 self._check_element(other, element)
+            self._check_states(self.states, self._names())
             self.data_type.model_construct(**self._content()).check_requests()
         except ValueError as error:
             section.clear()
@@ -221,6 +233,27 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         if placement is None:
             raise InputError(f"{name}: found {marker!r}, expected a marker with a point on ground")
         self.markers[name] = placement
+
+    def add_input(self, name: str, value: Any) -> None:
+        """Add an input: a value by a name that formulas use, and that each run may be given anew.
+
+        Parameters
+        ----------
+        name : str
+            Letters, digits and ``_``; no other part has it.
+        value : float, str or Table
+            A number, also as text with a unit, or a table of time.
+
+        Raises
+        ------
+        InputError
+            When the name is taken, or the value is none of these.
+        """
+        self._check_name(name)
+        try:
+            self.inputs[name] = TypeAdapter(InputValue).validate_python(value)
+        except PydanticError as error:
+            raise InputError(f"inputs.{name}: {sentence(error)}") from None
 
     def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
         """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
@@ -269,14 +302,30 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         try:
             if isinstance(part, Element):
                 self._check_element(name, part)
+            if isinstance(part, StateEntry):
+                self._check_states({name: part}, known=None)
         except ValueError as error:
             raise InputError(str(error)) from None
 
     def _check_element(self, name: str, part: Element) -> None:
-        check_element(name, part, self.bodies, self.joints, self.markers, NAMES[self._dimensions()])
+        check_element(
+            name,
+            part,
+            self.bodies,
+            self.joints,
+            self.markers,
+            NAMES[self._dimensions()],
+            self._names(),
+        )
+
+    def _names(self) -> set[str]:
+        return names_in_formulas(self.states) | set(self.inputs)
+
+    def _check_states(self, states: Mapping[str, StateEntry], known: Collection[str] | None) -> None:
+        check_states(states, self.bodies, self.markers, self.joints, NAMES[self._dimensions()], known)
 
     def _content(self) -> dict[str, Any]:
-        sections = ("name", "gravity", "markers", "bodies", "joints", "forces", "requests")
+        sections = ("name", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests")
         return {section: getattr(self, section) for section in sections}
 
     def data(self) -> Data:
@@ -307,12 +356,13 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         settings: RunSettings | None = None,
         watch: Callable[[float], None] | None = None,
         start_from: StartFrom | None = None,
+        inputs: Mapping[str, Given] | None = None,
         **changes: Unpack[Settings],
     ) -> Solution:
         """Solve the model; parameters, result and errors are those of `stiffmbs.run`."""
         from ..jobs.run import run
 
-        return run(self, settings, watch, start_from, **changes)
+        return run(self, settings, watch, start_from, inputs, **changes)
 
     @takes_settings
     def verify(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
@@ -22,6 +22,18 @@ from .requests.check import by_channel, check_output
 from .requests.names import OutputNames
 from .requests.order import dimensions
 from .requests.output import Output
+from .states.equation import Reported, StateEquation
+from .states.inputs import InputValue, formulas_of_inputs
+from .states.name import StateName
+from .states.section import (
+    AnyState,
+    check_reactions,
+    check_states,
+    check_states_of,
+    names_in_formulas,
+    refuse_algebraic_loops,
+)
+from .states.state import StateValue
 
 if TYPE_CHECKING:
     from .requests.angle_counter import AngleCounter
@@ -44,7 +56,7 @@ class ModelData(Described):
         Acceleration along the ground's axes, m/s^2.
     markers : mapping of str to Placement
         Named points of ground, ``ground.name``.
-    bodies, joints, forces, requests : mappings by name
+    bodies, states, joints, forces, requests : mappings by name
         Names are shared by all, as channels are named after them.  A request is a formula, or several by name.
     """
 
@@ -58,6 +70,12 @@ class ModelData(Described):
     gravity: tuple[float, ...]
     markers: dict[str, Any] = Field(default_factory=dict, description="named points of ground")
     bodies: dict[str, Any] = Field(description="bodies by name")
+    states: dict[str, AnyState] = Field(
+        default_factory=dict, description="values by name that equations of their own determine"
+    )
+    inputs: dict[str, InputValue] = Field(
+        default_factory=dict, description="values by name that another program gives: numbers, or tables of time"
+    )
     joints: dict[str, Any] = Field(default_factory=dict, description="joints by name")
     forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")
     requests: dict[str, Any] = Field(default_factory=dict, description="formulas to report, by channel name")
@@ -81,7 +99,7 @@ class ModelData(Described):
             check_names(markers, "marker")
         return markers
 
-    @field_validator("bodies", "joints", "forces", "requests", mode="before")
+    @field_validator("bodies", "states", "inputs", "joints", "forces", "requests", mode="before")
     @classmethod
     def _names(cls, named: Any, info: Any) -> Any:
         if isinstance(named, dict):
@@ -96,7 +114,7 @@ class ModelData(Described):
         if not self.bodies:
             raise ValueError("bodies: found no body, expected at least one")
         seen: dict[str, str] = {}
-        for section in ("bodies", "joints", "forces", "requests"):
+        for section in ("bodies", "states", "inputs", "joints", "forces", "requests"):
             for name in getattr(self, section):
                 if name in seen:
                     raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
@@ -107,7 +125,11 @@ class ModelData(Described):
                 raise ValueError(
                     f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
                 )
-        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions]
+        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
+        check_states(
+            self.states, self.bodies, self.markers, self.joints, NAMES[self.dimensions], self.names_in_formulas()
+        )
+        refuse_algebraic_loops(self.state_outputs())
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
         }
@@ -150,7 +172,29 @@ class ModelData(Described):
         """Every joint, force, counter of turns and weight with its name (a weight has its body's)."""
         yield from self.elements_at_initial_pose()
         yield from self.angle_counters()
+        yield from self.state_equations()
         yield from self.inertial(self.bodies)
+
+    def state_equations(self) -> Iterator[tuple[str, Element]]:
+        """The rates of the states, by the names of the states, and the outputs of their equations."""
+        for name, state in self.states.items():
+            for full, value in state.values(name):
+                yield full, StateEquation.model_construct(state=StateName(full), formula=value.rate)
+        for full, formula in self.state_outputs().items():
+            yield full, Reported.model_construct(formula=formula)
+
+    def state_outputs(self) -> dict[str, Formula]:
+        """Formulas that others use by a name, as the output of a transfer function, by full name."""
+        of_states = {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
+        return of_states | dict(formulas_of_inputs(self.inputs))
+
+    def names_in_formulas(self) -> set[str]:
+        """The names of states, outputs and inputs that formulas may use."""
+        return names_in_formulas(self.states) | set(self.inputs)
+
+    def state_values(self) -> dict[str, StateValue]:
+        """What is solved for beside the bodies, by full name."""
+        return {full: value for name, state in self.states.items() for full, value in state.values(name)}
 
     def elements_at_initial_pose(self) -> Iterator[tuple[str, Element]]:
         """Joints and forces with their names; what they leave open is taken from the described poses."""
@@ -185,7 +229,13 @@ class ModelData(Described):
 def contents(model: Any) -> str:
     """What a model, a scene or what is built in Python holds, in a few words."""
     parts = []
-    for section, one in (("bodies", "body"), ("joints", "joint"), ("forces", "force"), ("requests", "request")):
+    for section, one in (
+        ("bodies", "body"),
+        ("states", "state"),
+        ("joints", "joint"),
+        ("forces", "force"),
+        ("requests", "request"),
+    ):
         count = len(getattr(model, section))
         parts += [f"{count} {one if count == 1 else section}"] if count or section == "bodies" else []
     return f"'{model.name}': {', '.join(parts)}"
@@ -198,6 +248,7 @@ def check_element(
     joints: Mapping[str, Joint],
     on_ground: Mapping[str, Any],
     names: FormulaNames,
+    states: Collection[str],
 ) -> None:
     """Refuse an element that names an unknown body, marker, joint or coordinate, or that joins a body to itself."""
     for field, marker in element.markers():
@@ -221,6 +272,8 @@ def check_element(
         for body in formula.bodies():
             if body not in bodies and body != GROUND:
                 raise ValueError(f"{where}.{field}: found the unknown body '{body}', expected {listed(bodies)}")
+        check_states_of(f"{where}.{field}", formula, states)
+        check_reactions(f"{where}.{field}", formula, joints)
         for reason in names.validation_errors(formula):
             raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]

@@ -12,11 +12,13 @@ from .files.scene_text import scene_text
 from .formula.dimension import Known
 from .marker import MarkerReference
 from .model_data import ModelData
+from .states.amount import Amount
+from .states.linear_system import PID
 from .table import Table
 from .units.units import Quantity, in_text
 
 PLAIN = ("name", "dimensions", "gravity")
-SECTIONS = ("markers", "bodies", "joints", "forces", "requests")
+SECTIONS = ("markers", "bodies", "states", "inputs", "joints", "forces", "requests")
 
 
 def model_text(data: ModelData) -> str:
@@ -42,9 +44,13 @@ def _written(value: Any) -> Any:
     match value:
         case MarkerReference():
             return _marker(value)
+        case Amount():
+            return in_text(value.written())
         case Table():
             rows = [[_quantity(*entry) for entry in zip(row, value.dimensions, strict=True)] for row in value.table]
             return {**_fields(value), "table": rows}
+        case PID():
+            return {"pid": _fields(value)}
         case Described():
             kind = {"type": getattr(value, "type", "")} if "type" in type(value).model_fields else {}
             return {**kind, **_fields(value)}

@@ -43,7 +43,7 @@ from .settings import RunSettings, SteadyMotion
 from .table import Table
 from .units.units import Quantity, in_text
 
-SECTIONS = ("variables", "bodies", "joints", "forces")
+SECTIONS = ("variables", "states", "bodies", "joints", "forces")
 
 
 class Scene(ModelData):
@@ -238,7 +238,7 @@ def _validated(
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
-        variables = read_variables(raw.get("variables"), parameters, tables)
+        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
         context["roads"] = read_roads(raw.get("roads"), context)
         raw, context = with_parts(raw, _family(raw), context, in_parts)

@@ -89,6 +89,6 @@ def _built(planar: PlanarModel) -> Model:
     """A model in space with all that a planar one built in Python has."""
     scene = _embedded(planar.data())
     model = Model(scene.name, scene.gravity)
-    for section in ("markers", "bodies", "joints", "forces", "requests"):
+    for section in ("markers", "bodies", "states", "inputs", "joints", "forces", "requests"):
         getattr(model, section).update(getattr(scene, section))
     return model

@@ -11,6 +11,8 @@ from ..describe.element import Force
 from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.parts.names import Names
+from ..describe.states.amount import Amount
+from ..describe.table import Table
 from ..errors import InputError
 from .load_scene import load_scene
 
@@ -27,7 +29,7 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
     ----------
     model : Model or Scene
     name : str
-        ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker: ``chassis.fy``, ``bar.end.fx``;
+        An input of the model, or ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker: ``chassis.fy``, ``bar.end.fx``;
         in ground axes, N or N m.
 
     Raises
@@ -36,6 +38,8 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
         When there is no such body or component.
     """
     data: ModelData = model.data() if isinstance(model, ModelBuilder) else model
+    if name in data.inputs:
+        return _input_of(data, name)
     at, _, component = name.rpartition(".")
     body, marker = Names(frozenset(data.bodies)).body_and_marker(at)
     place = {"body": body, "marker": marker or None}
@@ -52,6 +56,14 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
         return data.model_copy(update={"forces": {**data.forces, FORCE: added}})
 
     return with_force
+
+
+def _input_of(data: ModelData, name: str) -> Parameterised:
+    """A model as a function of how far one of its inputs is from its value."""
+    value = data.inputs[name]
+    if isinstance(value, Table):
+        raise InputError(f"input '{name}': found a table, expected a number to vary")
+    return lambda shift: data.model_copy(update={"inputs": {**data.inputs, name: Amount(value + shift)}})
 
 
 def _applied(dimensions: int, at: dict[str, str | None], loads: list[float]) -> Force:

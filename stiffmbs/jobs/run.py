@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
@@ -42,6 +42,7 @@ from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory
 from ..structure.messages.unconnected import unconnected_sentence
 from ..structure.redundancy import Redundancy, examine
+from .given_inputs import Given, with_inputs
 from .load_scene import load_scene
 from .presolve_report import presolve_sentences
 from .python_faults import told_faults, up_to_a_fault
@@ -213,6 +214,7 @@ def run(
     settings: RunSettings | None = None,
     watch: ProgressCallback | None = None,
     start_from: StartFrom | None = None,
+    inputs: Mapping[str, Given] | None = None,
     **changes: Unpack[Settings],
 ) -> Solution:
     """Solve a model.
@@ -228,6 +230,9 @@ def run(
     start_from : Solution, str, Path or SavedState, optional
         A state to start from in place of the described one, at its time unless `start` is given: the last of a solution
         or of a file of results, or ``solution.state(at=2.0)``.
+    inputs : mapping of str to float, callable or (times, values), optional
+        Values of the model's inputs: constants, functions of t, s, which are read at the output instants, or times and values;
+        with straight lines between.
     **changes
         Fields of the settings to change: ``duration=2.0, rtol=1e-8``.
 
@@ -243,6 +248,10 @@ def run(
     AssemblyError
         When no consistent start is found.
     """
+    if inputs:
+        data = data_of(model)
+        chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), {**changes})
+        model = with_inputs(data, inputs, chosen)
     return solved(prepare(model, settings, start_from, **changes), watch)
 
 

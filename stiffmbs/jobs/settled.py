@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import SolverError
-from ..linear_analysis.state_space import null_space
+from ..linear_analysis.state_space import null_space, state_matrix
 from ..linear_analysis.tangent_space import linearised
 from ..solve.dynamics import Dynamics
 from ..solve.equilibrium import Equilibrium, find_equilibrium
@@ -21,6 +21,8 @@ BRANCH = 1e-3
 FREE, UNSTABLE = 1e-9, 1e-9
 """Stiffness over mass, relative to the largest, below which a direction is free, or with the other sign unstable."""
 MOST_BRANCHES = 3
+GROWING = 1e-6
+"""Real part of an eigenvalue, relative to the largest of all, from which on a motion grows: double zeros are known to that."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,8 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     if system.n_u > MOST_FOR_STABILITY:
         return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
     notes: list[str] = []
+    if system.states:
+        return _settled(found, start, list(_unstable(dynamics, t)))
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
@@ -83,6 +87,18 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
         start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=tuple(notes)
     )
     return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
+
+
+def _unstable(dynamics: Dynamics, t: float) -> Iterator[str]:
+    """That motions grow from an equilibrium with states of the user's own, if they do."""
+    _, acceleration = dynamics.accelerate(t)
+    matrix = state_matrix(
+        linearised(dynamics, t, acceleration), dynamics.system.per_velocity(dynamics.system.size, 1.0)
+    ).matrix
+    values = np.linalg.eigvals(matrix)
+    fastest = float(np.max(values.real, initial=0.0))
+    if fastest > GROWING * np.max(np.abs(values), initial=0.0):
+        yield f"the equilibrium is unstable: motions from it grow at {fastest:.3g} 1/s"
 
 
 def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[str]]:

@@ -84,14 +84,17 @@ def started_from(system: System, model: ModelData, state: SavedState | None) -> 
         turned /= lengths
     q, u = from_own_axes(system, q[None])[0], rates_from_own_axes(system, u[None])[0]
     return replace(
-        system, q=np.concatenate([q, _turns(system, model, state)]), u=u, open_rates=np.zeros(system.n_u, dtype=bool)
+        system,
+        q=np.concatenate([q, _turns(system, model, state), _states(system, state)]),
+        u=u,
+        open_rates=np.zeros(system.n_u, dtype=bool),
     )
 
 
 def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
     """The counters of turns; those of requests that the state does not know begin anew."""
     of_requests = {name for name, _ in model.angle_counters()}
-    first = system.n_q - system.n_counters
+    first = system.n_pose
     turns = np.zeros(system.n_counters)
     for (name, k), place in counters_of(system).items():
         known = state.turns.get(f"{name}/{k}")
@@ -101,6 +104,14 @@ def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
             )
         turns[place - first] = known or 0.0
     return turns
+
+
+def _states(system: System, state: SavedState) -> np.ndarray:
+    """The values of the states of the user's own."""
+    for name in system.states:
+        if not np.isfinite(state.channels.get(name, np.nan)):
+            raise InputError(f"{state.source}: found no number for the state '{name}', expected one in each row")
+    return np.array([state.channels[name] for name in system.states])
 
 
 def _refuse_others(system: System, state: SavedState) -> None:

@@ -140,7 +140,7 @@ def _refuse_unsteady(dynamics: Dynamics, t: float, motion: SteadyMotion) -> None
         dynamics.assemble(t + later)
         known = balance_at(dynamics, t + later, motion)
         if known.imbalance > STEADY:
-            worst = int(np.argmax(np.abs(known.left)))
+            worst = int(np.argmax(np.abs(known.left[: system.n_u])))
             raise SolverError(
                 f"the motion is not steady: forces balance at t = {t:g} s, but {later:.3g} s later "
                 f"{system.name_of(worst, system.of_body.reactions)} has {known.left[worst]:.3g} left; expected forces that "

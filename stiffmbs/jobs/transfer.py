@@ -77,8 +77,8 @@ def transfer(
     scale = system.per_velocity(system.size, 1.0)
     linear = linearised(found.dynamics, found.t, found.acceleration)
     about = _About(found, linear, state_matrix(linear, scale), scale)
-    nothing = np.zeros((1, system.n_u))
-    at_zero = _channels(about, found.dynamics, nothing, nothing, outputs)[0]
+    nothing, as_they_are = np.zeros((1, system.n_u)), np.zeros((1, len(system.states)))
+    at_zero = _channels(about, found.dynamics, nothing, nothing, as_they_are, outputs)[0]
     given = inputs if isinstance(inputs, Mapping) else {name: force_on(found.data, name) for name in inputs}
     columns = [_column(about, name, of_input, outputs, changes) for name, of_input in given.items()]
     n = len(about.state.matrix)
@@ -100,17 +100,22 @@ def _column(
     system = about.found.dynamics.system
     step = SHIFT * max(1.0, system.size)
     sides = [_with_value(about, given, value, changes) for value in (-step, step)]
-    (force, gap, rate), (more, wider, faster) = (_acting(about, side) for side in sides)
+    (force, gap, rate, of_states), (more, wider, faster, other) = (_acting(about, side) for side in sides)
     if np.any(np.abs(faster - rate) > NO_RATE * 2 * step):
         raise InputError(
             f"input '{name}': found a velocity that a joint prescribes, expected a force, a displacement or a length; "
             "prescribe the displacement"
         )
     own = about.linear.own_axes
-    change = Input(name, own.T @ (more - force) / (2 * step), (wider - gap) / (2 * step))
+    change = Input(
+        name, own.T @ (more - force) / (2 * step), (wider - gap) / (2 * step), (other - of_states) / (2 * step)
+    )
     acts = effect(about.linear, about.state, change, about.scale)
     moved = np.outer((-step, step), acts.pose), np.outer((-step, step), acts.velocity)
-    values = [_channels(about, side, x[None], v[None], outputs)[0] for side, x, v in zip(sides, *moved, strict=True)]
+    same = np.zeros((1, len(system.states)))
+    values = [
+        _channels(about, side, x[None], v[None], same, outputs)[0] for side, x, v in zip(sides, *moved, strict=True)
+    ]
     if np.any(acts.velocity_of_rate):
         _refuse_rates(about, name, outputs)
     return acts.rates, (values[1] - values[0]) / (2 * step)
@@ -120,31 +125,34 @@ def _with_value(about: _About, given: Parameterised, value: float, changes: Sett
     """The model for a value of an input, at the state about which it is linearised."""
     job = prepare(given(value), **changes)
     system, state = job.dynamics.system, about.found.dynamics.state
-    if (system.bodies, system.equations) != (
-        about.found.dynamics.system.bodies,
-        about.found.dynamics.system.equations,
-    ):
+    own = about.found.dynamics.system
+    if (system.bodies, system.states, system.equations) != (own.bodies, own.states, own.equations):
         raise InputError("found another mechanism for another value of an input, expected the same bodies and joints")
     job.dynamics.state.q[:], job.dynamics.state.u[:] = state.q, state.u
     job.dynamics.state.lam[:] = state.lam
     return job.dynamics
 
 
-def _acting(about: _About, dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What is left of the forces (f - J^T lam - M u'), and the constraints of positions and of velocities, at the state."""
+def _acting(about: _About, dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """What is left of the forces (f - J^T lam - M u'), the constraints of positions and of velocities, and the rates of
+    states, at the state."""
     state, system = dynamics.state, dynamics.system
     active = about.found.dynamics.system.active
     state.evaluate("motion", about.found.t)
     reactions = state.matrix("motion", "J").T @ about.found.dynamics.state.lam[: system.n_c]
     left = state.vector("motion", "f") - reactions - system.mass * about.found.acceleration
-    return left, state.vector("motion", "C")[active & system.holonomic], state.vector("motion", "V")[active]
+    rates = state.vector("motion", "rate")[system.first_state :]
+    return left, state.vector("motion", "C")[active & system.holonomic], state.vector("motion", "V")[active], rates
 
 
-def _channels(about: _About, dynamics: Dynamics, x: np.ndarray, v: np.ndarray, outputs: Sequence[str]) -> np.ndarray:
+def _channels(
+    about: _About, dynamics: Dynamics, x: np.ndarray, v: np.ndarray, s: np.ndarray, outputs: Sequence[str]
+) -> np.ndarray:
     """Outputs at states that differ from that of the model, a row each; brought to the constraints."""
     system, at = about.found.dynamics.system, about.found.dynamics.state
     own = about.linear.own_axes
     q = np.array([system.of_body.moved(at.q, own @ row) for row in x])
+    q[:, system.first_state :] += s
     u = np.array([at.u + own @ row for row in v])
     with dynamics.state.unchanged():
         rows = dynamics.report(np.full(len(x), about.found.t), q, u, project=True)
@@ -162,10 +170,13 @@ def _channels(about: _About, dynamics: Dynamics, x: np.ndarray, v: np.ndarray, o
 def _differentiated(about: _About, outputs: Sequence[str]) -> np.ndarray:
     """C: the outputs' derivatives by the state, central differences of what a run would report."""
     state = about.state
-    sizes = np.abs(np.vstack([state.poses, state.velocities]) / np.tile(about.scale, 2)[:, None]).max(axis=0)
+    of_states = np.eye(len(state.matrix))[len(state.matrix) - state.n_states :]
+    parts = state.poses, state.velocities, of_states
+    scales = np.concatenate([about.scale, about.scale, about.found.dynamics.system.state_scales])
+    sizes = np.abs(np.vstack(parts) / scales[:, None]).max(axis=0)
     steps = SHIFT / np.maximum(sizes, np.finfo(float).tiny)
-    x, v = (part * steps for part in (state.poses, state.velocities))
-    values = _channels(about, about.found.dynamics, np.hstack([-x, x]).T, np.hstack([-v, v]).T, outputs)
+    x, v, own = (np.hstack([-part * steps, part * steps]).T for part in parts)
+    values = _channels(about, about.found.dynamics, x, v, own, outputs)
     found: np.ndarray = ((values[len(steps) :] - values[: len(steps)]) / (2 * steps[:, None])).T
     return found
 

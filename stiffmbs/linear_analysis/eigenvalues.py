@@ -31,7 +31,7 @@ class Zeros:
     generalised: np.ndarray
 
 
-def eigen(matrix: np.ndarray, n_poses: int) -> tuple[np.ndarray, np.ndarray, Zeros]:
+def eigen(matrix: np.ndarray, n_poses: int, n_states: int = 0) -> tuple[np.ndarray, np.ndarray, Zeros]:
     """Eigenvalues that are not zero, their eigenvectors as columns, and the zeros.
 
     Parameters
@@ -39,9 +39,13 @@ def eigen(matrix: np.ndarray, n_poses: int) -> tuple[np.ndarray, np.ndarray, Zer
     matrix : ndarray, shape (n, n)
     n_poses : int
         Rows of poses, which velocities follow; those are measured over the fastest rate, so that all rows are alike.
+    n_states : int
+        Rows of states, which stand last and are left as they are.
     """
-    rate = np.sqrt(np.linalg.norm(matrix[n_poses:, :n_poses], 2)) if n_poses < len(matrix) else 0.0
-    scale = np.where(np.arange(len(matrix)) < n_poses, 1.0, rate or 1.0)
+    end = len(matrix) - n_states
+    rate = np.sqrt(np.linalg.norm(matrix[n_poses:end, :n_poses], 2)) if n_poses < end else 0.0
+    row = np.arange(len(matrix))
+    scale = np.where((row < n_poses) | (row >= end), 1.0, rate or 1.0)
     values, vectors, levels = _deflated(matrix * scale / scale[:, None])
     at_zero = [scale[:, None] * level for level in levels]
     nothing = np.zeros((len(matrix), 0))

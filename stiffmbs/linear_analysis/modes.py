@@ -13,6 +13,9 @@ from scipy.sparse import csr_array
 from .eigenvalues import Zeros, eigen
 from .state_space import StateMatrix
 
+NO_MOTION = 1e-12
+"""Displacement, in sizes of the mechanism, or rotation of an eigenvector of length 1 that counts as none."""
+
 
 class Motion(Enum):
     """How a mode moves by itself."""
@@ -24,7 +27,7 @@ class Motion(Enum):
 
 @dataclass(frozen=True)
 class Mode:
-    """One mode: a pair of eigenvalues.
+    """One mode: a pair of eigenvalues, or a single real one of states of the user's own.
 
     Attributes
     ----------
@@ -32,7 +35,7 @@ class Mode:
         Oscillating with a conjugate pair, aperiodic with two real eigenvalues (overdamped, or falling over), or a rigid
         body motion without stiffness, whose eigenvalues are zero; one of the two may differ from zero by damping.
     eigenvalues : tuple of complex
-        1/s; the one with positive imaginary part first.
+        1/s; the one with positive imaginary part first; one alone where states bring more real ones than go in pairs.
     shape : ndarray, shape (n_u,), complex
         Displacements and rotations of all bodies in ground axes; the largest displacement, or rotation times the size of
         the mechanism, is 1.
@@ -41,7 +44,7 @@ class Mode:
     """
 
     motion: Motion
-    eigenvalues: tuple[complex, complex]
+    eigenvalues: tuple[complex, ...]
     shape: np.ndarray
     participation: dict[str, float]
 
@@ -52,14 +55,16 @@ class Mode:
 
     @property
     def natural_frequency(self) -> float:
-        """Undamped natural frequency, Hz: the root of |s_1 s_2|, over 2 pi."""
-        return float(np.sqrt(abs(self.eigenvalues[0] * self.eigenvalues[1])) / (2 * np.pi))
+        """Undamped natural frequency, Hz: the root of |s_1 s_2|, over 2 pi; of one alone |s|, over 2 pi."""
+        product = abs(np.prod(self.eigenvalues))
+        return float((np.sqrt(product) if len(self.eigenvalues) > 1 else product) / (2 * np.pi))
 
     @property
     def damping_ratio(self) -> float:
         """Of the critical damping: -(s_1 + s_2)/2 over the undamped natural frequency; nan for a rigid body motion."""
         natural = 2 * np.pi * self.natural_frequency
-        return float(0.0 - sum(self.eigenvalues).real / 2 / natural) if natural else float("nan")
+        mean = sum(self.eigenvalues).real / len(self.eigenvalues)
+        return float(0.0 - mean / natural) if natural else float("nan")
 
     @property
     def is_stable(self) -> bool:
@@ -80,7 +85,7 @@ class Mode:
 
 
 def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray) -> list[Mode]:
-    """The modes of a state matrix, as many as there are degrees of freedom, by undamped natural frequency.
+    """The modes of a state matrix, as many as there are degrees of freedom and more of states, by undamped natural frequency.
 
     Parameters
     ----------
@@ -91,9 +96,9 @@ def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], 
     scale : ndarray, shape (n_u,)
         The mechanism's size for displacements, 1 for rotations.
     """
-    if not state.degrees_of_freedom:
+    if not len(state.matrix):
         return []
-    values, vectors, zeros = eigen(state.matrix, state.n_poses)
+    values, vectors, zeros = eigen(state.matrix, state.n_poses, state.n_states)
     shapes = state.poses @ vectors
     pairs = [
         *_oscillations(values, shapes),
@@ -103,7 +108,7 @@ def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], 
     return sorted(found, key=lambda mode: (mode.natural_frequency, mode.frequency))
 
 
-Pair = tuple[tuple[complex, complex], np.ndarray]
+Pair = tuple[tuple[complex, ...], np.ndarray]
 
 
 def _oscillations(values: np.ndarray, shapes: np.ndarray) -> Iterator[Pair]:
@@ -128,7 +133,14 @@ def _without_oscillation(
     if single:
         known += list((state.poses @ zeros.eigenvectors).T[:single])
     likeness = np.array(known).reshape(len(found), len(scale)) / scale
-    for one, other in _alike(likeness):
+    pairs = list(_alike(likeness))
+    if state.n_states:  # most of them are modes of their own
+        others = state.degrees_of_freedom - int(np.sum(values.imag > 0)) - zeros.generalised.shape[1]
+        moving = [pair for pair in pairs if all(np.any(np.abs(likeness[k]) > NO_MOTION) for k in pair)]
+        pairs = moving[: max(0, others)]
+        for k in set(range(len(found))) - {k for pair in pairs for k in pair}:
+            yield (complex(found[k]),), known[k].astype(complex)
+    for one, other in pairs:
         first, second = sorted((one, other), key=lambda k: -abs(found[k]))
         yield (complex(found[first]), complex(found[second])), known[first].astype(complex)
 
@@ -145,10 +157,12 @@ def _alike(shapes: np.ndarray) -> Iterator[tuple[int, int]]:
 
 
 def _mode(
-    both: tuple[complex, complex], shape: np.ndarray, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray
+    both: tuple[complex, ...], shape: np.ndarray, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray
 ) -> Mode:
     motion = Motion.OSCILLATING if both[0].imag else Motion.APERIODIC if all(both) else Motion.RIGID
     sizes = shape / scale * scale[0]  # the first of a body is a displacement
+    if np.max(np.abs(sizes), initial=0.0) <= NO_MOTION:  # of states alone
+        return Mode(motion, both, np.zeros(len(shape), dtype=complex), {})
     shape = shape / sizes[np.argmax(np.abs(sizes))]
     energy = (shape.conj() * (mass @ shape)).real.reshape(len(bodies), -1).sum(axis=1)
     shares = dict(zip(bodies, (energy / energy.sum()).tolist(), strict=True))

@@ -22,12 +22,12 @@ SINGULAR = 1e15
 
 @dataclass(frozen=True)
 class StateMatrix:
-    """z' = A z with z = (a, b), and what z stands for.
+    """z' = A z with z = (a, b, s), and what z stands for; s are the user's own states.
 
     Attributes
     ----------
     matrix : ndarray, shape (n, n)
-        A; n is twice the degrees of freedom, and more by one for each rolling constraint.
+        A; n is twice the degrees of freedom, and more by one for each rolling constraint and each state.
     poses : ndarray, shape (n_u, n)
         x from z: displacements and rotations of all bodies, ground axes.
     velocities : ndarray, shape (n_u, n)
@@ -38,6 +38,8 @@ class StateMatrix:
         z' from generalised forces on the bodies, ground axes.
     n_poses : int
         Length of a.
+    n_states : int
+        Length of s.
     """
 
     matrix: np.ndarray
@@ -46,11 +48,12 @@ class StateMatrix:
     accelerations: np.ndarray
     forced: np.ndarray
     n_poses: int
+    n_states: int = 0
 
     @property
     def degrees_of_freedom(self) -> int:
         """Length of b: the velocities that constraints leave free."""
-        return len(self.matrix) - self.n_poses
+        return len(self.matrix) - self.n_poses - self.n_states
 
 
 def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
@@ -73,20 +76,32 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
         free if np.array_equal(matrix, linear.velocity) else null_space(matrix * scale) * scale[:, None]
         for matrix in (linear.position, linear.reactions.T)
     )
-    n_a, n_b = poses.shape[1], free.shape[1]
-    x = np.hstack([poses, np.zeros((len(scale), n_b))])
-    v = np.hstack([_following(constraints, linear.velocity_at_position @ poses, scale), free])
+    n_a, n_b, n_s = poses.shape[1], free.shape[1], len(linear.rate_by_states)
+    x = np.hstack([poses, np.zeros((len(scale), n_b + n_s))])
+    following = _following(constraints, linear.velocity_at_position @ poses, scale)
+    v = np.hstack([following, free, np.zeros((len(scale), n_s))])
+    s = np.hstack([np.zeros((n_s, n_a + n_b)), np.eye(n_s)])
+    n = n_a + n_b + n_s
     carried = _following(constraints, linear.acceleration_at_position @ x + linear.acceleration_at_velocity @ v, scale)
-    force = left.T @ (linear.stiffness @ x + linear.damping @ v - linear.mass @ carried)
+    acting = linear.stiffness @ x + linear.damping @ v + linear.by_states @ s
+    force = left.T @ (acting - linear.mass @ carried)
     accelerations = _solved(left.T @ linear.mass @ free, np.hstack([force, left.T]))
     rates = (poses / scale[:, None]).T @ (v / scale[:, None])
+    found = carried + free @ accelerations[:, :n]
+    rates_of_states = linear.rate_by_pose @ x + linear.rate_by_velocity @ v + linear.rate_by_states @ s
+    forced = np.zeros((n_s, len(scale)))
+    if np.any(linear.rate_by_reactions):
+        reactions = np.linalg.pinv(linear.reactions)
+        rates_of_states += linear.rate_by_reactions @ reactions @ (acting - linear.mass @ found)
+        forced = linear.rate_by_reactions @ reactions @ (np.eye(len(scale)) - linear.mass @ free @ accelerations[:, n:])
     return StateMatrix(
-        matrix=np.vstack([rates, accelerations[:, : n_a + n_b]]),
+        matrix=np.vstack([rates, accelerations[:, :n], rates_of_states]),
         poses=x,
         velocities=v,
-        accelerations=carried + free @ accelerations[:, : n_a + n_b],
-        forced=np.vstack([np.zeros((n_a, len(scale))), accelerations[:, n_a + n_b :]]),
+        accelerations=found,
+        forced=np.vstack([np.zeros((n_a, len(scale))), accelerations[:, n:], forced]),
         n_poses=n_a,
+        n_states=n_s,
     )
 
 

@@ -19,7 +19,8 @@ from ..solve.dynamics import Dynamics
 
 @dataclass(frozen=True)
 class Linearised:
-    """M v' = K x + D v - B dlam, with G x = 0, H x + J v = 0 and J v' + H_x x + H_v v = 0.
+    """M v' = K x + D v + F s - B dlam, s' = R_x x + R_v v + R_s s + R_lam dlam, with G x = 0, H x + J v = 0 and
+    J v' + H_x x + H_v v = 0; s are variations of the user's own states.
 
     Attributes
     ----------
@@ -35,6 +36,11 @@ class Linearised:
         J and H, the derivatives of the constraints of velocities by v and by x.
     acceleration_at_position, acceleration_at_velocity : ndarrays, shape (n_c, n_u)
         H_x and H_v, of the constraints of accelerations.
+    by_states : ndarray, shape (n_u, states)
+        F.
+    rate_by_pose, rate_by_velocity, rate_by_states, rate_by_reactions : ndarrays, shapes (states, n_u), (states, n_u), (states,
+            states), (states, n_c)
+        R_x, R_v, R_s and R_lam.
     own_axes, spin : sparse arrays, shape (n_u, n_u)
         From ground axes to those that u has, and w x of every body in ground axes: the variation of u' is
         own_axes (v' - w x v).
@@ -49,6 +55,11 @@ class Linearised:
     velocity_at_position: np.ndarray
     acceleration_at_position: np.ndarray
     acceleration_at_velocity: np.ndarray
+    by_states: np.ndarray
+    rate_by_pose: np.ndarray
+    rate_by_velocity: np.ndarray
+    rate_by_states: np.ndarray
+    rate_by_reactions: np.ndarray
     own_axes: csr_array
     spin: csr_array
 
@@ -95,6 +106,11 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
         velocity_at_position=(term("V_q") @ to_coordinates)[rows],
         acceleration_at_position=(term("A_q") @ to_coordinates)[rows],
         acceleration_at_velocity=-(term("gamma_u") @ back + term("J") @ back @ spin)[rows],
+        by_states=axes @ term("f_q")[:, system.first_state :],
+        rate_by_pose=term("rate_q")[system.first_state :] @ to_coordinates,
+        rate_by_velocity=term("rate_u")[system.first_state :] @ back,
+        rate_by_states=term("rate_q")[system.first_state :, system.first_state :],
+        rate_by_reactions=term("rate_lam")[system.first_state :, rows],
         own_axes=back,
         spin=spin,
     )

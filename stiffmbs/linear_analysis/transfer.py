@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..errors import InputError
 from .state_space import StateMatrix
 from .tangent_space import Linearised
 
@@ -29,11 +30,14 @@ class Input:
         Generalised forces, ground axes.
     position : ndarray, shape (holonomic,)
         C_p, the change of the constraints of positions.
+    rates : ndarray, shape (states,)
+        Rates of the user's own states.
     """
 
     name: str
     force: np.ndarray
     position: np.ndarray
+    rates: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -57,20 +61,34 @@ class Effect:
 
 
 def effect(linear: Linearised, state: StateMatrix, given: Input, scale: np.ndarray) -> Effect:
-    """What an input does to the free variations, and to poses and velocities."""
-    n_a = state.n_poses
-    free = state.velocities[:, n_a:]
+    """What an input does to the free variations, and to poses and velocities.
+
+    Raises
+    ------
+    InputError
+        When the input moves a constraint, and a state feels how fast, or the reaction.
+    """
+    n_a, end = state.n_poses, state.n_poses + state.degrees_of_freedom
+    of_velocities = slice(n_a, end)
+    free, forced = state.velocities[:, of_velocities], state.forced[of_velocities]
     poses = state.poses[:, :n_a]
     nothing = np.zeros(len(scale))
     if not np.any(given.position):
-        return Effect(state.forced @ given.force, nothing, nothing, nothing)
+        own = np.concatenate([np.zeros(end), given.rates])
+        return Effect(state.forced @ given.force + own, nothing, nothing, nothing)
     shift = scale * np.linalg.lstsq(linear.position * scale, -given.position, rcond=1e-9)[0]
-    shift = shift - free @ (state.forced[n_a:] @ (linear.mass @ shift))
-    damped = state.forced[n_a:] @ (linear.damping @ shift)
-    acting = state.forced[n_a:] @ (given.force + linear.stiffness @ shift)
+    shift = shift - free @ (forced @ (linear.mass @ shift))
+    if np.any(linear.rate_by_velocity @ shift) or np.any(linear.rate_by_reactions):
+        raise InputError(
+            f"input '{given.name}': found a state whose rate depends on velocities or reactions that the input prescribes, expected "
+            "rates of positions"
+        )
+    damped = forced @ (linear.damping @ shift)
+    acting = forced @ (given.force + linear.stiffness @ shift)
     carried = np.linalg.lstsq(poses / scale[:, None], free @ damped / scale, rcond=None)[0]
-    moved = state.matrix[n_a:, n_a:] @ damped
-    return Effect(np.concatenate([carried, acting + moved]), shift, free @ damped, shift)
+    moved = state.matrix[of_velocities, of_velocities] @ damped
+    of_states = given.rates + linear.rate_by_pose @ shift + state.matrix[end:, of_velocities] @ damped
+    return Effect(np.concatenate([carried, acting + moved, of_states]), shift, free @ damped, shift)
 
 
 @dataclass(frozen=True)

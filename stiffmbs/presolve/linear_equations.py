@@ -61,6 +61,7 @@ def _candidates(system: System) -> np.ndarray:
         rows[group.first_row : last] &= np.tile(of_group, group.count)
     if any(group.record.patterns.get("f_lam") for group in system.groups):
         rows[system.term("tangent", "f_lam").column] = False
+    rows[system.term("tangent", "rate_lam").column] = False
     return rows
 
 

@@ -13,6 +13,7 @@ from ..describe.formula.field import Formula
 from ..describe.joints.fixed import Fixed
 from ..describe.marker import GROUND, MarkerReference
 from ..describe.model_data import ModelData
+from ..describe.states.state import StateValue
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,14 @@ class MergedBodies:
         """All joints by name."""
         return self.model.joints
 
+    def state_outputs(self) -> dict[str, Formula]:
+        """The outputs that formulas use by a name."""
+        return self.model.state_outputs()
+
+    def state_values(self) -> dict[str, StateValue]:
+        """The states, all of them."""
+        return self.model.state_values()
+
     def size(self) -> float:
         """That of the model as described."""
         return self.model.size()
@@ -56,6 +65,7 @@ class MergedBodies:
             if name not in self.joints_left_out:
                 yield name, element
         yield from self.model.angle_counters()
+        yield from self.model.state_equations()
         yield from self.model.inertial(self.bodies)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Any]:
@@ -104,8 +114,9 @@ def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
 
 
 def _candidates(model: ModelData) -> Iterator[str]:
-    elements = [*model.joints.values(), *model.forces.values()]
+    elements = [*model.joints.values(), *model.forces.values(), *(element for _, element in model.state_equations())]
     referred = {name.joint for element in elements for _, name in element.parts(JointName)}
+    referred |= {joint for e in elements for _, formula in e.parts(Formula) for _, joint in formula.reactions()}
     named = {body for e in elements for _, formula in e.parts(Formula) for body, _ in formula.coordinates()}
     for name, joint in model.joints.items():
         bodies = {marker.body for _, marker in joint.markers()}

@@ -15,7 +15,7 @@ from ..compile.system import System
 from ..describe.model_data import ModelData
 from .body_fixed_poses import BODY_FIXED_POSES, BodyFixedPoses
 from .merged_bodies import MergedBodies, merge
-from .subsystems import counters_of, mechanisms, part_of
+from .subsystems import behind_bodies, mechanisms, part_of
 
 MOST_APART = 8
 """Mechanisms that are solved apart: each has a start and steps of its own, which many tiny ones would not be worth."""
@@ -34,31 +34,31 @@ class Part:
         For each of them the number of the body in `system` that carries it.
     poses : BodyFixedPoses
         Where each of them is on that.
-    counters : ndarray of int
-        The coordinates of the whole that count what the part's own counters of turns do.
+    behind : ndarray of int
+        The coordinates of the whole that the part's own counters of turns and states stand for.
     """
 
     system: System
     bodies: np.ndarray
     parent: np.ndarray
     poses: BodyFixedPoses
-    counters: np.ndarray
+    behind: np.ndarray
 
     def reduced(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The coordinates and velocities of the part's bodies, from those of the whole that satisfy its constraints."""
         of, first = np.unique(self.parent, return_index=True)
         assert len(of) == len(self.system.bodies)
-        counted, rates = q[self.counters], u.reshape(-1, self.system.of_body.n_u)
+        behind, rates = q[self.behind], u.reshape(-1, self.system.of_body.n_u)
         places = q[: self.system.of_body.n_q * len(rates)].reshape(len(rates), -1)
         places, rates = places[self.bodies], rates[self.bodies]
         if self.poses.moved:
             places, rates = self.poses.inverse().carried(places, rates)
-        return np.concatenate([places[first].ravel(), counted]), rates[first].ravel()
+        return np.concatenate([places[first].ravel(), behind]), rates[first].ravel()
 
     def put(self, q: np.ndarray, u: np.ndarray, into_q: np.ndarray, into_u: np.ndarray) -> None:
         """Write the states of the bodies of the whole, one state a row, from those of the part's bodies."""
         n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
-        of_bodies, into_q[:, self.counters] = np.split(q, [n_q * count], axis=1)
+        of_bodies, into_q[:, self.behind] = np.split(q, [n_q * count], axis=1)
         of = of_bodies.reshape(len(q), count, n_q)[:, self.parent]
         rates = u.reshape(len(u), count, n_u)[:, self.parent]
         if self.poses.moved:
@@ -99,14 +99,14 @@ def _compiled(merged: MergedBodies, whole: System) -> System:
 def _part(bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None) -> Part:
     own = part_of(system, bodies)
     number = {name: k for k, name in enumerate(own.bodies)}
-    of_whole, of_part = counters_of(whole), counters_of(own)
-    counters = np.array([of_whole[key] for key in sorted(of_part, key=of_part.__getitem__)], dtype=np.int64)
+    of_whole, of_part = behind_bodies(whole), behind_bodies(own)
+    behind = np.array([of_whole[key] for key in sorted(of_part, key=of_part.__getitem__)], dtype=np.int64)
     poses = BODY_FIXED_POSES[whole.of_body.dimensions]
     if merged is None:
-        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), counters)
+        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), behind)
     carried = [(k, *merged.members[name]) for k, name in enumerate(whole.bodies) if merged.members[name][0] in number]
     numbers = np.array([k for k, _, _ in carried])
     parent = np.array([number[name] for _, name, _ in carried])
-    at_initial_pose = whole.q[: whole.n_q - whole.n_counters].reshape(len(whole.bodies), -1)[numbers]
+    at_initial_pose = whole.q[: whole.n_pose].reshape(len(whole.bodies), -1)[numbers]
     placed = poses.of([place for _, _, place in carried]).like(at_initial_pose, parent)
-    return Part(own, numbers, parent, placed, counters)
+    return Part(own, numbers, parent, placed, behind)

@@ -1,4 +1,4 @@
-"""Independent mechanisms of a system: bodies that no joint and no force connects, but for the ground."""
+"""Independent mechanisms of a system: bodies that no joint, force or state connects, but for the ground."""
 
 from __future__ import annotations
 
@@ -9,12 +9,23 @@ import numpy as np
 from ..compile.group import Group
 from ..compile.system import System
 
+A_STATE = -1
+"""In place of the number of a counter of turns."""
+NOTHING = np.iinfo(np.int64).max
+
 
 def mechanisms(system: System) -> list[np.ndarray]:
     """The numbers of the bodies of each mechanism, in the order of their first bodies."""
     if len(system.bodies) == 1:
         return [np.zeros(1, dtype=np.int64)]
-    label = np.arange(len(system.bodies) + 1)  # of each body the least number that it is known to be connected with
+    bodies = _first_bodies(system)[: len(system.bodies)]
+    return [np.flatnonzero(bodies == first) for first in np.flatnonzero(bodies == np.arange(len(bodies)))]
+
+
+def _first_bodies(system: System) -> np.ndarray:
+    """For each body, the ground and each state the first body of its mechanism; of what hangs on no body the first of all."""
+    count = len(system.bodies) + 1 + len(system.states)
+    label = np.arange(count)  # of each the least number that it is known to be connected with
     pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(_pairs(system, group) for group in system.groups)])
     while True:
         least = np.minimum(label[pairs[:, 0]], label[pairs[:, 1]])
@@ -25,8 +36,7 @@ def mechanisms(system: System) -> list[np.ndarray]:
         if np.array_equal(lower, label):
             break
         label = lower
-    bodies = label[: len(system.bodies)]
-    return [np.flatnonzero(bodies == first) for first in np.flatnonzero(bodies == np.arange(len(bodies)))]
+    return np.where(label < len(system.bodies), label, 0)
 
 
 def counters_of(system: System) -> dict[tuple[str, int], int]:
@@ -39,14 +49,24 @@ def counters_of(system: System) -> dict[tuple[str, int], int]:
     }
 
 
+def behind_bodies(system: System) -> dict[tuple[str, int], int]:
+    """The same with the coordinates that are states, by name."""
+    return counters_of(system) | {(name, A_STATE): system.first_state + k for k, name in enumerate(system.states)}
+
+
+def _parts(system: System, group: Group) -> np.ndarray:
+    """The bodies, the ground and the states that each element acts on or reads, numbered in this order, shape (count, parts)."""
+    return np.hstack([group.bodies, group.states - system.first_state + len(system.bodies) + 1])
+
+
 def _pairs(system: System, group: Group) -> np.ndarray:
-    """Each element's first body with each of its others, the ground left out, shape (pairs, 2)."""
-    if group.kind.n_bodies < 2:
+    """Each element's first body, or state, with each of its others, the ground left out, shape (pairs, 2)."""
+    parts, ground = _parts(system, group), len(system.bodies)
+    if parts.shape[1] < 2:
         return np.empty((0, 2), dtype=np.int64)
-    bodies = group.bodies
-    first = np.repeat(bodies.min(axis=1), group.kind.n_bodies)
-    pairs = np.column_stack([first, bodies.ravel()])
-    return pairs[pairs[:, 1] < len(system.bodies)]  # the ground has the greatest number
+    least = np.where(parts == ground, NOTHING, parts).min(axis=1)
+    pairs = np.column_stack([np.repeat(least, parts.shape[1]), parts.ravel()])
+    return pairs[pairs[:, 1] != ground]
 
 
 def part_of(system: System, bodies: np.ndarray) -> System:
@@ -57,9 +77,12 @@ def part_of(system: System, bodies: np.ndarray) -> System:
     bodies : ndarray of int
         Its bodies, none connected with any other.
     """
+    own_states = np.flatnonzero(np.isin(_first_bodies(system)[len(system.bodies) + 1 :], bodies))
     place = np.full(len(system.bodies) + 1, -1)
     place[bodies], place[-1] = np.arange(len(bodies)), len(bodies)
-    chosen = [(group, _inside(group, place)) for group in system.groups]
+    present = np.zeros(len(system.bodies) + 1 + len(system.states), dtype=bool)
+    present[bodies] = present[len(system.bodies) + 1 + own_states] = True
+    chosen = [(group, present[_parts(system, group)].any(axis=1)) for group in system.groups]
     rows = np.concatenate(
         [np.empty(0, dtype=np.int64), *(_rows(group, inside) for group, inside in chosen if inside.any())]
     )
@@ -67,23 +90,19 @@ def part_of(system: System, bodies: np.ndarray) -> System:
     new_row[rows] = np.arange(len(rows))
     of_body = system.of_body
     q, u = ((width * bodies[:, None] + np.arange(width)).ravel() for width in (of_body.n_q, of_body.n_u))
-    counters = np.concatenate([np.empty(0, dtype=np.int64), *(g.counters[inside].ravel() for g, inside in chosen)])
-    new_counter = np.full(system.n_q, -1)
-    new_counter[counters] = len(q) + np.arange(len(counters))
+    counters = [group.counters[inside].ravel() for group, inside in chosen]
+    behind = np.concatenate([np.empty(0, dtype=np.int64), *counters, system.first_state + own_states])
+    new_behind = np.full(system.n_q, -1)
+    new_behind[behind] = len(q) + np.arange(len(behind))
     return replace(
         system,
         bodies=tuple(system.bodies[k] for k in bodies),
-        q=system.q[np.append(q, counters)], u=system.u[u], open_rates=system.open_rates[u], mass=system.mass[u], principal_axes=system.principal_axes[bodies],
-        groups=tuple(_part(group, inside, place, new_row, new_counter) for group, inside in chosen if inside.any()),
+        states=tuple(system.states[k] for k in own_states), state_scales=system.state_scales[own_states],
+        q=system.q[np.append(q, behind)], u=system.u[u], open_rates=system.open_rates[u], mass=system.mass[u], principal_axes=system.principal_axes[bodies],
+        groups=tuple(_part(group, inside, place, new_row, new_behind) for group, inside in chosen if inside.any()),
         equations=tuple(system.equations[row] for row in rows),
         holonomic=system.holonomic[rows], active=system.active[rows],
     )  # fmt: skip
-
-
-def _inside(group: Group, place: np.ndarray) -> np.ndarray:
-    """Which elements act on the bodies that have a place: the ground alone is none of them."""
-    on = place[group.bodies]
-    return ((on >= 0) & (on < place[-1])).any(axis=1)
 
 
 def _rows(group: Group, inside: np.ndarray) -> np.ndarray:
@@ -92,14 +111,14 @@ def _rows(group: Group, inside: np.ndarray) -> np.ndarray:
     return (group.first_row + count * np.flatnonzero(inside)[:, None] + np.arange(count)).ravel()
 
 
-def _part(group: Group, inside: np.ndarray, place: np.ndarray, new_row: np.ndarray, new_counter: np.ndarray) -> Group:
+def _part(group: Group, inside: np.ndarray, place: np.ndarray, new_row: np.ndarray, new_behind: np.ndarray) -> Group:
     index, end = group.index[inside].copy(), 2 * group.kind.n_bodies
     numbers = place[group.bodies[inside]]
-    joints, ground = end + 1 + group.kind.n_joints, group.of_body.n_q * place[-1] + np.sum(new_counter >= 0)
+    joints, ground = end + 1 + group.kind.n_joints, group.of_body.n_q * place[-1] + np.sum(new_behind >= 0)
     index[:, 0:end:2] = np.where(numbers == place[-1], ground, group.of_body.n_q * numbers)
     index[:, 1:end:2] = group.of_body.n_u * numbers
     index[:, end + 1 : joints] = new_row[index[:, end + 1 : joints]]
-    index[:, joints:] = new_counter[index[:, joints:]]
+    index[:, joints:] = new_behind[index[:, joints:]]
     rows = _rows(group, inside)
     return replace(
         group,

@@ -11,6 +11,7 @@ from ..presolve.subsystems import counters_of
 from ..solve.dynamics import OutputRows
 from .body_axes import in_own_axes
 from .energy import kinetic_energy, potential_energy
+from .states import state_channels
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
@@ -23,6 +24,7 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
         for state, names in zip(states, labels, strict=True):
             for offset, name in enumerate(names):
                 channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
+    channels |= state_channels(system, rows.q, rows.values)
     channels |= reactions(system, rows.values)
     kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
     channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential

@@ -8,7 +8,7 @@ from ..jobs.equilibrium import EquilibriumFound
 
 
 def equilibrium_text(found: EquilibriumFound, model: ModelData) -> str:
-    """Poses of bodies, then the force and torque of each element on its first body."""
+    """Poses of bodies, then the force and torque of each element on its first body, and states."""
     kind = BODY_KINDS[model.dimensions]
     head = f"{found.name or 'model'}: equilibrium at t = {found.t:g} s after {found.moves} moves, imbalance {found.imbalance:.1e}"
     tables = (
@@ -23,4 +23,8 @@ def equilibrium_text(found: EquilibriumFound, model: ModelData) -> str:
             values = [found.channels.get(f"{name}.{label}") for label in labels]
             if None not in values:
                 lines.append(f"  {name:<{width}}  " + "  ".join(f"{value:>14.8g}" for value in values))
+    states = {**model.state_values(), **model.state_outputs()}
+    if states:
+        width = max(map(len, states))
+        lines += ["states:", *(f"  {name:<{width}}  {found.channels[name]:>14.8g}" for name in states)]
     return "\n".join([*lines, *(f"note: {note}" for note in found.notes)])

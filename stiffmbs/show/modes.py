@@ -33,13 +33,15 @@ def _damping(mode: Mode) -> str:
 
 
 def _values(mode: Mode) -> str:
-    one, other = mode.eigenvalues
+    one, *others = mode.eigenvalues
     if mode.motion is Motion.OSCILLATING:
         return f"{one.real:.6g} +- {abs(one.imag):.6g}i"
-    return f"{one.real:.6g}, {other.real:.6g}"
+    return ", ".join(f"{value.real:.6g}" for value in (one, *others))
 
 
 def _bodies(mode: Mode) -> Iterator[str]:
+    if not mode.participation:
+        yield "states alone"
     shares = [(name, share) for name, share in mode.participation.items() if share >= LEAST_SHARE]
     for name, share in shares[:MOST_BODIES]:
         yield f"{name} {np.round(100 * share):.0f} %"

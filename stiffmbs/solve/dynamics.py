@@ -88,8 +88,9 @@ class Dynamics:
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
         self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
         self._kept: dict[str, tuple[object, object]] = {}
-        counting = system.term("acceleration", "angle_rate")
-        self._counting = counting.source.astype(np.int64), counting.row.astype(np.int64)
+        behind = [system.term("acceleration", name) for name in ("angle_rate", "rate")]
+        source, row = (np.concatenate([getattr(term, part) for term in behind]) for part in ("source", "row"))
+        self._behind = source.astype(np.int64), row.astype(np.int64)
         self._features = np.inf, -np.inf, InputFeatures()
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
@@ -102,9 +103,10 @@ class Dynamics:
                 "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
-                "n_angle_rates": len(counting.row),
-                "angle_rate_source": self._counting[0],
-                "angle_rate_row": self._counting[1],
+                "n_behind": len(row),
+                "behind_source": self._behind[0],
+                "behind_row": self._behind[1],
+                "by_reactions": len(system.term("tangent", "rate_lam").row) > 0,
             },
         )
         self._cells = cells(self.table, DYNAMICS)
@@ -173,9 +175,9 @@ class Dynamics:
         return ACCELERATE.load()(t, acceleration.ctypes.data, self._at), acceleration
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """q' at a state at which accelerations were just computed, so that the rates of the counters of turns are known."""
+        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known."""
         rates = self.system.of_body.position_rates(q, u)
-        source, row = self._counting
+        source, row = self._behind
         if len(row):
             rates[row] = self.state.values["acceleration"][source]
         return rates

@@ -7,7 +7,8 @@ Anal. 35, 1998), which lead to stable equilibria alone: from the pose q_n each s
 
 by Newton's method on (s M - f_q + d(J^T lam)/dq) d = what is left.  s falls where Newton's moves become smaller quickly, as
 where forces change along the step as their derivatives predict, and rises where they do not, as where a wheel meets the
-road.  With s = 0 this is Newton's method for the equilibrium itself.
+road.  With s = 0 this is Newton's method for the equilibrium itself.  States x of the user's own are unknowns too: a step
+seeks sqrt(s) (x - x_n) = x'(q, x), as the implicit Euler step of its length.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from scipy.sparse.linalg import splu
 
 from ..errors import SolverError
 from .dynamics import Dynamics
-from .force_balance import Balance, balance_at
+from .force_balance import Balance, balance_at, moved, way
 from .steady_motion import SteadyMotion, at_rest
 
 MOST_MOVES = 2000
@@ -106,19 +107,22 @@ class _Step:
 def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, known: Balance) -> _Step:
     """An implicit step from the present pose; the pose is wherever it led."""
     system, state = dynamics.system, dynamics.state
-    limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
+    of_states = np.maximum(system.state_scales, np.abs(state.q[system.first_state :]))
+    limits = np.append(system.per_velocity(TRANSLATION * system.size, ROTATION), of_states)
     start, first = state.q.copy(), 0.0
     for count in range(1, MOST_CORRECTIONS + 1):
-        whole = system.move(start, state.q)
-        move = newton_move(dynamics, shift**2, known, whole)
-        if count == 1 and not known.left @ np.nan_to_num(move) >= 0:  # towards an unstable equilibrium
+        whole = way(system, start, state.q)
+        move = newton_move(dynamics, shift, known, whole)
+        if (
+            count == 1 and not system.states and not known.left @ np.nan_to_num(move) >= 0
+        ):  # towards an unstable equilibrium
             break
         longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
         if longest_of_all > 1.0:
             return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
         if count > 1 and longest > TOO_FAR * longest_of_all:
             break
-        state.q[:] = system.of_body.moved(state.q, move)
+        state.q[:] = moved(system, state.q, move)
         if dynamics.assemble(t) < 0:
             break
         known, first = balance_at(dynamics, t, motion), first or longest
@@ -132,14 +136,15 @@ def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, know
 
 
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
-    """Newton's move in a step that has come so far as a whole."""
-    mass, jacobian = dynamics.system.mass, known.jacobian
-    matrix = block_array([[diags_array(shift * mass) + known.stiffness, jacobian.T], [jacobian, None]], format="csc")
-    right = np.concatenate([known.left - shift * mass * whole, np.zeros(jacobian.shape[0])])
+    """Newton's move in a step that has come so far as a whole; `shift` is the root of s."""
+    system, jacobian = dynamics.system, known.jacobian
+    inertia = np.append(shift**2 * system.mass, np.full(len(system.states), shift))
+    matrix = block_array([[diags_array(inertia) + known.stiffness, known.reactions], [jacobian, None]], format="csc")
+    right = np.concatenate([known.left - inertia * whole, np.zeros(jacobian.shape[0])])
     try:
-        found: np.ndarray = splu(matrix).solve(right)[: len(mass)]
+        found: np.ndarray = splu(matrix).solve(right)[: len(inertia)]
     except RuntimeError:  # exactly singular: a larger shift ends it
-        return np.full(len(mass), np.inf)
+        return np.full(len(inertia), np.inf)
     return found
 
 
@@ -148,10 +153,10 @@ def _polished(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance
     system, state = dynamics.system, dynamics.state
     for count in range(MOST_CORRECTIONS):
         before = state.q.copy()
-        move = newton_move(dynamics, SLOWEST**2, known, np.zeros(system.n_u))
+        move = newton_move(dynamics, SLOWEST, known, np.zeros(len(known.left)))
         if not np.all(np.isfinite(move)):
             return known, count
-        state.q[:] = system.of_body.moved(before, move)
+        state.q[:] = moved(system, before, move)
         found = balance_at(dynamics, t, motion) if dynamics.assemble(t) >= 0 else None
         if found is None or not np.max(np.abs(found.left)) < SLOW * np.max(np.abs(known.left)):
             state.q[:] = before
@@ -170,9 +175,16 @@ def as_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Ba
 def unbalanced(dynamics: Dynamics, known: Balance) -> str:
     """Why no equilibrium was found, with the body that has the largest imbalance."""
     system = dynamics.system
-    worst = int(np.argmax(np.abs(known.left)))
+    forces, rates = np.split(known.left, [system.n_u])
+    if system.states and np.all(np.abs(forces) <= known.allowed[: system.n_u]):
+        worst = int(np.argmax(np.abs(rates) / np.maximum(known.allowed[system.n_u :], np.finfo(float).tiny)))
+        return (
+            f"no equilibrium was found: the state {system.states[worst]} goes on changing ({rates[worst]:.3g} per second), "
+            "expected rates of states that can vanish"
+        )
+    worst = int(np.argmax(np.abs(forces)))
     name = system.name_of(worst, system.of_body.reactions)
     return (
-        f"no equilibrium was found: the largest imbalance is left in {name} ({known.left[worst]:.3g} of "
+        f"no equilibrium was found: the largest imbalance is left in {name} ({forces[worst]:.3g} of "
         f"{known.largest:.3g}), expected forces that hold every free motion"
     )

@@ -25,4 +25,15 @@ def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> 
     addresses = (dynamics.system.mass, work, eliminated.table, dynamics.table)
     rate = FASTEST_RATE.load()(t, eliminated.serves, *(array.ctypes.data for array in addresses))
     dynamics.forget_pivots()
-    return float(rate)
+    return max(float(rate), _of_states(dynamics, t, q, u))
+
+
+def _of_states(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:
+    """The largest |lambda| of the states by themselves, 1/s."""
+    system, state = dynamics.system, dynamics.state
+    if not system.states:
+        return 0.0
+    state.q[:], state.u[:] = q, u
+    state.evaluate("tangent", t)
+    own = state.matrix("tangent", "rate_q")[system.first_state :, system.first_state :]
+    return float(np.abs(np.linalg.eigvals(own)).max()) if np.all(np.isfinite(own)) else 0.0

@@ -8,6 +8,8 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 
+from ..compile.system import System
+from ..compile.terms import TERM_AXES
 from ..errors import SolverError
 from .dynamics import Dynamics
 from .failures import FAILURES
@@ -25,35 +27,39 @@ class Balance:
 
     Attributes
     ----------
-    left : ndarray, shape (n_u,)
-        What multipliers leave of the forces and of the bodies' inertia.
+    left : ndarray, shape (n_u + states,)
+        What multipliers leave of the forces and of the bodies' inertia, and the rates of the user's own states.
     lam : ndarray
     largest : float
         The largest force.
-    rounding : ndarray, shape (n_u,)
-        What rounding of the coordinates makes of forces.
-    stiffness : sparse array, shape (n_u, n_u)
-        How what is left falls with moves of the pose.
-    jacobian : sparse array
-        J of the equations that are not redundant.
+    allowed : ndarray, shape (n_u + states,)
+        What may be left.
+    stiffness : sparse array
+        How what is left falls with moves of the pose, and changes of states.
+    jacobian, reactions : sparse arrays
+        J of the equations that are not redundant, and how what is left falls with multipliers.
+    n_states : int
     """
 
     left: np.ndarray
     lam: np.ndarray
     largest: float
-    rounding: np.ndarray
+    allowed: np.ndarray
     stiffness: csc_array
     jacobian: csc_array
+    reactions: csc_array
+    n_states: int = 0
 
     @property
     def imbalance(self) -> float:
-        """Relative to the largest force."""
-        return float(np.max(np.abs(self.left), initial=0.0) / (self.largest or 1.0))
+        """Of forces, relative to the largest."""
+        forces = self.left[: len(self.left) - self.n_states]
+        return float(np.max(np.abs(forces), initial=0.0) / (self.largest or 1.0))
 
     @property
     def balanced(self) -> bool:
         """Whether no more is left than rounding and a little of the largest force."""
-        return bool(np.all(np.abs(self.left) <= np.maximum(BALANCED * self.largest, self.rounding)))
+        return bool(np.all(np.abs(self.left) <= self.allowed))
 
 
 def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
@@ -70,6 +76,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
+    rates = dynamics.position_rates(state.q, state.u)[system.first_state :]
     lam = state.lam[: system.n_c].copy()
     steady = motion.acceleration(dynamics)
     state.evaluate("motion", t)
@@ -81,7 +88,10 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
     rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
     left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
-    return Balance(left, lam, float(largest), rounding, stiffness, jacobian)
+    found = Balance(
+        left, lam, float(largest), np.maximum(BALANCED * largest, rounding), stiffness, jacobian, jacobian.T
+    )
+    return with_states(dynamics, found, rates, motion, t) if system.states else found
 
 
 def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian: csc_array) -> np.ndarray:
@@ -94,13 +104,54 @@ def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian
     return found[: len(mass)]
 
 
+def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: SteadyMotion, t: float) -> Balance:
+    """A balance with rows and columns of the user's own states; terms are those of its derivatives."""
+    system, q = dynamics.system, dynamics.state.q
+    own, active = slice(system.first_state, None), np.flatnonzero(system.active)
+    by_velocity = _position_rates(dynamics)
+    of_rates = sparse_term(dynamics, "rate_q")[own]
+    by_pose = -of_rates @ by_velocity
+    if not motion.is_rest:
+        velocity, _ = motion.derivatives(dynamics, t, by_velocity)
+        by_pose = by_pose - sparse_term(dynamics, "rate_u")[own] @ velocity
+    stiffness = [[known.stiffness, -sparse_term(dynamics, "f_q")[:, own]], [by_pose, -of_rates[:, own]]]
+    no_state = csc_array((len(active), len(system.states)))
+    reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
+    sizes = system.per_coordinate(system.size, 1.0)
+    sizes[own] = system.state_scales
+    allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)))
+    return Balance(
+        np.append(known.left, rates), known.lam, known.largest, np.append(known.allowed, allowed),
+        block_array(stiffness, format="csc"), block_array([[known.jacobian, no_state]], format="csc"),
+        block_array(reactions, format="csc"), len(system.states),
+    )  # fmt: skip
+
+
+def _position_rates(dynamics: Dynamics) -> csc_array:
+    """Z of q' = Z u, of all coordinates."""
+    system = dynamics.system
+    q, u = system.of_body.straight(len(system.bodies))
+    return sparse_term(dynamics, "Z") + csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
+
+
+def way(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """What leads from a pose and states to others."""
+    return np.append(system.move(start, there), (there - start)[system.first_state :])
+
+
+def moved(system: System, q: np.ndarray, move: np.ndarray) -> np.ndarray:
+    """The pose and states after a move."""
+    there = system.of_body.moved(q, move[: system.n_u])
+    there[system.first_state :] += move[system.n_u :]
+    return there
+
+
 def _derivatives(dynamics: Dynamics, t: float, motion: SteadyMotion, lam: np.ndarray) -> tuple[csc_array, csc_array]:
     """-f_q + d(J^T lam)/dq, with what velocities and inertia add, and J of the equations that are not redundant."""
     system, state = dynamics.system, dynamics.state
     state.lam[: system.n_c] = lam
     state.evaluate("tangent", t)
-    q, u = system.of_body.straight(len(system.bodies))
-    rates = sparse_term(dynamics, "Z") + csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
+    rates = _position_rates(dynamics)
     stiffness = (sparse_term(dynamics, "G_lam") - sparse_term(dynamics, "f_q")) @ rates
     if not motion.is_rest:
         velocity, acceleration = motion.derivatives(dynamics, t, rates)
@@ -112,6 +163,6 @@ def sparse_term(dynamics: Dynamics, name: str) -> csc_array:
     """A matrix term of the set ``tangent`` from its last evaluation."""
     system = dynamics.system
     term = system.term("tangent", name)
-    shapes = {"Z": (system.n_q, system.n_u), "J": (system.n_c, system.n_u), "f_u": (system.n_u, system.n_u)}
-    shape = shapes.get(name, (system.n_u, system.n_q))
+    axes = TERM_AXES[name]
+    shape = system.extent(axes[0]), system.extent(axes[1])
     return csc_array((dynamics.state.values["tangent"][term.source], (term.row, term.column)), shape=shape)

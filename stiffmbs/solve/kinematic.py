@@ -13,6 +13,7 @@ from .events.limits import refuse_beyond_limits
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .failures import FAILURES
 from .initial import InitialValues
+from .kinematic_states import Instant, states_after
 from .native.statuses import NO_BALANCE, NO_MEMORY, NOT_FINITE
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
@@ -98,7 +99,7 @@ class _Motion:
         state.q[:], state.u[:] = start.q, start.u
         self._polish(t)
         self.q, self.u = state.q.copy(), state.u.copy()
-        self._counters = slice(dynamics.system.n_q - dynamics.system.n_counters, dynamics.system.n_q)
+        self._counters = slice(dynamics.system.n_pose, dynamics.system.first_state)
         self._turning = self._rates_of_counters(t)
 
     def go_to(self, end: float) -> None:
@@ -156,6 +157,8 @@ class _Motion:
         state = self._dynamics.state
         self._polish(t)
         turning = self._rates_of_counters(t)
+        before = Instant(self.t, self.q, self.u, self.a, self._turning)
+        state.q[self._dynamics.system.first_state :] = states_after(self._dynamics, before, t)
         state.q[self._counters] = self.q[self._counters] + (t - self.t) / 2 * (self._turning + turning)
         state.count_anew(t)
         self._status, acceleration = self._dynamics.accelerate(t)

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.system import System
 from ..errors import SolverError
 from .dynamics import Dynamics
 from .equilibrium import ROTATION, SLOWEST, TRANSLATION, Equilibrium, as_equilibrium, newton_move, unbalanced
-from .force_balance import Balance, balance_at
+from .force_balance import Balance, balance_at, moved
 from .steady_motion import SteadyMotion
 
 MOST_MOVES, MOST_HALVINGS = 100, 12
@@ -24,8 +25,8 @@ def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> E
     for count in range(MOST_MOVES):
         if known.balanced:
             return as_equilibrium(dynamics, t, motion, known, count)
-        move = newton_move(dynamics, SLOWEST**2, known, np.zeros(system.n_u))
-        part = 1.0 / max(1.0, float(np.max(np.abs(move) / limits)))
+        move = newton_move(dynamics, SLOWEST, known, np.zeros(len(known.left)))
+        part = 1.0 / max(1.0, float(np.max(np.abs(move[: system.n_u]) / limits)))
         found = _along(dynamics, t, motion, known, part * move) if np.isfinite(part) else None
         if found is None:
             break
@@ -37,9 +38,20 @@ def _along(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance, m
     """What is known after the longest part of a move that leaves less; None where none does."""
     system, state, before = dynamics.system, dynamics.state, dynamics.state.q.copy()
     for halving in range(MOST_HALVINGS):
-        state.q[:] = system.of_body.moved(before, 0.5**halving * move)
+        state.q[:] = moved(system, before, 0.5**halving * move)
         if dynamics.assemble(t) >= 0:
             found = balance_at(dynamics, t, motion)
-            if np.sum(found.left**2 / system.mass) < np.sum(known.left**2 / system.mass):
+            if _left(system, known, found) < _left(system, known, known):
                 return found
     return None
+
+
+def _left(system: System, before: Balance, found: Balance) -> float:
+    """What is left of the forces, in the metric of the masses, and of the rates of states, beside what there was."""
+    forces, rates = np.split(found.left, [system.n_u])
+    total = float(np.sum(forces**2 / system.mass))
+    if not system.states:
+        return total
+    of_forces, of_rates = np.split(before.left, [system.n_u])
+    scales = float(np.sum(of_forces**2 / system.mass)) or 1.0, float(np.sum(of_rates**2)) or 1.0
+    return total / scales[0] + float(np.sum(rates**2)) / scales[1]

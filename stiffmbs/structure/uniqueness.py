@@ -67,7 +67,9 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
     """Whether applied forces (friction) depend on reactions that are not unique: then the motion is not unique either."""
     equations = found.equations
     state = equations.state
-    if not len(state.system.term("acceleration", "f_lam").source):
+    if not (
+        len(state.system.term("acceleration", "f_lam").source) or len(state.system.term("tangent", "rate_lam").source)
+    ):
         return False
     for pose, space in null_spaces:
         _place(equations, pose)
@@ -114,4 +116,4 @@ def _force(equations: LoopEquations, lam: np.ndarray, t: float) -> np.ndarray:
     state.lam[equations.loop.rows] = lam
     state.evaluate("acceleration", t)
     state.lam[:] = 0.0
-    return state.vector("acceleration", "f")
+    return np.concatenate([state.vector("acceleration", name) for name in ("f", "rate")])

@@ -15,5 +15,5 @@ def poses_of(job: Job, solution: Solution) -> PosesOnTheWay:
     system = job.dynamics.system
     names = [f"{body}.{name}" for body in system.bodies for name in system.of_body.positions]
     q = from_own_axes(system, np.column_stack([solution[name] for name in names]))
-    counters = np.zeros((len(q), system.n_counters))  # of no account where only J is asked for
-    return PosesOnTheWay(system, solution.time, np.column_stack([q, counters]))
+    behind = np.zeros((len(q), system.n_q - system.n_pose))  # of no account where only J is asked for
+    return PosesOnTheWay(system, solution.time, np.column_stack([q, behind]))

@@ -185,7 +185,6 @@ REFUSED = [
     (Bushing, {"stiffness": [[1, 2, 0], [3, 1, 0], [0, 0, 1]]}, "found 2 in row 1, column 2 and 3 across .* symmetric"),
     (Bushing, {"axes": "i"}, "axes: found 'i', expected 'j' or 'ground'"),
     (Bushing, {"preload": (1, "2 m", 0)}, "preload.1: found '2 m', .* expected a force in N"),
-    (AppliedForce, {"force": ("1", "3*nothing")}, "force.1: found the unknown name 'nothing'"),
     (AppliedTorque, {"torque": "spin(b)"}, r"torque: found the unknown function 'spin'"),
 ]
 

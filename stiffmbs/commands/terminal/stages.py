@@ -7,14 +7,14 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRe
 
 
 def bar() -> Progress:
-    """A line that goes away in the end; a task in it has a field ``reached``."""
+    """A line that goes away in the end; a task in it has the fields ``reached`` and ``after``, what follows the time left."""
     return Progress(
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
         TextColumn("{task.fields[reached]}", markup=False),
         TimeRemainingColumn(compact=True),
-        TextColumn("left", markup=False),
+        TextColumn("{task.fields[after]}", markup=False),
         console=Console(stderr=True, markup=False, emoji=False),
         transient=True,
         refresh_per_second=5,

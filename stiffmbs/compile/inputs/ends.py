@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...describe.element import Element
-from ...describe.formula.field import TIME, Formula, is_measure, reading_order
+from ...describe.formula.field import TIME, Formula, is_named, reading_order
 from ...describe.formula.functions import EVERYWHERE, IN_FORMULAS
 from ...describe.formula.text import UNIT, evaluate
 from ..system import System
@@ -99,18 +99,18 @@ def _parts_of_time(node: ast.expr, formula: Formula) -> Iterator[ast.expr]:
     """The largest parts that depend on time alone; not the arguments of tables, which go on in straight lines."""
     if _is_of_time(node, formula):
         yield node
-    elif not (isinstance(node, ast.Call) and (is_measure(node) or _is_table(node, formula))):
+    elif not (isinstance(node, ast.Call) and (is_named(node) or _is_table(node, formula))):
         for child in ast.iter_child_nodes(node):
             if isinstance(child, ast.expr):
                 yield from _parts_of_time(child, formula)
 
 
 def _is_of_time(node: ast.expr, formula: Formula) -> bool:
-    """Whether a part holds neither coordinates nor measures, tables or variables of its field."""
+    """Whether a part holds neither coordinates nor states, measures, reactions, tables or variables of its field."""
     for part in ast.walk(node):
         of_state = isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values
-        of_field = isinstance(part, ast.Name) and part.id in (*formula.variables, *formula.tables)
-        if of_state or of_field or is_measure(part):
+        of_field = isinstance(part, ast.Name) and part.id in (*formula.variables, *formula.tables, *formula.states)
+        if of_state or of_field or is_named(part):
             return False
     return True
 

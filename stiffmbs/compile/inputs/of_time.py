@@ -11,7 +11,7 @@ from typing import Any, get_args
 import numpy as np
 
 from ...describe.element import Element
-from ...describe.formula.field import TIME, Formula, FormulaOf, is_measure, reading_order
+from ...describe.formula.field import TIME, Formula, FormulaOf, is_named, reading_order
 from ...describe.formula.functions import IN_FORMULAS
 from ...describe.formula.text import BINARY, UNARY, UNIT
 from ...describe.table import Table
@@ -201,7 +201,7 @@ def _marks(metadata: list[object], annotation: object) -> Iterator[object]:
 
 def _of_time_alone(node: ast.expr, formula: Formula) -> Iterator[ast.expr]:
     """The largest parts of a formula that use time and nothing of the state."""
-    if is_measure(node):
+    if is_named(node):
         return
     if _uses(node, formula, time=True) and not _uses(node, formula, time=False):
         yield node
@@ -216,11 +216,11 @@ def _uses(tree: ast.expr, formula: Formula, time: bool) -> bool:
     """Whether a part of a formula uses time, or else anything of the state or of the field's variables."""
     for node in reading_order(tree):
         match node:
-            case ast.Name(name) if name == TIME if time else name in formula.variables:
+            case ast.Name(name) if name == TIME if time else name in (*formula.variables, *formula.states):
                 return True
             case ast.Attribute(ast.Name(owner)) if owner != UNIT and not time:
                 return True
-        if not time and is_measure(node):
+        if not time and is_named(node):
             return True
     return False
 

@@ -26,11 +26,11 @@ POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_IN
 only on the way (`stiffmbs.compile.machine.native.memory`)."""
 
 STATE: Layout = {
-    "n_q": INT, "n_u": INT, "n_c": INT, "spatial": INT,
+    "n_q": INT, "n_pose": INT, "n_u": INT, "n_c": INT, "spatial": INT,
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS, "n_turned": INTS, "turned": INTS,
     "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS, "left_open": FLOATS,
 }  # fmt: skip
-"""A system's state and kernels: whether its bodies are spatial; q, u and accelerations a with the ground's at their end;
+"""A system's state and kernels: the number of coordinates, and of those of bodies, which come first; whether its bodies are spatial; q, u and accelerations a with the ground's at their end;
 what kernels share of each body's orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first
 coordinate) for which that is read, the number of its kernel calls, the address of their arguments (rows of `CALL`) and
 the address of its values; the first row of each joint; what each equation may be off by."""
@@ -90,10 +90,11 @@ hand are those with pivots, how many more are, how many factorisations the last 
 DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
-    "n_angle_rates": INT, "angle_rate_source": INTS, "angle_rate_row": INTS,
+    "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
 }  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
-`angle_rate` tells where the rates of continuous angles stand among the terms of accelerations."""
+`behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
+depends on multipliers."""
 
 
 IDA: Layout = {

@@ -16,6 +16,7 @@ import sympy as sp
 
 from ...describe.element import Force, Joint
 from ...describe.requests.angle_counter import AngleCounter
+from ...describe.states.equation import Reported, StateEquation
 from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import angle_rate
@@ -101,6 +102,8 @@ def derive(kind: Kind) -> Derived:
         derived = _derived_joint(kind, symbols)
     elif issubclass(kind.element, AngleCounter):
         derived = Derived(0, 0, symbols, {}, [])
+    elif issubclass(kind.element, StateEquation | Reported):
+        derived = _derived_state(kind, symbols)
     else:
         assert issubclass(kind.element, Force)
         derived = _derived_force(kind, symbols)
@@ -123,6 +126,11 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
                 f"{kind.element.__name__}: found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
                 "in velocities"
             )
+    pressed = [symbol for joint in symbols.joint_lam for symbol in joint]
+    if any(e.depends(entry, pressed) for entry in V):
+        raise InputError(
+            f"{kind.element.__name__}: found a reaction in its equations, expected formulas without reactions"
+        )
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
     force = e.work_by_velocities(zip(lam, V, strict=True))
     turning = e.rate(V)
@@ -170,6 +178,22 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()}, losses)
 
 
+def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
+    """The rate of a state, in the row of that state, and what is reported of it."""
+    e, (formula,) = symbols.element, (symbols.element.formula,)
+    value = sp.Matrix([formula])
+    joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
+    terms = {"signal": value, "event_function": sp.Matrix(symbols.event_functions), "argument": _arguments(symbols)}
+    entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries["signal"] = [Entry(sp.sympify(formula), 0)]
+    if issubclass(kind.element, StateEquation):
+        row = e.n_coordinates - len(e.states) + e.states.index(e.state)
+        rates = {"rate": value, "rate_q": e.by_coordinates(value), "rate_u": e.by_velocities(value)}
+        rates["rate_lam"] = e.by(value, joint_lam) if joint_lam else sp.zeros(0, 0)
+        entries |= {name: [replace(entry, row=row) for entry in _entries(matrix)] for name, matrix in rates.items()}
+    return Derived(0, 0, symbols, entries, [])
+
+
 def _arguments(symbols: Symbols) -> sp.Matrix:
     """What laws are called with; each depends on the state, so that none is left out as zero."""
     return sp.Matrix([law.argument for law in symbols.laws])
@@ -186,7 +210,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
 
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
-    first = e.q.rows
+    first = e.n_coordinates
     angles, rates = sp.Matrix(e.angles), sp.Matrix([angle_rate(angle, e) for angle in e.angles])
     terms = {
         "continuous_angle": angles,

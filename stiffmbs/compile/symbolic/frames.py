@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy as sp
 
+from ...errors import InputError
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
 from .read import read
@@ -22,6 +23,7 @@ OF_ELEMENTS = (
     "type",
     "frames",
     "angles",
+    "states",
     "breakpoints",
     "derivatives",
     "_rotations",
@@ -45,6 +47,8 @@ class SymbolicElement:
         Time.
     frames : list of BodyFrame or of SpatialBodyFrame
         The bodies, in the order of `Element.bodies`.
+    states : list of Symbol
+        States of the user's own, by slot.
     angles : list of expressions
         Those that count whole turns, in the order of their counters.
     breakpoints : list of expressions
@@ -55,8 +59,11 @@ class SymbolicElement:
 
     t = sp.Symbol("t", real=True)
 
-    def __init__(self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives) -> None:
+    def __init__(
+        self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives, states: list[sp.Symbol]
+    ) -> None:
         self.frames = frames
+        self.states = states
         self.angles: list[sp.Expr] = []
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
@@ -97,6 +104,8 @@ class SymbolicElement:
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
         x = self.read(x)
+        if self.depends(x, self.states):
+            raise InputError("found a state in an expression whose rate is needed, expected coordinates and time alone")
         partial = self.derivatives.partial
         moving = (
             rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
@@ -184,7 +193,13 @@ class SymbolicElement:
 
     @cached_property
     def _by_coordinate(self) -> list[list[Way]]:
-        return [way for frame in self.frames for way in frame.by_coordinate]
+        of_states: list[list[Way]] = [[(symbol, sp.Integer(1))] for symbol in self.states]
+        return [*(way for frame in self.frames for way in frame.by_coordinate), *of_states]
+
+    @property
+    def n_coordinates(self) -> int:
+        """Of the bodies and the states; counters of turns stand behind them."""
+        return len(self._by_coordinate)
 
     @cached_property
     def _by_velocity(self) -> list[list[Way]]:
@@ -201,6 +216,14 @@ class SymbolicElement:
             whole = sp.Add(*(effort * partial(x, symbol) for effort, x in row))
             changes.append(whole if much == 1 else self.named(whole) * much)
         return sp.Add(*changes)
+
+    def reaction(self, joint: ReferredJoint, on: Any) -> dict[str, sp.Expr]:
+        """What a joint does to one of its bodies, about the joint's point, by component: -J^T lam."""
+        force = -self.work_by_velocities(zip(joint.lam, joint.velocity_level, strict=True))
+        first = sum(len(frame.u) for frame in self.frames[: self.frames.index(on)])
+        wrench = on.wrench(force[first : first + len(on.u), :], sp.Matrix(joint.point))
+        names = ("fx", "fy", "tz") if len(wrench) == 3 else ("fx", "fy", "fz", "tx", "ty", "tz")
+        return dict(zip(names, wrench, strict=True))
 
     def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
         """The matrix of derivatives by any symbols."""
@@ -219,8 +242,9 @@ class SymbolicElement:
         return self.angles[-1]
 
     def in_state(self, expression: sp.Expr) -> bool:
-        """Whether an expression depends on coordinates or velocities."""
-        return self.depends(expression, [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities])
+        """Whether an expression depends on coordinates, velocities or states."""
+        of_bodies = (symbol for frame in self.frames for symbol in frame.pose)
+        return self.depends(expression, [*of_bodies, *self.velocities, *self.states])
 
     def depends(self, expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
         """Whether any of some symbols occurs in an expression, or in what its symbols stand for."""
@@ -262,11 +286,22 @@ class ReferredJoint(SymbolicElement):
     def __init__(
         self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
     ) -> None:
-        super().__init__(of.frames, fields, of.derivatives)
+        super().__init__(of.frames, fields, of.derivatives, of.states)
         self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
         count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
         self.angles, self.breakpoints = of.angles, of.breakpoints
+
+    @cached_property
+    def velocity_level(self) -> list[sp.Expr]:
+        """Its constraints on velocities, in the order of the multipliers."""
+        position = [self.rate(self.read(equation)) for equation in self._joint.position(self)]
+        return [*position, *map(self.read, self._joint.velocity(self))]
+
+    @property
+    def point(self) -> Any:
+        """About which its torque is reported."""
+        return self._joint.point(self)
 
     @property
     def coordinates(self) -> tuple[str, ...]:

@@ -133,7 +133,8 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
     shared, results = _shared([expression for *_, expression in outputs], e.meanings, turned)
     needed = {symbol for expression in [*results, *(part for _, part in shared)] for symbol in expression.free_symbols}
     printer = _Printer({"fully_qualified_modules": False, "precision": 17})
-    first_counter = 2 * len(e.frames) + 1 + len(derived.symbols.joint_lam)
+    first_state = 2 * len(e.frames) + 1 + len(derived.symbols.joint_lam)
+    first_counter = first_state + len(e.states)
     width = first_counter + len(e.angles)
 
     body = [f"own = index[{width}*e + {2 * len(e.frames)}]"]
@@ -161,6 +162,11 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
     for joint, lam in enumerate(derived.symbols.joint_lam):
         row = f"index[{width}*e + {2 * len(e.frames) + 1 + joint}]"
         body += [f"{symbol.name} = lam[{row} + {k}]" for k, symbol in enumerate(lam) if symbol in needed]
+    body += [
+        f"{symbol.name} = q[index[{width}*e + {first_state + k}]]"
+        for k, symbol in enumerate(e.states)
+        if symbol in needed
+    ]
     body += [
         f"{counter(k).name} = q[index[{width}*e + {first_counter + k}]]"
         for k in range(len(e.angles))

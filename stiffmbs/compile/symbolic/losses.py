@@ -75,7 +75,7 @@ def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:
     at_rest = [without(e, Q, velocities) for Q in efforts]
     lost = _numbers_in(symbols, efforts) - _numbers_in(symbols, at_rest)
     kept = [without(e, Q, lost) for Q in efforts]
-    changing = [e.t, *velocities, *(symbol for lam in symbols.joint_lam for symbol in lam)]
+    changing = [e.t, *velocities, *e.states, *(symbol for lam in symbols.joint_lam for symbol in lam)]
     if any(Q.has(*NO_VALUE) or e.depends(Q, changing) for Q in kept):
         return None
     return [k for k, number in enumerate(symbols.numbers) if number in lost]

@@ -13,7 +13,7 @@ import sympy as sp
 from ...describe.formula.field import TIME
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.text import evaluate
-from ..kind import OWN, Kind, Shape
+from ..kind import OWN, REACTION, STATE, Kind, Shape
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
@@ -77,7 +77,7 @@ class Symbols:
         of_bodies = (s for f in e.frames for s in (*f.q, *f.u, *f.a, *f.turn, *f.pose, *f.velocities))
         of_joints = (symbol for lam in self.joint_lam for symbol in lam)
         counters = map(counter, range(len(e.angles)))
-        return frozenset((e.t, *self.numbers, *of_bodies, *of_joints, *counters)) | e.derivatives.defined()
+        return frozenset((e.t, *self.numbers, *of_bodies, *e.states, *of_joints, *counters)) | e.derivatives.defined()
 
     def note_event_function(self, breakpoint: sp.Expr) -> None:
         """Note what changes its sign at a breakpoint, if that is in the state."""
@@ -111,7 +111,8 @@ def symbols_of(kind: Kind) -> Symbols:
         if kind.dimensions == 2
         else [spatial_frames.SpatialBodyFrame(slot, derivatives) for slot in slots]
     )
-    symbols = Symbols(SymbolicElement(frames, {}, derivatives))
+    states = [sp.Symbol(f"{STATE}{slot}", real=True) for slot in range(kind.n_states)]
+    symbols = Symbols(SymbolicElement(frames, {}, derivatives, states))
     builder = _Builder(kind.dimensions, symbols)
     symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
     return symbols
@@ -134,6 +135,8 @@ class _Builder:
                 return self.fresh(name)
             case ("choice", value):
                 return value
+            case ("state", slot):
+                return self.symbols.element.states[slot]
             case ("marker", slot):
                 return self.marker(name, slot)
             case ("several", shapes):
@@ -143,8 +146,8 @@ class _Builder:
                 return lambda x: self.spline(offset, x)
             case ("python",):
                 return python_law(self.fresh(name), self.symbols.element.read)
-            case ("formula", text, counts, measures):
-                return self.formula(name, text, counts, measures)
+            case ("formula", text, counts, measures, *reactions):
+                return self.formula(name, text, counts, measures, *reactions)
             case ("component", component, fields):
                 return SymbolicComponent(component, {part: self.made(part, shape) for part, shape in fields})
             case ("joint", element, fields, slot, coordinate):
@@ -168,7 +171,14 @@ class _Builder:
         self.symbols.joint_lam.append(joint.lam)
         return joint
 
-    def formula(self, name: str, text: str, counts: tuple[int, int, int], measures: tuple[Any, ...]) -> Any:
+    def formula(
+        self,
+        name: str,
+        text: str,
+        counts: tuple[int, int, int],
+        measures: tuple[Any, ...],
+        reactions: tuple[Any, ...] = (),
+    ) -> Any:
         """A formula's expression, or a function of its variables where it has such; of so many variables, numbers, tables."""
         n_variables, n_numbers, n_tables = counts
         numbers = [self.fresh(f"{name}_p") for _ in range(n_numbers)]
@@ -179,6 +189,8 @@ class _Builder:
 
         tables = {f"table{k}": partial(self.spline, self.fresh(f"{name}_t", integer=True)) for k in range(n_tables)}
 
+        pressed = self.reactions(name, reactions)
+
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
             def value(word: str) -> sp.Expr:
                 """The symbol or expression that a name stands for."""
@@ -187,6 +199,10 @@ class _Builder:
                     return self.frames[int(owner[1:])].coordinate(coordinate)
                 if word == TIME:
                     return SymbolicElement.t
+                if word.startswith(STATE):
+                    return self.symbols.element.states[int(word[len(STATE) :])]
+                if word.startswith(REACTION):
+                    return pressed[int(word[len(REACTION) :])]
                 if word.startswith("measure"):
                     return measured[int(word[7:])]
                 return (numbers if word[0] == "p" else variables)[int(word[1:])]
@@ -205,6 +221,16 @@ class _Builder:
             return expression
 
         return function if n_variables else function()
+
+    def reactions(self, name: str, wanted: tuple[tuple[str, Shape], ...]) -> list[sp.Expr]:
+        """Components of the reactions of joints."""
+        known: dict[Shape, dict[str, sp.Expr]] = {}
+        for k, shape in enumerate(dict.fromkeys(shape for _, shape in wanted)):
+            joint = self.made(f"{name}_j{k}", shape)
+            _, _, fields, *_ = shape
+            first = next(field[1] for _, field in fields if field[0] == "marker")
+            known[shape] = self.symbols.element.reaction(joint, self.frames[first])
+        return [known[shape][component] for component, shape in wanted]
 
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
         """The functions of formulas; those with breakpoints note where they are, if it is in the state."""

@@ -17,7 +17,7 @@ from ...errors import InputError
 from ..fields import NAME_PATTERN, sentence
 from ..formula.field import TIME
 from ..formula.functions import IN_FORMULAS, IN_NUMBERS
-from ..formula.names import MEASURES
+from ..formula.names import MEASURES, REACTIONS
 from ..formula.text import UNIT, FormulaError
 from ..parts.names import beginnings
 from ..table import Table
@@ -149,7 +149,7 @@ def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Tab
     for name, table in found.items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             raise InputError(f"tables: found the name {written(name)}, expected letters, digits and _")
-        if name in (*IN_FORMULAS, *MEASURES, *parameters):
+        if name in (*IN_FORMULAS, *MEASURES, *REACTIONS, *parameters):
             raise InputError(f"tables.{name}: found the name of a function or parameter, expected another")
         try:
             tables[name] = Table.model_validate(table, context={"parameters": parameters})

@@ -16,8 +16,10 @@ from ..units.units import CONSTANTS, UNITS, Quantity
 from .quoted import written
 
 
-def read_variables(found: Any, parameters: Mapping[str, Quantity], tables: Collection[str]) -> dict[str, ast.expr]:
-    """The trees of a scene's variables, by name.
+def read_variables(
+    found: Any, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None, inputs: Any = None
+) -> dict[str, ast.expr]:
+    """The trees of a scene's variables, by name; `states` and `inputs` are the scene's sections of these names.
 
     Raises
     ------
@@ -40,6 +42,7 @@ def read_variables(found: Any, parameters: Mapping[str, Quantity], tables: Colle
             raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
         formulas[name] = formula
     try:
-        return resolved(formulas, {*parameters, *CONSTANTS, TIME})
+        known = [name for section in (states, inputs) if isinstance(section, dict) for name in section]
+        return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})
     except FormulaError as error:
         raise InputError(f"variables.{error}") from None

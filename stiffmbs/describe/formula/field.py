@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
@@ -23,11 +23,14 @@ from .dimension import UNKNOWN, Known, measured_in
 from .full_names import text_in_full, with_full_names
 from .functions import IN_FORMULAS, check_functions
 from .measured import dimension_within
-from .names import MEASURES
+from .names import COORDINATES, MEASURES, REACTIONS
+from .state_names import with_states
 from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
 
 TIME = "t"
+TAKERS = (*MEASURES, *REACTIONS)
+"""What is called with names: of markers, of joints."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,8 @@ class Formula:
         The scene's parameters among `values`, with their dimensions.
     expanded : str
         The text with the scene's variables in their places; empty where the scene has none.
+    states : tuple of str
+        The states of the model that it uses, by their full names.
     """
 
     text: str
@@ -65,6 +70,7 @@ class Formula:
     dimension: Known = UNKNOWN
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
     expanded: str = ""
+    states: tuple[str, ...] = ()
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
@@ -83,6 +89,12 @@ class Formula:
     def _measures(self) -> list[tuple[str, tuple[MarkerReference, ...]]]:
         calls = [node for node in reading_order(self.tree) if is_measure(node)]
         return [(node.func.id, measured_markers(node)) for node in calls]  # type: ignore[attr-defined]
+
+    def reactions(self) -> Iterator[tuple[str, str]]:
+        """The components of reactions that it uses, with their joints, in reading order."""
+        for node in reading_order(self.tree):
+            if is_reaction(node):
+                yield node.func.id, joint_of(node)  # type: ignore[attr-defined]
 
     def bodies(self) -> Iterator[str]:
         """The bodies that it names, some more than once."""
@@ -109,13 +121,13 @@ class Formula:
 
 
 def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
-    """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers."""
+    """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
     yield tree
     match tree:
         case ast.Attribute():
             return
         case ast.Call(_, arguments):
-            children = [] if is_measure(tree) else arguments
+            children = [] if is_named(tree) else arguments
         case _:
             children = [child for child in ast.iter_child_nodes(tree) if isinstance(child, ast.expr)]
     for child in children:
@@ -125,6 +137,27 @@ def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
 def is_measure(node: ast.AST) -> bool:
     """Whether a node is a measure between markers such as ``dm(bar.end, ground)``."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MEASURES
+
+
+def is_reaction(node: ast.AST) -> bool:
+    """Whether a node is a component of a joint's reaction such as ``fy(guide)``."""
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in REACTIONS
+
+
+def is_named(node: ast.AST) -> bool:
+    """Whether a node is a measure or a reaction, whose arguments are names."""
+    return is_measure(node) or is_reaction(node)
+
+
+def joint_of(node: ast.AST) -> str:
+    """The joint of a reaction, by its full name."""
+    assert isinstance(node, ast.Call)
+    match node.args:
+        case [ast.Name(joint)]:
+            return joint
+        case [ast.Attribute(ast.Name(owner), name)]:
+            return f"{owner}.{name}"
+    raise FormulaError(f"found '{ast.unparse(node)}', expected the name of one joint")
 
 
 def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
@@ -171,6 +204,16 @@ def formula_text(found: Any, expected: str = "a formula") -> str:
     return found
 
 
+def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
+    """The names in a formula that are neither its own nor constants, units or time."""
+    for node in reading_order(parse(text)):
+        match node:
+            case ast.Name(name) if name != TIME and not any(name in known for known in (own, UNITS, CONSTANTS)):
+                yield name
+            case ast.Attribute(ast.Name(owner), name) if owner != UNIT and name not in COORDINATES:
+                yield f"{owner}.{name}"
+
+
 @dataclass(frozen=True)
 class FormulaOf:
     """Marks a field as a formula: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
@@ -206,8 +249,13 @@ class FormulaOf:
             return table
         context = info.context or {}
         parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
-        formula = self._made(found, parameters, tables, variables, names_of(info))
-        self._check(formula)
+        names = names_of(info)
+        if (
+            info.context is None and self.coordinates
+        ):  # built in Python, where the model that it will belong to is not known
+            names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
+        formula = self._made(found, parameters, tables, variables, names)
+        self._check(formula, names.inputs)
         return formula
 
     def _made(
@@ -219,26 +267,33 @@ class FormulaOf:
         names: Names,
     ) -> Formula:
         found = formula_text(found, "a formula or a table" if self.table else "a formula")
-        named = with_full_names(parse(found), names, MEASURES)
+        named = with_states(with_full_names(parse(found), names, TAKERS), names, self.variables, TAKERS)
         text = text_in_full(found, named, names)
         tree = with_variables(named, variables, self.variables)
-        check_functions(
-            tree, IN_FORMULAS, tables=tuple(tables), measures=MEASURES, listed=MEASURES if self.coordinates else ()
-        )
-        used = dict(self.quantities(text, tree, parameters))
+        check_functions(tree, IN_FORMULAS, tables=tuple(tables), measures=TAKERS, listed=self._listed())
+        used = dict(self.quantities(text, tree, parameters, names.states))
         if names.values:
             named, tree = (with_variables(each, names.values, self.variables) for each in (named, tree))
             text = text_in_full(found, named, names)
-            used = dict(self.quantities(text, tree, parameters))
+            used = dict(self.quantities(text, tree, parameters, names.states))
         expanded = as_written(tree) if variables else ""
         values = {name: quantity.value for name, quantity in used.items()}
         called = called_tables(tree, tables)
-        dimension = self.dimension_of(tree, used, called)
+        dimension = self.dimension_of(tree, used, called, names.states)
+        states = (node.id for node in reading_order(tree) if isinstance(node, ast.Name) and node.id in names.states)
         own = {name: quantity for name, quantity in used.items() if name in parameters}
-        return Formula(text, tree, self.variables, values, self.velocities, called, dimension, own, expanded)
+        return Formula(
+            text, tree, self.variables, values, self.velocities, called, dimension, own, expanded, tuple(dict.fromkeys(states))
+        )  # fmt: skip
 
-    def quantities(self, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Iterator[tuple[str, Quantity]]:
-        """The parameters, units and constants in a tree.
+    def _listed(self) -> tuple[str, ...]:
+        """Measures and reactions that may be called."""
+        return (*MEASURES, *(REACTIONS if self.velocities else ())) if self.coordinates else ()
+
+    def quantities(
+        self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Container[str] = ()
+    ) -> Iterator[tuple[str, Quantity]]:
+        """The parameters, units and constants in a tree, in which other names may be states.
 
         Raises
         ------
@@ -251,7 +306,7 @@ class FormulaOf:
                     if name not in UNITS:
                         raise FormulaError(f"found '{name}' after a number in '{quoted(text)}', expected a unit")
                     yield f"{UNIT}.{name}", UNITS[name]
-                case ast.Name(name) if name != TIME and name not in self.variables:
+                case ast.Name(name) if name != TIME and name not in self.variables and name not in states:
                     yield name, self._quantity(name, text, tree, known)
 
     def _quantity(self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Quantity:
@@ -283,11 +338,17 @@ class FormulaOf:
         check_dimension("the table's arguments", argument, *self.measured_in or ("time",))
         check_dimension("the table's values", value, self.dimension)
 
-    def _check(self, formula: Formula) -> None:
+    def _check(self, formula: Formula, inputs: Container[str] = ()) -> None:
         if not self.time and any(isinstance(n, ast.Name) and n.id == TIME for n in reading_order(formula.tree)):
             raise FormulaError(f"found t in '{formula.text}', expected a formula without it")
         used = [f"{body}.{coordinate}" for body, coordinate in formula.coordinates()]
         used += [f"{name}(...)" for name, _ in formula.measures()]
+        reactions = [f"{name}({joint})" for name, joint in formula.reactions()]
+        if reactions and not self.velocities:
+            raise FormulaError(
+                f"found {reactions[0]} in '{formula.text}', expected a formula without reactions of joints"
+            )
+        used += [name for name in formula.states if name not in inputs]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
         check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)

@@ -39,6 +39,9 @@ class FormulaNames:
         for body, coordinate in formula.coordinates():
             if coordinate not in of_body:
                 yield f"found '{body}.{coordinate}', expected one of {body}.{f', {body}.'.join(of_body)}"
+        for name, joint in formula.reactions():
+            if self is PLANE and name not in IN_THE_PLANE:
+                yield f"found '{name}({joint})' in '{formula.text}', expected one of {', '.join(IN_THE_PLANE)}"
         for name, markers in formula.measures():
             if name not in (*self.position_measures, *self.velocity_measures):
                 known = dict.fromkeys((*self.position_measures, *self.velocity_measures))
@@ -67,6 +70,12 @@ SPACE = FormulaNames(
 )
 NAMES = {2: PLANE, 3: SPACE}
 """By the dimensions of the model."""
+REACTIONS = ("fx", "fy", "fz", "tx", "ty", "tz")
+"""Components of what a joint does to its first body, along ground axes: ``fy(guide)``; of both families."""
+IN_THE_PLANE = ("fx", "fy", "tz")
+"""Those of a joint in the plane."""
+COORDINATES = frozenset(name for names in NAMES.values() for name in (*names.positions, *names.velocities))
+"""Of bodies, in both families."""
 VELOCITIES = tuple(
     dict.fromkeys(name for names in NAMES.values() for name in (*names.velocities, *names.velocity_measures))
 )

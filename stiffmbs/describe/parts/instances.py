@@ -20,9 +20,9 @@ from .names import MOUNT, beginnings
 from .parameters import parameters_of
 from .use import Use
 
-NAMED = ("bodies", "joints", "forces", "requests")
+NAMED = ("bodies", "states", "joints", "forces", "requests")
 """What a part holds by names that formulas and other entries may use."""
-REPEATED = ("bodies", "joints", "forces")
+REPEATED = ("bodies", "states", "joints", "forces")
 KEYS = ("parameters", "markers", *NAMED, "use")
 MOST_NESTED = 10
 """Parts within parts."""

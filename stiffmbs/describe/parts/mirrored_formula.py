@@ -107,6 +107,12 @@ def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, arg
     if isinstance(found, Table):
         points = tuple((argument * x, value * y) for x, y in found.table)
         return found.model_copy(update={"table": points if argument > 0 else points[::-1]})
+    for name, joint in found.reactions():
+        raise FormulaError(
+            f"found '{name}({joint})' in a mirrored part, expected a formula without reactions of joints"
+        )
+    if found.states:
+        raise FormulaError(f"found the state '{found.states[0]}' in a mirrored part, expected a formula without states")
     tree = names.visit(copy.deepcopy(found.tree))
     if argument < 0:
         tree = _Negated(found.variables).visit(tree)

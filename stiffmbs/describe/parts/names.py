@@ -6,7 +6,10 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..formula.dimension import Known
 
 GROUND = "ground"
 MOUNT = "mount"
@@ -26,11 +29,17 @@ class Names:
         Within a part: its own short names, and the full names that they stand for.
     values : mapping of str to ast.expr
         Within a part: its own parameters, as the numbers with units that stand in their places outside of it.
+    states : mapping of str to Known
+        All states and inputs of the scene, by their full names, and what is known of their dimensions.
+    inputs : frozenset of str
+        The inputs among them, which formulas of time may use too.
     """
 
     bodies: frozenset[str] = frozenset()
     local: Mapping[str, str] = field(default_factory=dict)
     values: Mapping[str, ast.expr] = field(default_factory=dict)
+    states: Mapping[str, Known] = field(default_factory=dict)
+    inputs: frozenset[str] = frozenset()
 
     @cached_property
     def dotted(self) -> bool:

@@ -14,11 +14,15 @@ from ...errors import InputError
 from ..element import Element
 from ..fields import Described, sentence
 from ..files.quoted import written
+from ..formula.dimension import Known
+from ..formula.field import TAKERS
 from ..formula.full_names import with_full_names
-from ..formula.names import MEASURES
+from ..formula.state_names import with_states
 from ..formula.text import parse
 from ..formula.variables import meant_within
 from ..marker import MarkerReference
+from ..states.inputs import dimension_of_input
+from ..states.section import dimensions_of_entry, refuse_other_meanings
 from ..units.units import in_text
 from .instances import NAMED, Instance, Instances
 from .mirrored import Mirror
@@ -57,9 +61,26 @@ def with_parts(
     for path, _ in left:
         raise InputError(f"--set {path}: found no such place in the scene")
     bodies = [*_keys(raw.get("bodies")), *(name for one in instances.found for name in one.names("bodies"))]
-    names = Names(frozenset(bodies))
+    own: Any = raw.get("states")
+    known = {name: context.get(name) or {} for name in ("parameters", "tables", "variables")}
+    refuse_other_meanings("states", _keys(own), known)
+    states: dict[str, Known] = {}
+    for name in _keys(own):
+        states |= dimensions_of_entry(name, own[name], context["parameters"])
+    for one in instances.found:
+        refuse_other_meanings(
+            f"{one.where}.states", one.sections.get("states") or {}, {**known, "parameters": one.parameters}
+        )
+        entries = (one.sections.get("states") or {}).items()
+        for name, entry in entries:
+            states |= dimensions_of_entry(f"{one.name}.{name}", entry, one.parameters)
+    given: Any = raw.get("inputs")
+    refuse_other_meanings("inputs", _keys(given), {**known, "states": states})
+    states |= {name: dimension_of_input(given[name], context["parameters"]) for name in _keys(given)}
+    names = Names(frozenset(bodies), states=states, inputs=frozenset(_keys(given)))
     variables = {
-        name: with_full_names(tree, names, MEASURES) for name, tree in (context.get("variables") or {}).items()
+        name: with_states(with_full_names(tree, names, TAKERS), names, (), TAKERS)
+        for name, tree in (context.get("variables") or {}).items()
     }
     context = {**context, "names": names, "variables": variables}
     placed = _Placed(raw, scene, context)
@@ -110,7 +131,9 @@ class _Placed:
             for name, value in instance.parameters.items()
             if self.context["parameters"].get(name) != value
         }
-        names = Names(self.context["names"].bodies, local, own)
+        names = Names(
+            self.context["names"].bodies, local, own, self.context["names"].states, self.context["names"].inputs
+        )
         found = self._read(instance, names)
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
         in_ground = self._pose(on).then(frame)
@@ -122,6 +145,10 @@ class _Placed:
                 where = f"{instance.where}.{section}.{name}"
                 moved = mirror.mirrored(element, where) if mirror else element
                 self._put(section, instance, name, _on_mount(moved, instance.name, on, frame))
+        if mirror and found.states:
+            raise InputError(f"{instance.where}.states: found states in a mirrored part, expected a part without")
+        for name, state in found.states.items():
+            self._put("states", instance, name, state)
         for name, request in found.requests.items():
             self._put("requests", instance, name, request)
 

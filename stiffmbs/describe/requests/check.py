@@ -83,6 +83,8 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
                 f"expected {term.element}, whose first body is known"
             )
     for owner, name in output.channels():
+        if channel(owner, name) in channels_of_states(model):
+            continue
         if not name:
             _check_request(where, owner, output, others)
         elif channel(owner, name) not in others and name not in _of(owner, model, names):
@@ -95,6 +97,13 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
                 f"{where}: found '{owner}.{name}' in '{output.text}', expected a channel of a body, a joint or a force"
             )
     _check_meanings(where, output, others)
+
+
+def channels_of_states(model: Any) -> set[str]:
+    """What is reported of states: their values and rates."""
+    values = {full for name, state in model.states.items() for full, _ in state.values(name)}
+    outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
+    return values | outputs | {f"{name}.rate" for name in values}
 
 
 def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:

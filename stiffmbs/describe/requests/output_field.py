@@ -14,6 +14,7 @@ from ..body import check_names
 from ..formula.field import TIME, FormulaOf, called_tables, formula_text, reading_order
 from ..formula.full_names import text_in_full, with_full_names
 from ..formula.functions import FUNCTIONS, check_functions
+from ..formula.state_names import with_states
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables
 from ..marker import GROUND, MarkerReference
@@ -101,14 +102,15 @@ class OutputField:
         terms = _Terms(self.names)
         variables = context.get("variables") or {}
         names = context.get("names") or Names()
-        named = with_full_names(parse(given), names, (*self.names.measures, *self.names.actions))
+        takers = (*self.names.measures, *self.names.actions)
+        named = with_states(with_full_names(parse(given), names, takers), names, (), takers)
         whole = with_variables(named, variables)
         shown = text_in_full(given, named, names)
         text = text_in_full(given, with_variables(named, names.values), names)
         expanded = as_written(with_variables(whole, names.values)) if variables else ""
         tree = terms.visit(whole)
         tables = context.get("tables") or {}
-        check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=(*self.names.measures, *self.names.actions))
+        check_functions(tree, FUNCTIONS, tables=tuple(tables), listed=takers)
         parameters: Mapping[str, Quantity] = context.get("parameters") or {}
         others = set(_others(tree, parameters))
         known = {**parameters, **dict.fromkeys(others, Quantity(0.0))}

@@ -15,7 +15,8 @@ WHICH_TURN = 1e-3
 def absolute_tolerances(system: System, settings: RunSettings) -> np.ndarray:
     """The absolute tolerance of each coordinate, then of each velocity.
 
-    As given, or rtol for angles and for mechanisms of 1 m and more, and shrinking with smaller ones.
+    As given, or rtol for angles and for mechanisms of 1 m and more, and shrinking with smaller ones.  That of a state is that
+    of an angle times the state's scale.
 
     Returns
     -------
@@ -26,7 +27,8 @@ def absolute_tolerances(system: System, settings: RunSettings) -> np.ndarray:
     tolerances = settings.rtol * np.concatenate([system.per_coordinate(*sizes), system.per_velocity(*sizes)])
     if settings.atol is not None:
         tolerances[:] = settings.atol
-    tolerances[system.n_q - system.n_counters : system.n_q] = WHICH_TURN
+    tolerances[system.n_pose : system.first_state] = WHICH_TURN
+    tolerances[system.first_state : system.n_q] *= system.state_scales
     return tolerances
 
 

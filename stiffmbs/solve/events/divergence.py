@@ -67,9 +67,10 @@ def _sentence(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, what: 
 
 
 def reaches(system: System) -> np.ndarray:
-    """What turns coordinates into lengths, m: 1 for places, the mechanism's size for angles, 0 for quaternions."""
+    """What turns coordinates into lengths, m: 1 for places, the mechanism's size for angles, 0 for quaternions and states."""
     lengths = system.per_coordinate(1.0, system.size)
     lengths[system.quaternions] = 0.0
+    lengths[system.first_state :] = 0.0
     return lengths
 
 

@@ -97,7 +97,7 @@ def to_position_constraints(s, m, t, tolerance, most):
     for move in range(most):
         values = evaluate(s, POSITION, t)
         violation = largest_open(s, values)
-        if violation <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_q)):
+        if violation <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose)):
             return move
         if not isfinite(violation):
             return NOT_FINITE
@@ -159,6 +159,8 @@ def to_accelerations(s, m, t):
             largest = max(largest, abs(new))
             s.lam[k] = new
         if not iterated or change <= FRICTION_TOLERANCE * largest:
+            if m.by_reactions:
+                evaluate(s, ACCELERATION, t)
             return 0
     return 0 if change <= ROUNDED_OFF * largest else NO_BALANCE
 

@@ -12,7 +12,7 @@ from stiffmbs.solve.native.dynamics import (
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.solve.native.stages import add_angle_rates
+from stiffmbs.solve.native.stages import add_rates_behind
 from stiffmbs.solve.native.statuses import NOT_FINITE
 
 
@@ -26,7 +26,7 @@ def _step(s, m, t, h, project, tolerance):
     for k in range(s.n_u):
         s.u[k] += h * acceleration[k]
     add_rates(s, s.u, h, s.q)
-    add_angle_rates(s, m, h, s.q)
+    add_rates_behind(s, m, h, s.q)
     take_unit_length(s)
     for k in range(s.n_q):
         if not isfinite(s.q[k]):

@@ -26,7 +26,7 @@ def _by_frozen_factors(r, s, t, tolerance):
     Velocities take one move: what it leaves of their violation is as small as the change of J since.
     """
     violations = evaluate(s, POSITION, t)
-    close = max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_q))
+    close = max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose))
     for _ in range(MOST_FROZEN_MOVES):
         if largest_open(s, violations) > close:
             smallest_move(r, s, violations)

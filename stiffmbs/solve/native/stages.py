@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, eliminated_view, factors_view, floats, shifted
-from stiffmbs.compile.machine.native.evaluate import ACCELERATION
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.native.dynamics import to_accelerations
 from stiffmbs.solve.native.eliminated import eliminated_accelerations
@@ -48,6 +48,8 @@ def accelerated(eliminates, eliminated, s, m, t, target):
         r = eliminated_view(eliminated)
         if eliminated_accelerations(r, s, t):
             copied(target, r.a, s.n_u)
+            if m.by_reactions:
+                evaluate(s, ACCELERATION, t)
             return 0
     status = to_accelerations(s, m, t)
     copied(target, factors_view(m.acceleration_factors).b, s.n_u)
@@ -55,11 +57,11 @@ def accelerated(eliminates, eliminated, s, m, t, target):
 
 
 @compiled
-def add_angle_rates(s, m, factor, target):
-    """target += factor * the rates of the counters of turns, after accelerations at the state at hand."""
+def add_rates_behind(s, m, factor, target):
+    """target += factor * the rates of counters of turns and states, after accelerations at the state at hand."""
     values = floats(s.values[ACCELERATION])
-    for k in range(m.n_angle_rates):
-        target[m.angle_rate_row[k]] += factor * values[m.angle_rate_source[k]]
+    for k in range(m.n_behind):
+        target[m.behind_row[k]] += factor * values[m.behind_source[k]]
 
 
 @compiled
@@ -71,7 +73,7 @@ def rates(x, s, m, stage, t):
     add_rates(s, s.u, 1.0, k)
     x.accelerations += 1
     status = accelerated(x.eliminates, x.eliminated, s, m, t, shifted(k, s.n_q))
-    add_angle_rates(s, m, 1.0, k)
+    add_rates_behind(s, m, 1.0, k)
     return status
 
 

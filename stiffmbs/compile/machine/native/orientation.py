@@ -50,7 +50,7 @@ def _turning(p, w, rate, factor):
 def add_rates(s, u, factor, target):
     """target += factor Z(q) u: coordinates moved along velocities."""
     if s.spatial == 0:
-        for k in range(s.n_q):
+        for k in range(s.n_u):
             target[k] += factor * u[k]
         return
     for body in range(s.n_u // N_U):

@@ -8,8 +8,12 @@ from pydantic import BaseModel
 
 from ....errors import InputError
 from ...element import Element, Joint, JointName
+from ...fields import Described
 from ...formula.field import Formula
 from ...marker import Marker
+from ...states.amount import Amount
+from ...states.linear_system import PID
+from ...units.units import in_text
 from ..model import FORCES, JOINTS
 from .angles import Angles
 from .formulas import formula
@@ -61,6 +65,8 @@ def plain(value: Any, angles: Angles) -> Any:
             return formula(value, angles)
         case JointName():
             return str(value)
+        case Amount():
+            return in_text(value.written())
         case BaseModel():
             return plain(value.model_dump(exclude_defaults=True), angles)
         case dict():
@@ -68,6 +74,13 @@ def plain(value: Any, angles: Angles) -> Any:
         case tuple():
             return [plain(part, angles) for part in value]
     return value
+
+
+def fields(described: Described, angles: Angles) -> Written:
+    """The fields that do not have their defaults, as they are written."""
+    if isinstance(described, PID):
+        return {"pid": {name: plain(value, angles) for name, value in described.__repr_args__()}}
+    return {name: plain(value, angles) for name, value in described.__repr_args__()}
 
 
 def marker(found: Marker) -> str | Written:

@@ -14,14 +14,14 @@ from ...model_data import ModelData
 from ...scene import Scene
 from ...settings import SteadyMotion
 from .angles import Angles
-from .fields import plain
+from .fields import fields, plain
 from .formulas import request
 from .geometry import shape
 from .markers import Written, placement, turned
 from .plane import loose
 
 ORDER = (
-    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "joints", "forces", "requests", "figure", "start", "run", "notes",
+    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "start", "run", "notes",
 )  # fmt: skip
 """Of the sections in the file."""
 CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
@@ -44,6 +44,8 @@ def scene_in_space(data: PlanarData) -> Written:
         "name": data.name,
         "dimensions": 3,
         "gravity": [*data.gravity, 0] if any(data.gravity) else None,
+        "states": {name: fields(state, angles) for name, state in data.states.items()},
+        "inputs": {name: plain(value, angles) for name, value in data.inputs.items()},
         "joints": joints,
         "forces": _elements("forces", data.forces, angles),
         "requests": requests,
@@ -105,7 +107,7 @@ def _elements(
 
 def _free(name: str, data: ModelData) -> str:
     """A name that no part of the model has."""
-    while name in {*data.bodies, *data.joints, *data.forces, *data.requests}:
+    while name in {*data.bodies, *data.states, *data.inputs, *data.joints, *data.forces, *data.requests}:
         name += "_"
     return name
 

@@ -1,0 +1,15 @@
+"""The name of a state in a field of an element."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class StateName(str):
+    """The full name of a state."""
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_after_validator_function(cls, core_schema.str_schema())

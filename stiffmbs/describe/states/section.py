@@ -1,0 +1,176 @@
+"""The section `states` of a model: which kinds of entries it takes, and what they have to fit."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from graphlib import CycleError, TopologicalSorter
+from typing import Annotated, Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic_core import core_schema
+
+from ...errors import InputError
+from ..check_marker import check_marker, listed
+from ..element import JointName
+from ..files.quoted import quoted, written
+from ..formula.dimension import UNKNOWN, Known
+from ..formula.field import Formula
+from ..formula.names import FormulaNames
+from ..marker import GROUND
+from ..units.units import CONSTANTS, UNITS
+from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
+from .state import State, dimension_of_state
+
+KINDS: dict[str, type[StateEntry]] = {
+    "rate": State, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
+}  # fmt: skip
+"""The kinds of entries, by a key that only they have."""
+
+
+class _Entry:
+    """Marks a field as an entry of the section, told apart by its keys."""
+
+    @staticmethod
+    def read(found: Any, info: ValidationInfo) -> StateEntry:
+        """The entry that stands in the scene."""
+        if isinstance(found, StateEntry):
+            return found
+        if not isinstance(found, dict):
+            raise ValueError(f"found {written(found)}, expected a mapping of keys to values")
+        kind = next((kind for key, kind in KINDS.items() if key in found), None)
+        if kind is None:
+            raise ValueError(f"found none of the keys {', '.join(KINDS)}, expected one of them")
+        if kind is PID:
+            others = [key for key in found if key != "pid"]
+            if others:
+                raise ValueError(f"found the key '{quoted(others[0])}' beside pid, expected it within: pid: {{...}}")
+            found = found["pid"]
+        return kind.model_validate(found, context=info.context)
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        return core_schema.with_info_plain_validator_function(cls.read)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        ways = [
+            handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, []))
+            for kind in dict.fromkeys(KINDS.values())
+        ]
+        pid = {"type": "object", "additionalProperties": False, "properties": {"pid": ways.pop()}, "required": ["pid"]}
+        return {"anyOf": [*ways, pid]}
+
+
+AnyState = Annotated[Any, _Entry]
+
+
+def dimensions_of_entry(name: str, entry: Any, parameters: Any) -> dict[str, Known]:
+    """The names that an entry of a scene gives to formulas, and what it tells of their dimensions, before it is validated."""
+    outputs = entry.get("outputs") if isinstance(entry, dict) else getattr(entry, "outputs_", None)
+    if isinstance(outputs, list | tuple) and outputs:
+        return {f"{name}.{output}": UNKNOWN for output in outputs}
+    return {name: dimension_of_state(entry, parameters)}
+
+
+def names_in_formulas(states: Mapping[str, StateEntry]) -> set[str]:
+    """The names by which formulas may use entries: those of states that are the output themselves, and of other outputs."""
+    found = {full for name, state in states.items() for full, _ in state.outputs(name)}
+    return found | {name for name, state in states.items() if any(full == name for full, _ in state.values(name))}
+
+
+def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
+    """Refuse outputs that depend on themselves at once.
+
+    Raises
+    ------
+    ValueError
+    """
+    needs = {name: [other for other in formula.states if other in outputs] for name, formula in outputs.items()}
+    try:
+        TopologicalSorter(needs).prepare()
+    except CycleError as error:
+        way = error.args[1][::-1]
+        raise ValueError(
+            f"states.{way[0]}: found an output that depends on itself at once ({' -> '.join(way)}), expected a state in the loop"
+        ) from None
+
+
+def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str, Collection[str]]) -> None:
+    """Refuse states whose names stand for something else in a scene's formulas.
+
+    Parameters
+    ----------
+    where : str
+        In the scene, for messages.
+    states : iterable of str
+    known : mapping of str to collection of str
+        What else formulas name, by section.
+
+    Raises
+    ------
+    InputError
+    """
+    for name in states:
+        for section, names in known.items():
+            if name in names:
+                raise InputError(f"{where}.{name}: found a name that {section}.{name} has too, expected another")
+
+
+def check_states(
+    states: Mapping[str, Any],
+    bodies: Mapping[str, Any],
+    on_ground: Mapping[str, Any],
+    joints: Mapping[str, Any],
+    names: FormulaNames,
+    known: Collection[str] | None,
+) -> None:
+    """Refuse states whose names have a meaning already, and formulas of what the model does not have.
+
+    Parameters
+    ----------
+    known : collection of str or None
+        All states of the model; None while others may still be added.
+
+    Raises
+    ------
+    ValueError
+    """
+    for name, state in states.items():
+        if name in UNITS or name in CONSTANTS:
+            raise ValueError(f"states.{name}: found the name of a unit or constant, expected another")
+        for field, formula in state.formulas():
+            where = f"states.{name}.{field}"
+            for _, markers in formula.measures():
+                for marker in markers:
+                    check_marker(where, marker, bodies, on_ground)
+            for body in formula.bodies():
+                if body not in bodies and body != GROUND:
+                    raise ValueError(f"{where}: found the unknown body '{body}', expected {listed(bodies)}")
+            check_reactions(where, formula, joints)
+            if known is not None:
+                check_states_of(where, formula, known)
+            for reason in names.validation_errors(formula):
+                raise ValueError(f"{where}: {reason}")
+
+
+def check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> None:
+    """Refuse a formula of reactions of joints that the model does not have, or that are not between two markers."""
+    for name, joint in formula.reactions():
+        if joint not in joints:
+            raise ValueError(
+                f"{where}: found '{name}({joint})' in '{formula.text}', expected one of the joints {', '.join(joints) or 'none'}"
+            )
+        if next(joints[joint].parts(JointName), None) or next(joints[joint].parts(Formula), None):
+            raise ValueError(
+                f"{where}: found '{name}({joint})' of the type {joints[joint].kind}, expected a joint between markers without a formula"
+            )
+
+
+def check_states_of(where: str, formula: Formula, states: Collection[str]) -> None:
+    """Refuse a formula of states that the model does not have."""
+    for state in formula.states:
+        if state not in states:
+            raise ValueError(
+                f"{where}: found the unknown name '{state}' in '{formula.text}', expected t, a body's coordinate such as "
+                "cart.x, a parameter or a state"
+            )

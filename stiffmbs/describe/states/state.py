@@ -1,0 +1,100 @@
+"""A state of the user's own: a value that a differential equation determines (Adams: DIFF)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import AfterValidator, Field, model_validator
+
+from ..fields import Described
+from ..formula.dimension import Known, measured_in, product
+from ..formula.field import Formula, OfMotion
+from ..given import Law, Number
+from ..units.units import named_unit
+from .amount import Amount, positive
+
+Scale = Annotated[Amount, AfterValidator(positive)]
+
+
+@dataclass(frozen=True)
+class StateValue:
+    """One number that is solved for beside the motion.
+
+    Attributes
+    ----------
+    rate : Formula
+        Of its rate of change.
+    start : float
+        Initial value, SI units.
+    scale : float
+        A size of it that matters: its absolute tolerance is that of an angle times this.
+    """
+
+    rate: Formula
+    start: float
+    scale: float
+
+
+class State(Described):
+    """A value x with x' = rate, from x = start on; any formula may use it by its name.
+
+    Examples
+    --------
+    The force of a spring that follows its deflection with a delay of tau seconds, with parameters k and tau::
+
+        states: {delayed: {rate: "(cart.x - delayed)/tau", start: 0 m}}
+        forces: {push: {type: force, i: cart, force: ["-k*delayed", 0]}}
+
+    This is Adams' DIFF.
+    """
+
+    rate: OfMotion = Field(description="its rate of change: a formula of time, coordinates, velocities and states")
+    start: Amount = Field(Amount(0.0), description="initial value; a unit tells its dimension")
+    scale: Scale = Field(
+        Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
+    )
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, rate: Law, start: Number = 0.0, scale: Number = 1.0) -> None: ...
+
+    @model_validator(mode="after")
+    def _rate_fits(self) -> State:
+        expected = product(self.start.known, measured_in("time"), -1)
+        if self.start.known.stated and not self.rate.dimension.agrees_with(expected):
+            assert self.rate.dimension.exponents is not None and expected.exponents is not None
+            raise ValueError(
+                f"rate: found '{self.rate.text}', which is in {named_unit(self.rate.dimension.exponents)}, expected "
+                f"{named_unit(expected.exponents)}, the unit of start over time"
+            )
+        return self
+
+    def formulas(self) -> Iterator[tuple[str, Formula]]:
+        """Its formulas by field."""
+        yield "rate", self.rate
+
+    def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
+        """What is solved for, by full name."""
+        yield name, StateValue(self.rate, float(self.start), float(self.scale))
+
+    def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
+        """Formulas that are known by a name, as the output of a transfer function is."""
+        yield from ()
+
+
+def dimension_of_state(entry: Any, parameters: Any) -> Known:
+    """What a state's entry in a scene tells of its dimension, before it is validated; nothing where it cannot be read."""
+    from ..formula.dimension import UNKNOWN, known_of
+    from ..formula.text import FormulaError
+    from ..units.quantity import quantity
+
+    start = getattr(entry, "start", None) if isinstance(entry, State) else None
+    if start is not None:
+        return start.dimension
+    text = entry.get("start") if isinstance(entry, dict) else None
+    try:
+        return known_of(quantity(text, parameters)) if isinstance(text, str) else UNKNOWN
+    except FormulaError:
+        return UNKNOWN

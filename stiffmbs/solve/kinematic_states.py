@@ -1,0 +1,90 @@
+"""States along a prescribed motion: their differential equations, integrated between two of its instants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SolverError
+from .dynamics import Dynamics
+
+TOLERANCE = 1e-10
+"""Relative tolerance, and absolute one in scales of the states."""
+MOST_MOVES = 12
+
+
+@dataclass(frozen=True)
+class Instant:
+    """A state of a prescribed motion, and how fast its counters of turns run."""
+
+    t: float
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    turning: np.ndarray
+
+
+def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
+    """The states at a later instant, shape (states,); the state at hand is left as it is.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    before : Instant
+        From which predictions of the pose lead to every instant up to t.
+    t : float
+        s.
+
+    Raises
+    ------
+    SolverError
+        Where the states cannot be integrated; SciPy's Radau (Hairer and Wanner II, ch. IV.8) does that.
+    """
+    system = dynamics.system
+    if not system.states or t <= before.t:
+        return before.q[system.first_state :].copy()
+    from scipy.integrate import solve_ivp
+
+    along = _Along(dynamics, before)
+    with dynamics.state.unchanged():
+        found = solve_ivp(
+            along.rates, (before.t, t), before.q[system.first_state :], method="Radau", jac=along.jacobian,
+            rtol=TOLERANCE, atol=TOLERANCE * system.state_scales, t_eval=[t],
+        )  # fmt: skip
+    if not found.success:
+        raise SolverError(f"stopped after t = {before.t:.9g} s: the states could not be integrated: {found.message}")
+    return np.asarray(found.y[:, -1])
+
+
+class _Along:
+    """Rates of the states at instants of the motion."""
+
+    def __init__(self, dynamics: Dynamics, before: Instant) -> None:
+        self._dynamics, self._before = dynamics, before
+
+    def rates(self, t: float, values: np.ndarray) -> np.ndarray:
+        """x' at an instant."""
+        if not self._go_to(t, values):
+            return np.full(len(values), np.nan)
+        state = self._dynamics.state
+        return self._dynamics.position_rates(state.q, state.u)[self._dynamics.system.first_state :]
+
+    def jacobian(self, t: float, values: np.ndarray) -> np.ndarray:
+        """dx'/dx at an instant."""
+        system, state = self._dynamics.system, self._dynamics.state
+        self._go_to(t, values)
+        state.evaluate("tangent", t)
+        return state.matrix("tangent", "rate_q")[system.first_state :, system.first_state :]
+
+    def _go_to(self, t: float, values: np.ndarray) -> bool:
+        """Make the state at hand that of the motion at an instant; whether it was found."""
+        dynamics, before, system = self._dynamics, self._before, self._dynamics.system
+        state, h = dynamics.state, t - before.t
+        state.q[:] = system.of_body.moved(before.q, h * before.u + h * h / 2 * before.acceleration)
+        state.q[system.n_pose : system.first_state] += h * before.turning
+        state.q[system.first_state :] = values
+        state.u[:] = before.u + h * before.acceleration
+        if dynamics.assemble(t, most=MOST_MOVES) < 0 or dynamics.correct_velocities(t) < 0:
+            return False
+        return dynamics.accelerate(t)[0] == 0

@@ -1,0 +1,62 @@
+"""Equilibrium, modes and frequency response with states of the user's own."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import AppliedForce, Body, Model, Prismatic, State
+from stiffmbs.errors import SolverError
+
+MASS, KP, KI, KD, LOAD, TARGET = 2.0, 50.0, 30.0, 12.0, 7.0, 0.4
+
+
+def controlled_cart():
+    """A cart under a constant load, held at its target by a controller whose integral is a state."""
+    model = Model("controlled cart")
+    model.add("cart", Body(mass=MASS, inertia=1))
+    model.add("rail", Prismatic(i="cart", j="ground"))
+    model.add("sum", State(rate=f"{TARGET} - cart.x", start=0))
+    law = f"{KP}*({TARGET} - cart.x) + {KI}*sum - {KD}*cart.vx - {LOAD}"
+    model.add("control", AppliedForce(i="cart", force=(law, 0)))
+    return model
+
+
+def test_in_equilibrium_states_stay_as_they_are():
+    found = stiffmbs.equilibrium(controlled_cart())
+    assert found.channels["cart.x"] == pytest.approx(TARGET, abs=1e-10)
+    assert found.channels["sum"] == pytest.approx(LOAD / KI, abs=1e-10)
+    assert not found.notes
+
+
+def test_a_state_that_cannot_come_to_rest_is_named():
+    model = controlled_cart()
+    model.add("clock", State(rate=1, start=0))
+    with pytest.raises(SolverError, match="the state clock goes on changing"):
+        stiffmbs.equilibrium(model)
+
+
+def test_an_unstable_loop_is_told():
+    model = controlled_cart()
+    model.replace("sum", State(rate=f"20*({TARGET} - cart.x)", start=0))
+    assert "unstable" in stiffmbs.equilibrium(model).notes[0]
+
+
+def test_eigenvalues_are_the_roots_of_the_closed_loop():
+    found = stiffmbs.modes(controlled_cart())
+    values = sorted((v for mode in found.modes for v in mode.eigenvalues), key=lambda v: (v.real, v.imag))
+    roots = sorted(np.roots([MASS, KD, KP, KI]), key=lambda v: (v.real, v.imag))
+    assert values == pytest.approx(roots, rel=1e-9)
+    assert found.degrees_of_freedom == 1
+    assert [len(mode.eigenvalues) for mode in found.modes] == [1, 2]
+    assert "1, 2" not in str(found.as_dict("scene"))
+
+
+def test_the_frequency_response_goes_through_states():
+    found = stiffmbs.transfer(controlled_cart(), ["cart.fx"], ["cart.x", "sum", "sum.rate"])
+    frequencies = np.array([0.1, 1.0, 5.0])
+    s = 2j * np.pi * frequencies
+    compliance = 1 / (MASS * s**2 + KD * s + KP + KI / s)
+    x, total, rate = found.response(frequencies)[:, :, 0].T
+    assert x == pytest.approx(compliance, rel=1e-8)
+    assert total == pytest.approx(-compliance / s, rel=1e-8)
+    assert rate == pytest.approx(-compliance, rel=1e-8)
