@@ -13,9 +13,11 @@ from ..describe.files.text_file import STANDARD_INPUT, checked, file_text, sourc
 from ..describe.scene import Scene, made_scene
 from ..errors import InputError
 from .scene.scene import scene
+from .statements.changes import Changes
 from .statements.commands import read_commands
-from .statements.dataset import Dataset, read_dataset
+from .statements.dataset import NO_CHANGES, Dataset, read_dataset
 from .statements.fault import DatasetFault
+from .statements.simulations import refuse_velocities, run_settings
 
 COMMANDS = ".acf"
 """How the name of a command file ends."""
@@ -45,8 +47,7 @@ def read_adams(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
 
 def load_adams(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
     """Read a scene from a dataset's file, and how to run it from the command file beside it; as `read_adams`."""
-    dataset, found = _scene(file_text(path, ENCODING), source_name(path))
-    _run_as_commanded(Path(path).with_suffix(COMMANDS), dataset, found)
+    dataset, found = _commanded(path)
     return made_scene(found, changes, source_name(path), lambda path: _line(dataset, path))
 
 
@@ -55,8 +56,7 @@ def convert_file(path: str | Path) -> str:
 
     Errors are those of `read_adams`.
     """
-    dataset, found = _scene(file_text(path, ENCODING), source_name(path))
-    _run_as_commanded(Path(path).with_suffix(COMMANDS), dataset, found)
+    dataset, found = _commanded(path)
     made_scene(copy.deepcopy(found), (), source_name(path), lambda path: _line(dataset, path))
     return scene_text(_with_aliases(dataset, found))
 
@@ -75,10 +75,10 @@ def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _scene(text: str, source: str) -> tuple[Dataset, dict[str, Any]]:
+def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Dataset, dict[str, Any]]:
     text = checked(text, source)
     try:
-        dataset = read_dataset(text)
+        dataset = read_dataset(text, changes)
         return dataset, scene(dataset)
     except DatasetFault as fault:
         raise InputError(f"{source}, {fault}") from None
@@ -86,18 +86,29 @@ def _scene(text: str, source: str) -> tuple[Dataset, dict[str, Any]]:
         raise InputError(f"{source}: {error}") from None
 
 
-def _run_as_commanded(path: Path, dataset: Dataset, found: dict[str, Any]) -> None:
-    """Take duration and output from the command file beside a dataset, if there is one."""
-    if path.stem == STANDARD_INPUT or not path.is_file():
-        return
+def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
+    """The scene of a dataset's file as the command file beside it says, if there is one."""
+    beside = Path(path).with_suffix(COMMANDS)
+    text, source = file_text(path, ENCODING), source_name(path)
+    if beside.stem == STANDARD_INPUT or not beside.is_file():
+        return _scene(text, source)
     try:
-        asked = read_commands(file_text(path, ENCODING), dataset.units)
+        asked = read_commands(file_text(beside, ENCODING))
     except DatasetFault as fault:
-        raise InputError(f"{path}, {fault}") from None
-    if asked.run:
-        found["run"] = asked.run
-    told = [f"duration and output are those of {path.name}"] if asked.run else []
-    found["notes"] = [*found.get("notes", ()), *told, *asked.notes]
+        raise InputError(f"{beside}, {fault}") from None
+    dataset, found = _scene(text, source, asked.changes)
+    try:
+        run = run_settings(asked.simulations, dataset.units)
+        if asked.from_equilibrium is not None:
+            found["start"] = "equilibrium"
+            refuse_velocities(asked.from_equilibrium, dataset)
+    except DatasetFault as fault:
+        raise InputError(f"{beside}, {fault}") from None
+    if run:
+        found["run"] = run
+    told = [f"duration and output are those of {beside.name}"] if run else []
+    notes = [*found.get("notes", ()), *told, *asked.changes.notes(beside.name), *asked.notes]
+    return dataset, found | ({"notes": notes} if notes else {})
 
 
 def _line(dataset: Dataset, path: Sequence[Any]) -> int | None:

@@ -48,16 +48,24 @@ class Arguments:
         self.statement, self.keyword = statement, keyword
         self.label = f"{keyword}/{quoted(statement.ident)}" if statement.ident else keyword
         self._names, self._functions = names, functions
-        self._found: dict[str, Argument] = {}
-        name, line = "", statement.line
+        self._found = self._read(statement.pieces)
+        for line, pieces in statement.changes:
+            self.label += f" (changed in line {line} of the command file)"
+            self._found |= self._read(pieces)
+
+    def _read(self, pieces: Sequence[Subsystem]) -> dict[str, Argument]:
+        """The arguments of some pieces by their full names."""
+        found: dict[str, Argument] = {}
+        name, line = "", self.statement.line
         texts: list[str] = []
-        for piece in statement.pieces:
+        for piece in pieces:
             if name and self._continues(name, texts, piece):
                 texts.append(piece.text)
                 continue
-            self._keep(name, texts, line)
+            self._keep(found, name, texts, line)
             name, texts, line = *self._opened(piece), piece.line
-        self._keep(name, texts, line)
+        self._keep(found, name, texts, line)
+        return found
 
     def _continues(self, name: str, texts: list[str], piece: Subsystem) -> bool:
         """Whether a piece goes on with the argument before it."""
@@ -83,13 +91,13 @@ class Arguments:
             return word
         return next((name for name in self._names if name.startswith(word)), "")
 
-    def _keep(self, name: str, texts: list[str], line: int) -> None:
+    def _keep(self, found: dict[str, Argument], name: str, texts: list[str], line: int) -> None:
         if not name:
             return
-        if name in self._found:
+        if name in found:
             raise self.fault(f"found {name} twice, expected it once", line)
         values = (" ".join(texts),) if name in self._functions and texts else tuple(texts)
-        self._found[name] = Argument(name, values, line)
+        found[name] = Argument(name, values, line)
 
     def fault(self, reason: str, line: int | None = None) -> DatasetFault:
         """What to raise where this statement is wrong."""

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from ...errors import InputError
 from .bodies import Marker, Part, read_marker
+from .changes import Changes
 from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Numbered
 from .elastic import Beam, Elastic, SpringDamper
 from .fault import DatasetFault
@@ -19,6 +20,7 @@ from .text import Statement, statements, untitled
 from .units import Units, read_units
 
 MOST_LISTED = 8
+NO_CHANGES = Changes()
 Found = TypeVar("Found", bound=Numbered)
 Force = SingleForce | VectorForce | SpringDamper | Elastic | Beam
 
@@ -105,8 +107,8 @@ class Dataset:
         return self.statements.get("ARRAY", {})
 
 
-def read_dataset(text: str) -> Dataset:
-    """Read the text of a dataset.
+def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
+    """Read the text of a dataset, as commands change it.
 
     Raises
     ------
@@ -117,7 +119,7 @@ def read_dataset(text: str) -> Dataset:
     without_title = _is_statement(title)
     if without_title:
         title, (found, ended) = "", untitled(text)
-    named = [(keyword(statement.word), statement) for statement in found]
+    named = changes.applied([(keyword(statement.word), statement) for statement in found])
     _refuse(named)
     units = Units()
     for statement in _once("UNITS", named):

@@ -56,6 +56,8 @@ class Statement:
     line : int
     alias : str
         The name in Adams/View, where a comment before the statement tells it.
+    changes : tuple of (int, tuple of Subsystem)
+        What commands give of its arguments anew, with the line of each.
     """
 
     word: str
@@ -63,6 +65,7 @@ class Statement:
     pieces: tuple[Subsystem, ...]
     line: int
     alias: str = ""
+    changes: tuple[tuple[int, tuple[Subsystem, ...]], ...] = ()
 
 
 def statements(text: str) -> tuple[str, tuple[Statement, ...], bool]:

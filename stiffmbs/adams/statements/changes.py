@@ -1,0 +1,108 @@
+"""What commands change of a dataset before it is run: arguments of statements, and which of them are active."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from .arguments import Arguments
+from .fault import DatasetFault
+from .keywords import READERS, keyword
+from .text import Statement
+
+SWITCHED = (
+    "JOINT", "JPRIM", "GCON", "MOTION", "COUPLER", "GEAR", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "SPRINGDAMPER",
+    "BUSHING", "BEAM", "FIELD", "REQUEST", "CONTACT", "FRICTION", "NFORCE", "MFORCE", "PTCV", "CVCV", "SENSOR", "MREQUEST",
+    "UCON",
+)  # fmt: skip
+"""Statements that can be deactivated."""
+GRAVITY = ("ACCGRAV", 0)
+Key = tuple[str, int]
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What commands change of a dataset.
+
+    Attributes
+    ----------
+    altered : mapping of (str, int) to tuple of Statement
+        The commands that give arguments of a statement anew, by its name and number.
+    inactive : mapping of (str, int) to int
+        Statements that are to have no effect, and the line of the command that says so.
+    """
+
+    altered: Mapping[Key, tuple[Statement, ...]] = field(default_factory=dict)
+    inactive: Mapping[Key, int] = field(default_factory=dict)
+
+    def with_arguments(self, command: Statement) -> Changes:
+        """With the arguments that a command gives a statement."""
+        key = key_of(command)
+        return replace(self, altered={**self.altered, key: (*self.altered.get(key, ()), command)})
+
+    def switched(self, command: Statement, active: bool) -> Changes:
+        """With the statements that ACTIVATE or DEACTIVATE names.
+
+        Raises
+        ------
+        DatasetFault
+            When the command names none, or such as have no such state.
+        """
+        found = Arguments(command, "ACTIVATE" if active else "DEACTIVATE", ("ID",))
+        name = keyword(command.ident.upper())
+        idents = found.idents("ID")
+        if name not in SWITCHED or not idents:
+            raise found.fault(f"found no statement, expected one of {', '.join(SWITCHED)}, and ID = its number")
+        inactive = dict(self.inactive)
+        for ident in idents:
+            inactive.pop((name, ident), None)
+            if not active:
+                inactive[name, ident] = command.line
+        return replace(self, inactive=inactive)
+
+    def applied(self, named: Sequence[tuple[str | None, Statement]]) -> list[tuple[str | None, Statement]]:
+        """The statements of a dataset as changed, without those that are inactive.
+
+        Raises
+        ------
+        DatasetFault
+            When the dataset does not have a statement that is changed.
+        """
+        known = {key_of(statement) for _, statement in named}
+        for key, line in (*((key, c[0].line) for key, c in self.altered.items()), *self.inactive.items()):
+            if key not in known and key != GRAVITY:
+                label = f"{key[0]}/{key[1]}"
+                raise DatasetFault(line, label, "found a command for it, expected a statement that the dataset has")
+        found = [
+            (name, self._changed(statement)) for name, statement in named if key_of(statement) not in self.inactive
+        ]
+        if GRAVITY in self.altered and GRAVITY not in known:
+            line = self.altered[GRAVITY][0].line
+            found.append(("ACCGRAV", self._changed(Statement("ACCGRAV", "", (), line))))
+        return found
+
+    def _changed(self, statement: Statement) -> Statement:
+        commands = self.altered.get(key_of(statement), ())
+        return replace(statement, changes=tuple((c.line, c.pieces) for c in commands)) if commands else statement
+
+    def notes(self, source: str) -> list[str]:
+        """What the commands have changed, a sentence each."""
+        told = []
+        if self.inactive:
+            labels = ", ".join(f"{name}/{ident}" for name, ident in self.inactive)
+            told.append(f"{labels} {'are' if len(self.inactive) > 1 else 'is'} inactive by {source}, and left out")
+        if self.altered:
+            labels = ", ".join(f"{name}/{ident}" if ident else name for name, ident in self.altered)
+            told.append(f"{labels} {'are' if len(self.altered) > 1 else 'is'} as {source} says")
+        return told
+
+
+def key_of(statement: Statement) -> Key:
+    """A statement's full name and its number, 0 without one."""
+    ident = statement.ident.strip()
+    return keyword(statement.word) or statement.word, int(ident) if ident.isdecimal() and len(ident) < 19 else 0
+
+
+def alters(name: str | None) -> bool:
+    """Whether a command of that name gives a statement's arguments anew."""
+    return name in READERS or name == "ACCGRAV"
