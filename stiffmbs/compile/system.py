@@ -79,17 +79,17 @@ class System:
     active: np.ndarray
     size: float
 
-    @property
+    @cached_property
     def n_q(self) -> int:
         """The number of coordinates."""
         return len(self.q)
 
-    @property
+    @cached_property
     def n_u(self) -> int:
         """The number of velocities."""
         return len(self.u)
 
-    @property
+    @cached_property
     def n_c(self) -> int:
         """The number of constraint equations."""
         return len(self.equations)
