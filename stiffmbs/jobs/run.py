@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -49,6 +50,8 @@ from .settings_notes import settings_notes
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
 from .taken_again import Computed, seen_through
 
+LOGGER = logging.getLogger(__name__)
+
 
 @dataclass(frozen=True)
 class Examined:
@@ -82,6 +85,8 @@ class Job:
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver].solve, watch or (lambda t: None)
+
+        LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
 
         def over(grid: Grid) -> Trajectory:
             if self.subsystems:
@@ -124,6 +129,7 @@ def prepare(
 
         refuse_inconsistencies(found.redundancy)
     dynamics = found.dynamics()
+    LOGGER.info("assembling %s", found.data.name)
     with told_faults(dynamics.system):
         start = _start(found.data, dynamics, found.grid.start, found.start_from)
         subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
