@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from ..describe.settings import SchemeName
 from ..errors import InputError, StiffmbsError
 from ..jobs.load_scene import load_scene
 from .ranges import numbers_in, values_in
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 @click.argument("scene")
 @click.option(
     "--solver", "--solvers", "solvers", metavar="NAME,...",
-    help="bdf, auto, kinematic, dop853, dopri5, rk4, euler_cromer, or all; bdf,dop853,auto by default.",
+    help=f"bdf, auto, kinematic, {', '.join(get_args(SchemeName))}, or all; bdf,dop853,auto by default.",
 )  # fmt: skip
 @click.option("--formulation", "--formulations", "formulations", metavar="NAME,...", help="Of bdf: SI2, SI1, I3, ...")
 @click.option(

@@ -7,12 +7,18 @@ import time
 from types import TracebackType
 from typing import Any
 
+from .terminal.listener import Listener
+from .terminal.logging_options import is_quiet
+
 PATIENCE = 2.0
 BETWEEN_UPDATES = 0.1
 
 
 class ProgressBar:
-    """Called with the time reached; shows a bar when the run takes long and someone can see it.
+    """Called with the time reached; shows what a run is doing when it takes long and someone can see it.
+
+    While it is entered it listens to what the package tells by Python's logging: what is derived, compiled, assembled, and
+    the size and order of steps.
 
     Parameters
     ----------
@@ -23,7 +29,8 @@ class ProgressBar:
     def __init__(self, start: float, end: float) -> None:
         self._start, self._end = start, end
         self._begun = self._shown = time.monotonic()
-        self._seen = sys.stderr.isatty()
+        self._seen = sys.stderr.isatty() and not is_quiet()
+        self._listener = Listener(self._tell_stage) if self._seen else None
         self._bar: Any = None
         self._task: Any = None
 
@@ -34,21 +41,33 @@ class ProgressBar:
         if now - self._begun < PATIENCE or now - self._shown < BETWEEN_UPDATES:
             return
         self._shown = now
-        if self._bar is None:
-            from rich.console import Console
-            from rich.progress import Progress
+        reached = f"t = {t:.4g} s" + (self._listener.step if self._listener else "")
+        self._show(reached=reached, after="left", total=self._end - self._start, completed=t - self._start)
 
-            self._bar = Progress(console=Console(stderr=True), transient=True)
+    def _tell_stage(self, stage: str, slow: bool) -> None:
+        """Show what is done before and between steps: at once where it takes long, as deriving and compiling do."""
+        if slow or self._bar is not None or time.monotonic() - self._begun > PATIENCE:
+            self._show(description=stage)
+
+    def _show(self, **changed: Any) -> None:
+        if self._bar is None:
+            from .terminal.stages import bar
+
+            self._bar = bar()
             self._bar.start()
-            self._task = self._bar.add_task("solving", total=self._end - self._start)
-        self._bar.update(self._task, completed=t - self._start)
+            self._task = self._bar.add_task(changed.get("description", "solving"), total=None, reached="", after="")
+        self._bar.update(self._task, **changed)
 
     def __enter__(self) -> ProgressBar:
+        if self._listener is not None:
+            self._listener.begin()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        if self._listener is not None:
+            self._listener.end()
         if self._bar is not None:
             self._bar.stop()
 

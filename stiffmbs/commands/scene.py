@@ -7,12 +7,13 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, get_args
 
 import click
 
 from ..describe.files.text_file import STANDARD_INPUT, source_name
 from ..describe.scene import Scene
+from ..describe.settings import SchemeName, SolverName
 from ..errors import AssemblyError, InputError, SolverError, StiffmbsError
 
 if TYPE_CHECKING:
@@ -47,10 +48,10 @@ def solving_options(command: Command) -> Command:
     options = (
         click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
         click.option("--duration", help="Time to solve, s, or with a unit."),
-        click.option("--solver", help="bdf, projected, kinematic or auto."),
+        click.option("--solver", help=f"{', '.join(get_args(SolverName))}."),
         click.option(
             "--scheme",
-            help="Of projected: dop853 (without a step), dopri5, rk4 or euler_cromer (where a step is given).",
+            help=f"Of projected: {', '.join(get_args(SchemeName))}; by default dop853, and euler_cromer where a step is given.",
         ),
         CHANGES,
     )

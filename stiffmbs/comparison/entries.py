@@ -8,16 +8,16 @@ from typing import Any
 
 from ..describe.settings import RunSettings
 from ..errors import InputError
-from ..solve import traits_of
+from ..solve import SOLVERS, traits_of
 from ..solve.explicit.projected import TRAITS as SCHEMES
 from ..solve.formulations import FORMULATIONS
 from ..solve.settings import changed
 
 BDF, PROJECTED, DEFAULT_SCHEME = "bdf", "projected", "dop853"
-ALONE = ("auto", "kinematic")
 USUAL = (BDF, DEFAULT_SCHEME, "auto")
 """Solvers that are compared where nobody asks for others."""
-KNOWN = (BDF, *SCHEMES, *ALONE)
+EXACT = "kinematic"
+KNOWN = (BDF, *SCHEMES, *(name for name in SOLVERS if name not in (BDF, PROJECTED, EXACT)), EXACT)
 ALL = "all"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -34,17 +35,17 @@ class BodyKind:
     ground: tuple[float, ...]
     ground_turn: tuple[float, ...]
 
-    @property
+    @cached_property
     def n_q(self) -> int:
         """Coordinates of a body."""
         return len(self.positions)
 
-    @property
+    @cached_property
     def n_u(self) -> int:
         """Velocities of a body."""
         return len(self.velocities)
 
-    @property
+    @cached_property
     def linear(self) -> int:
         """How many of its coordinates, and of its velocities, are those of the centre of mass."""
         return self.dimensions

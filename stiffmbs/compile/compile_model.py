@@ -41,7 +41,10 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
     bodies = tuple(model.bodies)
     of_body = BODY_KINDS[model.dimensions]
     sorted_elements = _sorted_elements(model)
-    records = {kind: _record(kind, members[0].name) for kind, members in sorted_elements.items()}
+    records = {
+        kind: _record(kind, members[0].name, f"{k} of {len(sorted_elements)} kinds")
+        for k, (kind, members) in enumerate(sorted_elements.items(), start=1)
+    }
     rows, equations, holonomic = _rows(sorted_elements, records)
     n_counters = sum(records[kind].n_counters * len(members) for kind, members in sorted_elements.items())
     states = model.state_values()
@@ -96,9 +99,9 @@ class _Member:
     data: ElementData
 
 
-def _record(kind: Kind, name: str) -> KindRecord:
+def _record(kind: Kind, name: str, place: str) -> KindRecord:
     try:
-        return record_of(kind)
+        return record_of(kind, place)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
 

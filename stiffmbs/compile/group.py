@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ..describe.element import Element
 from .bodies import BodyKind
-from .kind import Kind
+from .kind import Kind, Shape
 from .record import KindRecord
 from .terms import TERM_AXES
 
@@ -43,7 +44,7 @@ class Group:
     numbers: np.ndarray
     first_row: int
 
-    @property
+    @cached_property
     def count(self) -> int:
         """Number of elements."""
         return len(self.names)
@@ -52,10 +53,15 @@ class Group:
         """Number of entries that one element has in a term."""
         return len(self.record.patterns.get(term, ()))
 
-    @property
+    @cached_property
     def bodies(self) -> np.ndarray:
         """Numbers of the bodies that each element acts on, shape (count, bodies); the ground's is behind the last body's."""
         return self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u
+
+    @cached_property
+    def has_law(self) -> bool:
+        """Whether the elements have breakpoints, formulas or tables."""
+        return bool(self.entries("event_function")) or any(_is_law(shape) for _, shape in self.kind.fields)
 
     @property
     def first_behind(self) -> int:
@@ -134,3 +140,7 @@ class Group:
         starts = np.cumsum([0, *self.record.joint_equations])
         joint = np.searchsorted(starts, own, side="right") - 1
         return joint, own - starts[joint]
+
+
+def _is_law(shape: Shape) -> bool:
+    return shape[0] in ("formula", "table") or (shape[0] == "several" and any(map(_is_law, shape[1])))

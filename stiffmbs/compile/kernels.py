@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from .kind import Kind
+from .kind import Kind, with_place
 from .machine.compiler import Compiled, compiled_source
 from .record import RARE, source_of
 from .terms import KERNEL_SIGNATURE, TERM_SETS
 
 
-def kernel_of(kind: Kind, term_set: str) -> Compiled | None:
-    """The compiled kernel with which a kind contributes to a set, if it does."""
+def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
+    """The compiled kernel with which a kind contributes to a set, if it does; `place` as for `record_of`."""
     source = source_of(kind, term_set)
-    return compiled_source(source, "kernel", KERNEL_SIGNATURE) if source else None
+    return compiled_source(source, "kernel", KERNEL_SIGNATURE, with_place(kind, place)) if source else None
 
 
 def compile_usual(kind: Kind) -> None:

@@ -93,6 +93,12 @@ class Kind:
     fields: tuple[tuple[str, Shape], ...]
 
 
+def with_place(kind: Kind, place: str) -> str:
+    """A kind by its name, and its place among others in brackets where it is known."""
+    name = kind.element.kind or kind.element.__name__.lower()
+    return f"{name} ({place})" if place else name
+
+
 @dataclass
 class ElementData:
     """What distinguishes an element from others of its kind.

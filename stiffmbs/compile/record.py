@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import logging
 import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -15,8 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..describe.element import Component, Element
-from .kind import Kind, Shape
+from .kind import Kind, Shape, with_place
 from .machine import cache as store
+from .machine.told import Told
 from .terms import TERM_SETS
 
 if TYPE_CHECKING:
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
 
 RARE = ("all_levels", "all_levels_tangent")
 """Term sets that one formulation alone uses, index1: a third of the work of all, done when it is first asked for."""
+
+
+LOGGER = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -68,13 +73,25 @@ class KindRecord:
     timed: list[bool]
 
 
+def record_of(kind: Kind, place: str = "") -> KindRecord:
+    """Read a kind's record from the cache, or derive it and keep it.
+
+    Parameters
+    ----------
+    kind : Kind
+    place : str, optional
+        Its place among others that are asked for, such as ``2 of 7 kinds``; told while it is derived.
+    """
+    return _record_of(kind, Told(place))
+
+
 @cache
-def record_of(kind: Kind) -> KindRecord:
-    """Read a kind's record from the cache, or derive it and keep it."""
+def _record_of(kind: Kind, place: Told) -> KindRecord:
     entry = _entry(kind)
     record = _read(entry) if entry else None
     if record is not None:
         return record
+    LOGGER.info("deriving %s", with_place(kind, place.words))
     record = _derived(kind)
     if entry:
         store.write(entry, json.dumps(asdict(record)).encode())

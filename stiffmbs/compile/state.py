@@ -95,7 +95,7 @@ class State:
             (kernel.address, group.count, group.index.ctypes.data, group.numbers.ctypes.data,
              system.places[term_set][g].ctypes.data)
             for g, group in enumerate(system.groups)
-            if (kernel := system.kernel(term_set, group)) is not None
+            if (kernel := system.kernel(term_set, group, f"{g + 1} of {len(system.groups)} kinds, {term_set}")) is not None
         ]  # fmt: skip
         self._turned[term_set] = system.turned(term_set)
         self._n_turned[k] = len(self._turned[term_set])

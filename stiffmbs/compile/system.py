@@ -79,17 +79,17 @@ class System:
     active: np.ndarray
     size: float
 
-    @property
+    @cached_property
     def n_q(self) -> int:
         """The number of coordinates."""
         return len(self.q)
 
-    @property
+    @cached_property
     def n_u(self) -> int:
         """The number of velocities."""
         return len(self.u)
 
-    @property
+    @cached_property
     def n_c(self) -> int:
         """The number of constraint equations."""
         return len(self.equations)
@@ -263,9 +263,9 @@ class System:
         """How many there are of what a term's rows or columns count (`stiffmbs.compile.terms.TERM_AXES`)."""
         return {"q": self.n_q, "u": self.n_u, "c": self.n_c, "l": self.n_c}.get(axis, np.iinfo(np.int64).max)
 
-    def kernel(self, term_set: str, group: Group) -> Compiled | None:
-        """The compiled kernel with which a group contributes to a set, if it does."""
-        return kernel_of(group.kind, term_set)
+    def kernel(self, term_set: str, group: Group, place: str = "") -> Compiled | None:
+        """The compiled kernel with which a group contributes to a set, if it does; `place` as for `kernel_of`."""
+        return kernel_of(group.kind, term_set, place)
 
     def turned(self, term_set: str) -> np.ndarray:
         """The first coordinate of each body what is shared of whose orientation the kernels of a set read."""

@@ -94,7 +94,9 @@ class _OneOf:
         kind = found["type"]
         if not isinstance(kind, str) or kind not in self.kinds:
             expected = ", ".join(f"'{known}'" for known in self.kinds)
-            raise ValueError(f"found the type '{quoted(kind)}', expected one of {expected}")
+            raise ValueError(
+                f"found the type '{quoted(kind)}', expected one of {expected}, or one of your own that stiffmbs.register has made known"
+            )
         return self.kinds[kind].model_validate(found, context=info.context)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:

@@ -188,7 +188,9 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
             raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
         check_class(type(part))
         if not any(kinds.fits(part) for kinds in self.kinds):
-            raise InputError(f"{name}: found {part!r}, expected a joint or a force{self._of_the_family()}")
+            raise InputError(
+                f"{name}: found {part!r}, expected a joint or a force whose markers are{self._of_the_family()}"
+            )
         return self.joints if isinstance(part, Joint) else self.forces
 
     def _changed(self, name: str, section: dict[str, Any], change: Callable[[], object]) -> None:

@@ -19,6 +19,16 @@ FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 
 MANY = 1e300
 
+SolverName = Literal["bdf", "projected", "kinematic", "auto"]
+SchemeName = Literal["euler_cromer", "rk4", "dopri5", "dop853"]
+FormulationName = Literal["SI2", "SI2_exact", "SI1", "I3", "index1"]
+"""The names of what `stiffmbs.solve` holds; schema, messages, help and types follow from these."""
+CHOICES: dict[str, object] = {
+    "SolverName": SolverName,
+    "SchemeName": SchemeName,
+    "FormulationName": FormulationName,
+}
+
 
 class Settings(TypedDict, total=False):
     """The fields of `RunSettings` for type checkers, as `run` takes them by keyword."""
@@ -27,10 +37,10 @@ class Settings(TypedDict, total=False):
     start: Number
     output: Number | None
     points: int | Literal["steps"] | None
-    solver: Literal["bdf", "projected", "kinematic", "auto"]
-    formulation: Literal["SI2", "SI2_exact", "SI1", "I3", "index1"]
+    solver: SolverName
+    formulation: FormulationName
     stabilisation: Number
-    scheme: Literal["euler_cromer", "rk4", "dopri5", "dop853"]
+    scheme: SchemeName
     rtol: Number
     atol: Number | None
     step: Number
@@ -88,12 +98,12 @@ class RunSettings(Described):
     points: int | Literal["steps"] | None = Field(
         None, description="number of output points, or the solver's own steps"
     )
-    solver: Literal["bdf", "projected", "kinematic", "auto"] = Field("bdf", description="how to solve")
-    formulation: Literal["SI2", "SI2_exact", "SI1", "I3", "index1"] = Field("SI2", description="of bdf's residual")
+    solver: SolverName = Field("bdf", description="how to solve")
+    formulation: FormulationName = Field("SI2", description="of bdf's residual")
     stabilisation: Annotated[float, Measured("angular velocity", at_least=0)] = Field(
         0.0, description="of index1: rate at which violations decay, 1/s"
     )
-    scheme: Literal["euler_cromer", "rk4", "dopri5", "dop853"] | None = Field(
+    scheme: SchemeName | None = Field(
         None, description="of projected; without it dop853, and euler_cromer where a step is given"
     )
     rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
@@ -171,6 +181,11 @@ class SteadyMotion(Described):
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+def _as_written(settings: type) -> list[tuple[str, str]]:
+    """Fields of a typed dictionary with their types as text."""
+    return [(name, kind.__forward_arg__) for name, kind in settings.__annotations__.items()]
+
+
 class _AsItIs:
     """The default of a setting in a signature: what the scene, or the settings that are given, have."""
 
@@ -183,8 +198,8 @@ def takes_settings(function: Function) -> Function:
     signature = inspect.signature(function)
     own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
     settings = [
-        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_AsItIs(), annotation=kind.__forward_arg__)
-        for name, kind in Settings.__annotations__.items()  # as text, like all annotations here
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_AsItIs(), annotation=CHOICES.get(kind, kind))
+        for name, kind in _as_written(Settings)
     ]
     function.__signature__ = signature.replace(parameters=[*own, *settings])  # type: ignore[attr-defined]
     return function

@@ -19,7 +19,7 @@ from ..describe.settings import RunSettings
 from ..results.energy_balance_notes import within_steps
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
-from .laws import has_law, has_laws
+from .laws import has_laws
 
 TOLERANCES = 3e5
 """Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
@@ -100,7 +100,7 @@ def _contradictions(rows: OutputRows) -> np.ndarray:
 
 def _acting(system: System, rows: OutputRows, k: int) -> str:
     """The law with the largest force or torque at an instant."""
-    laws = {name for group in system.groups if has_law(group) for name in group.names}
+    laws = {name for group in system.groups if group.has_law for name in group.names}
     found = reactions(system, rows.values[k : k + 1])
     of_laws = {name: abs(float(value[0])) for name, value in found.items() if name.rpartition(".")[0] in laws}
     return max(of_laws, key=lambda name: of_laws[name], default="").rpartition(".")[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -35,7 +36,7 @@ from ..solve.events.input_ends import solve_up_to_the_inputs_end
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, consistent_values, initial_values
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
-from ..solve.storage import blocks, release
+from ..solve.storage import with_gaps
 from ..solve.subsystems import Subsystem, leave_out_coordinates, solve_subsystems, subsystem_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory
@@ -48,6 +49,8 @@ from .python_faults import told_faults, up_to_a_fault
 from .settings_notes import settings_notes
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
 from .taken_again import Computed, seen_through
+
+LOGGER = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,8 @@ class Job:
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver].solve, watch or (lambda t: None)
+
+        LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
 
         def over(grid: Grid) -> Trajectory:
             if self.subsystems:
@@ -124,6 +129,7 @@ def prepare(
 
         refuse_inconsistencies(found.redundancy)
     dynamics = found.dynamics()
+    LOGGER.info("assembling %s", found.data.name)
     with told_faults(dynamics.system):
         start = _start(found.data, dynamics, found.grid.start, found.start_from)
         subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
@@ -266,7 +272,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     wrong = tuple(senseless(job.dynamics, rows, job.settings))
     wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
-    known = {name: values[solved_there] for name, values in channels.items() if not _all_finite(values)}
+    known = {name: values[solved_there] for name, values in with_gaps(channels).items()}
     wrong = (
         *wrong,
         *singular_passage_sentence(job.dynamics, rows),
@@ -303,16 +309,6 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
         trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
         message=sentence,
     )  # fmt: skip
-
-
-def _all_finite(values: np.ndarray) -> bool:
-    """Whether all are numbers, block by block: a channel of a large run lies in a file, whose memory is let go of."""
-    for block in blocks(len(values)):
-        finite = np.isfinite(values[block]).all()
-        release(values)
-        if not finite:
-            return False
-    return True
 
 
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:

@@ -42,7 +42,7 @@ AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
 as many times after each further one."""
 MOST_MESSAGES = 3
-"""Changes of hand that the note tells one by one."""
+"""Switches of the integrator that the note has one by one."""
 
 
 def traits(settings: RunSettings) -> Traits:

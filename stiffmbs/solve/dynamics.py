@@ -109,7 +109,7 @@ class Dynamics:
                 "by_reactions": len(system.term("tangent", "rate_lam").row) > 0,
             },
         )
-        self._cells = cells(self.table, DYNAMICS)
+        self._at, self._cells = self.table.ctypes.data, cells(self.table, DYNAMICS)
 
     def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
         """What a solver has set up for this state and such settings; made where there is none, one for each name."""
@@ -156,10 +156,6 @@ class Dynamics:
         if self._input_end[:2] != (start, end):
             self._input_end = start, end, first_input_end(self.system, start, end)
         return self._input_end[2]
-
-    @property
-    def _at(self) -> int:
-        return self.table.ctypes.data
 
     def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
         """Move positions by Newton's smallest moves until |C| <= tolerance; the number of moves, or a failure."""

@@ -31,7 +31,7 @@ class Traits:
     locates_events : bool
         Whether it stops where a force changes its law, or has no need to.
     switches : bool
-        Whether it event functions between integrators during a run.
+        Whether it goes from one integrator to another during a run.
     """
 
     name: str

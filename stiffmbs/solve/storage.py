@@ -7,7 +7,7 @@ import math
 import mmap
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -66,6 +66,20 @@ def blocks(count: int) -> Iterator[slice]:
     """The rows of a table in blocks."""
     for first in range(0, count, BLOCK):
         yield slice(first, min(first + BLOCK, count))
+
+
+def with_gaps(channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The channels of which not all values are finite, by blocks of rows: one of a large run lies in a file."""
+    return {name: values for name, values in channels.items() if not _finite(values)}
+
+
+def _finite(values: np.ndarray) -> bool:
+    for block in blocks(len(values)):
+        finite = np.isfinite(values[block]).all()
+        release(values)
+        if not finite:
+            return False
+    return True
 
 
 def _mapped(array: np.ndarray) -> mmap.mmap | None:

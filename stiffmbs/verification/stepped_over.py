@@ -18,7 +18,6 @@ import numpy as np
 
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..diagnostics.laws import has_law
 from ..diagnostics.singular_poses import PosesOnTheWay
 from ..errors import StiffmbsError
 from ..jobs.run import Job
@@ -255,7 +254,7 @@ def _acting(system: System, rows: OutputRows, k: int) -> str:
         for name, values in reactions(system, rows.values[around]).items()
         if np.isfinite(values).all()
     }
-    laws = {name for group in system.groups if not group.record.n_equations or has_law(group) for name in group.names}
+    laws = {name for group in system.groups if not group.record.n_equations or group.has_law for name in group.names}
     of_laws = {name: much for name, much in changes.items() if name.rpartition(".")[0] in laws}
     name = max(of_laws, key=lambda each: of_laws[each], default="")
     return name.rpartition(".")[0] if name and of_laws[name] > SHARE * max(changes.values()) else ""

@@ -55,16 +55,16 @@ def test_where_nothing_can_be_written_all_works_but_nothing_is_kept(directory, m
     monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(directory / place))
     cache.write(NAME, b"content")
     assert cache.read(NAME) is None
-    machine.compiled_source.cache_clear()
+    machine._compiled_source.cache_clear()
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
     assert not any(own.entries for own in stored().values())
     assert (directory / "a file").read_text() == "of the user's"
 
 
 def test_compiled_code_is_read_back(directory, monkeypatch):
-    machine.compiled_source.cache_clear()
+    machine._compiled_source.cache_clear()
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
-    machine.compiled_source.cache_clear()
+    machine._compiled_source.cache_clear()
     monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
     assert len(list(cache.own_directory().iterdir())) == 1

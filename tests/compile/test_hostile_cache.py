@@ -26,7 +26,7 @@ def directory(tmp_path, monkeypatch):
 
 
 def value(source, x):
-    machine.compiled_source.cache_clear()
+    machine._compiled_source.cache_clear()
     return machine.compiled_source(source, "f", "float64(float64)").call(x)
 
 

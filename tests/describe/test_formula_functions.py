@@ -55,6 +55,17 @@ def test_kernels_agree_with_numbers(name):
     np.testing.assert_allclose(solution["f.torque"], expected, rtol=1e-12, atol=1e-14)
 
 
+def test_kernels_call_a_function_by_its_name():
+    """SymPy's log(x + sqrt(x^2 + 1)) for asinh(x) would lose all digits below zero."""
+    scene = {
+        "bodies": {"a": {"mass": 1, "inertia": 1}},
+        "forces": {"f": {"type": "force", "i": "a", "force": ["asinh(-1e7*t)", 0]}},
+        "run": {"duration": 10, "points": 11},
+    }
+    solution = stiffmbs.run(stiffmbs.read_scene(json.dumps(scene)))
+    np.testing.assert_allclose(solution["f.fx"], np.arcsinh(-1e7 * solution.time), rtol=1e-14)
+
+
 @given(name=st.sampled_from(sorted(IN_FORMULAS)), low=st.floats(-2, 2), width=st.floats(1e-4, 1.5))
 def test_intervals_hold_the_values(name, low, width):
     x = Enclosure.of_time(np.array([low]), np.array([low + width]), 3)

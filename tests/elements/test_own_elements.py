@@ -8,6 +8,7 @@ import sys
 import jsonschema
 import numpy as np
 import pytest
+import sympy
 
 import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, spatial
@@ -290,6 +291,27 @@ def _stranger():
     import sympy
 
     return sympy.Symbol("k")
+
+
+class Wave(stiffmbs.Force):
+    """A force with constants of SymPy."""
+
+    kind = "wave"
+    i: Marker
+
+    @staticmethod
+    def efforts(e):
+        x = e.i.point[0]
+        return [(-sympy.E * sympy.GoldenRatio * sympy.sin(sympy.pi * x), x)]
+
+
+def test_constants_of_sympy_are_numbers_in_kernels():
+    model = Model(gravity=(0, 0))
+    model.add("a", Body(mass=1, inertia=1, position=(0.3, 0)))
+    model.add("wave", Wave(i="a"))
+    solution = model.run(duration=1.0)
+    expected = -np.e * (1 + 5**0.5) / 2 * np.sin(np.pi * solution["a.x"])
+    np.testing.assert_allclose(solution["wave.fx"], expected, rtol=1e-12)
 
 
 def test_only_joints_and_forces_are_registered():

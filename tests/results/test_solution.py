@@ -177,10 +177,11 @@ def test_the_summary_is_that_of_the_command(solution):
 
 def test_axes_have_units(solution):
     one = solution.plot("bar.angle", title="angle").axes[0]
-    assert (one.get_xlabel(), one.get_ylabel(), one.get_title()) == ("time (s)", "rad", "angle")
-    several = solution.plot("hinge.fy", "bar.x", x="bar.y").axes[0]
-    assert several.get_xlabel() == "bar.y (m)" and several.get_ylabel() == ""
-    assert [text.get_text() for text in several.get_legend().get_texts()] == ["hinge.fy (N)", "bar.x (m)"]
+    assert (one.get_xlabel(), one.get_ylabel(), one.get_title()) == ("time (s)", "bar.angle (rad)", "angle")
+    several = solution.plot("hinge.fy", "bar.x", x="bar.y")
+    assert [axes.get_ylabel() for axes in several.axes] == ["hinge.fy (N)", "bar.x (m)"]
+    assert several.axes[-1].get_xlabel() == "bar.y (m)"
+    assert [text.get_text() for text in several.legends[0].get_texts()] == ["hinge.fy", "bar.x"]
     assert solution.plot().axes[0].get_title() == solution.figure.title
     assert replace(solution, figure=None).plot().axes[0].get_title() == "total energy"
     pyplot.close("all")

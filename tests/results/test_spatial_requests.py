@@ -180,7 +180,7 @@ def test_channels_parameters_and_functions(solution):
         ("fx()", r"requests.r: found 0 names in 'fx\(\)'"),
         (
             "top.speed",
-            r"requests.r: found 'top.speed' in 'top.speed', expected a channel of a body, a joint or a force",
+            r"requests.r: found 'top.speed' in 'top.speed', expected one of top.x, top.y, top.z, ",
         ),
         ("ball.torque", r"requests.r: found 'ball.torque'"),
         ("what", r"requests.r: found the unknown name 'what'"),

@@ -12,7 +12,7 @@ from stiffmbs.solve.explicit.projected import TRAITS, solve
 from stiffmbs.solve.solver import FOR_ALL_SOLVERS, Registered, Traits
 
 CHOICES = (
-    {"solver": "bdf"}, {"solver": "bdf", "formulation": "index1"}, {"solver": "auto"}, {"solver": "kinematic"},
+    *({"solver": name} for name in SOLVERS if name != "projected"), {"solver": "bdf", "formulation": "index1"},
     *({"solver": "projected", "scheme": scheme} for scheme in TRAITS),
 )  # fmt: skip
 OTHER = {

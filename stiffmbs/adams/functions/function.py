@@ -51,6 +51,12 @@ def read_function(found: Arguments, name: str) -> Function | None:
             f"found {name} = {text}, which is computed by a subroutine of its own, expected an expression",
             found.line(name),
         )
+    return read_any_function(found, name)
+
+
+def read_any_function(found: Arguments, name: str) -> Function:
+    """As `read_function`, also of a user's own subroutine, which is a fault only where its value is needed."""
+    text = (found.text(name) or "").strip().strip('"')
     try:
         return Function(text, parse(text), found.line(name), found.label)
     except ExpressionError as error:

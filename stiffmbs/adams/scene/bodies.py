@@ -15,6 +15,8 @@ from .massless import MASSLESS, filled, lacks_inertia, massless_moment
 from .mechanism import Mechanism
 from .number_format import plain, quaternion, vector
 
+ROUNDING = 1e-10
+"""Part of the sum of two principal moments by which the third may be greater without a word."""
 POINT_INERTIA = 1.0
 """Moment of inertia over mass that a point mass gets in the scene, m^2; its orientation is held, so it has no effect."""
 
@@ -38,6 +40,7 @@ def _body(mechanism: Mechanism, part: Part) -> dict[str, Any]:
     initial = mechanism.center(part).within(part.frame)
     body: dict[str, Any] = {
         "mass": plain(part.mass),
+        **_any_moments(mechanism, part),
         "inertia": _inertia(mechanism, part),
         **_pose("position", initial),
     }
@@ -87,12 +90,18 @@ def _inertia(mechanism: Mechanism, part: Part) -> list[Any]:
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
-    """Which parts have been given inertia, a sentence."""
+    """Which parts have been given inertia, or have such as no body has, a sentence each."""
     lacking = [p.label for p in mechanism.moving if not p.point and lacks_inertia(_tensor(mechanism, p))]
     if lacking:
         yield (
             f"{', '.join(lacking)} {'have' if len(lacking) > 1 else 'has'} no moment of inertia about some axis, taken as "
             f"{MASSLESS:g} of that of the lightest part's mass at the mechanism's reach"
+        )
+    unreal = [p.label for p in mechanism.moving if _breaks_triangle(mechanism, p)]
+    if unreal:
+        yield (
+            f"warning: {', '.join(unreal)} {'have' if len(unreal) > 1 else 'has'} a principal moment of inertia greater than "
+            "the sum of the other two, as no body has; it is taken as it stands"
         )
 
 
@@ -112,11 +121,25 @@ def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
     return tensor
 
 
+def _any_moments(mechanism: Mechanism, part: Part) -> dict[str, Any]:
+    """That the moments break the triangle inequality, where they do."""
+    return {"any_moments": True} if _breaks_triangle(mechanism, part) else {}
+
+
+def _breaks_triangle(mechanism: Mechanism, part: Part) -> bool:
+    """Whether a principal moment is greater than the sum of the other two, beyond what arithmetic rounds."""
+    tensor = _tensor(mechanism, part)
+    if part.point or lacks_inertia(tensor):
+        return False
+    small, middle, large = np.linalg.eigvalsh(tensor)
+    return bool(large > (small + middle) * (1 + ROUNDING))
+
+
 def _check(part: Part, tensor: np.ndarray) -> None:
     small, middle, large = np.linalg.eigvalsh(tensor)
-    if small <= 0 or large > (small + middle) * (1 + 1e-6):
+    if small <= 0:
         raise DatasetFault(
             part.line, part.label,
             f"found principal moments of inertia {small:.4g}, {middle:.4g} and {large:.4g} kg m^2, expected three above "
-            "zero of which none is greater than the sum of the other two",
+            "zero",
         )  # fmt: skip

@@ -96,6 +96,8 @@ class Arguments:
             return
         if name in found:
             raise self.fault(f"found {name} twice, expected it once", line)
+        if len(texts) > 1 and not texts[0]:  # the list begins on the continuation line
+            texts = texts[1:]
         values = (" ".join(texts),) if name in self._functions and texts else tuple(texts)
         found[name] = Argument(name, values, line)
 

@@ -169,14 +169,14 @@ def read_primitive(statement: Statement, units: Units) -> Joint:
 
 def read_general_constraint(statement: Statement, units: Units) -> GeneralConstraint:
     """An expression that stays zero."""
-    found = Arguments(statement, "GCON", ("I", "FUNCTION"), ("FUNCTION",))
+    found = Arguments(statement, "GCON", ("I", "FUNCTION", "ROUTINE"), ("FUNCTION",))
     function = required_function(found, "FUNCTION")
     return GeneralConstraint(found.ident(), statement.line, statement.alias, "GCON", function, found.reference("I"))
 
 
 _MOTION = (
     "JOINT", "I", "J", *COMPONENTS, ROTATIONAL, TRANSLATIONAL, "DISPLACEMENT", "VELOCITY", "ACCELERATION", "ICDISP",
-    "ICVEL", "FUNCTION",
+    "ICVEL", "FUNCTION", "ROUTINE",
 )  # fmt: skip
 
 

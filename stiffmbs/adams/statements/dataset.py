@@ -12,7 +12,7 @@ from .bodies import Marker, Part, read_marker
 from .changes import Changes
 from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Numbered
 from .elastic import Beam, Elastic, SpringDamper
-from .fault import DatasetFault
+from .fault import DatasetFault, raise_all
 from .forces import SingleForce, VectorForce, read_gravity
 from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
 from .outputs import Array, Request, Spline, Variable
@@ -127,18 +127,29 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     gravity = (0.0, 0.0, 0.0)
     for statement in _once("ACCGRAV", named):
         gravity = read_gravity(statement, units)
+    data = _data(named, units)
+    return Dataset(title, units, gravity, data, tuple(_notes(named, ended, without_title)))
+
+
+def _data(named: list[tuple[str | None, Statement]], units: Units) -> dict[str, dict[int, Any]]:
+    """The data of all statements by full name and number; what is wrong with any of them is told at once."""
     data: dict[str, dict[int, Any]] = {}
     part: Part | None = None
+    faults = []
     for name, statement in named:
-        if name in READERS:
+        if name not in READERS:
+            continue
+        try:
             one = read_marker(statement, units, part) if name == "MARKER" else READERS[name](statement, units)
             part = one if isinstance(one, Part) else part
             if one.ident in data.setdefault(name, {}):
-                raise DatasetFault(
-                    statement.line, one.label, f"found it a second time (first in line {data[name][one.ident].line})"
-                )
+                first = data[name][one.ident].line
+                raise DatasetFault(statement.line, one.label, f"found it a second time (first in line {first})")
             data[name][one.ident] = one
-    return Dataset(title, units, gravity, data, tuple(_notes(named, ended, without_title)))
+        except DatasetFault as fault:
+            faults.append(fault)
+    raise_all(faults)
+    return data
 
 
 def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statement]:

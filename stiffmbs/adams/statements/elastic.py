@@ -110,7 +110,7 @@ def read_bushing(statement: Statement, units: Units) -> Elastic:
 
 def read_field(statement: Statement, units: Units) -> Elastic:
     """A linear field: full matrices, written column by column."""
-    names = ("I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FUNCTION")
+    names = ("I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FUNCTION", "ROUTINE")
     found = Arguments(statement, "FIELD", names, ("FUNCTION",))
     read_function(found, "FUNCTION")  # refuses a user's subroutine
     stiffness = _columns(found.numbers("KMATRIX", 36) or (0.0,) * 36)

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ...errors import InputError
+
+MOST_TOLD = 8
 
 
 class DatasetFault(InputError):
@@ -10,4 +14,14 @@ class DatasetFault(InputError):
 
     def __init__(self, line: int, label: str, reason: str) -> None:
         super().__init__(f"line {line}, {label}: {reason}")
-        self.line = line
+        self.line, self.label, self.reason = line, label, reason
+
+
+def raise_all(faults: Sequence[DatasetFault]) -> None:
+    """Raise what is wrong with several statements as one fault, at the line of the first; nothing without any."""
+    if not faults:
+        return
+    first, *others = faults
+    told = [first.reason, *map(str, others[: MOST_TOLD - 1])]
+    more = f"; and {len(faults) - MOST_TOLD} more" if len(faults) > MOST_TOLD else ""
+    raise DatasetFault(first.line, first.label, "; ".join(told) + more)

@@ -53,7 +53,7 @@ def read_gravity(statement: Statement, units: Units) -> tuple[float, float, floa
 
 def read_single_force(statement: Statement, units: Units) -> SingleForce:
     """A force or torque of one component."""
-    names = ("I", "J", TRANSLATIONAL, ROTATIONAL, "ACTIONONLY", "REACTION", "FUNCTION")
+    names = ("I", "J", TRANSLATIONAL, ROTATIONAL, "ACTIONONLY", "REACTION", "FUNCTION", "ROUTINE")
     found = Arguments(statement, "SFORCE", names, ("FUNCTION",))
     sort = found.one_of(TRANSLATIONAL, ROTATIONAL)
     if sort is None:
@@ -71,7 +71,7 @@ _COMPONENTS = {"VFORCE": _FORCE, "VTORQUE": _TORQUE, "GFORCE": (*_FORCE, *_TORQU
 def read_vector_force(statement: Statement, units: Units, keyword: str) -> VectorForce:
     """A force of three components, a torque of three, or both."""
     names = _COMPONENTS[keyword]
-    found = Arguments(statement, keyword, ("I", "JFLOAT", "RM", *names, "FUNCTION"), (*names, "FUNCTION"))
+    found = Arguments(statement, keyword, ("I", "JFLOAT", "RM", *names, "FUNCTION", "ROUTINE"), (*names, "FUNCTION"))
     read_function(found, "FUNCTION")  # refuses a user's subroutine
     missing = [name for name in names if name not in found]
     if "FUNCTION" in found or (missing and keyword != "GFORCE"):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 
-from ..functions.function import Function, is_subroutine, read_function, required_function
+from ..functions.expression import parse
+from ..functions.function import Function, is_subroutine, read_any_function, read_function, required_function
 from .arguments import Arguments
 from .constraints import Numbered
 from .text import Statement
@@ -67,7 +68,7 @@ class Array(Numbered):
 
 
 _REQUEST = (
-    *SORTS, "I", "J", "RM", "COMMENT", *COLUMNS, "FUNCTION", "TITLE", "CNAMES", "CUNITS", "RESULTS_NAME",
+    *SORTS, "I", "J", "RM", "COMMENT", *COLUMNS, "FUNCTION", "TITLE", "CNAMES", "CUNITS", "CLABELS", "RESULTS_NAME", "VARIABLES",
     "ROUTINE",
 )  # fmt: skip
 
@@ -80,6 +81,7 @@ def read_request(statement: Statement, units: Units) -> Request:
     computed = tuple(column for column in FUNCTIONS if is_subroutine(found, column))
     read = {column: read_function(found, column) for column in FUNCTIONS if column not in computed}
     functions = tuple((column, function) for column, function in read.items() if function is not None)
+    functions += tuple(_of_variable(found, ident) for ident in found.idents("VARIABLES"))
     if sort is None and not functions and not computed:
         raise found.fault(f"found no quantity, expected one of {', '.join(SORTS)} or {COLUMNS[1]} = an expression")
     if sort is not None and i is None:
@@ -90,10 +92,19 @@ def read_request(statement: Statement, units: Units) -> Request:
     )  # fmt: skip
 
 
+def _of_variable(found: Arguments, ident: int) -> tuple[str, Function]:
+    """A column that reports a variable."""
+    text = f"VARVAL({ident})"
+    return f"VARIABLE_{ident}", Function(text, parse(text), found.line("VARIABLES"), found.label)
+
+
 def read_variable(statement: Statement, units: Units) -> Variable:
     """A named expression; its initial value is needed by an iteration that has no place here."""
-    found = Arguments(statement, "VARIABLE", ("IC", "FUNCTION"), ("FUNCTION",))
-    function = required_function(found, "FUNCTION")
+    found = Arguments(statement, "VARIABLE", ("IC", "FUNCTION", "ROUTINE"), ("FUNCTION",))
+    if is_subroutine(found, "FUNCTION"):
+        function = read_any_function(found, "FUNCTION")
+    else:
+        function = required_function(found, "FUNCTION")
     return Variable(found.ident(), statement.line, statement.alias, "VARIABLE", function)
 
 

@@ -10,6 +10,8 @@ import click
 LOGGER = logging.getLogger("stiffmbs")
 QUIET = "stiffmbs.quiet"
 """Key of a context under which commands find that they were asked to be quiet."""
+LOUDNESS = (logging.WARNING, logging.INFO, logging.DEBUG)
+"""What is told without ``-v``, with one and with two."""
 
 
 class ToStandardError(logging.Handler):
@@ -39,23 +41,25 @@ def with_logging_options(command: click.Command) -> click.Command:
 def is_quiet() -> bool:
     """Whether the command that runs was asked to be quiet."""
     context = click.get_current_context(silent=True)
-    return bool(context and context.meta.get(QUIET))
+    return context is not None and is_quiet_in(context)
+
+
+def is_quiet_in(context: click.Context) -> bool:
+    """Whether a command was asked to be quiet, or the one that called it."""
+    return bool(context.meta.get(QUIET))
 
 
 def _quieten(context: click.Context, _: click.Parameter, asked: bool) -> None:
     if asked:
         context.meta[QUIET] = True
-        _listen(context, logging.ERROR)
 
 
 def _tell_more(context: click.Context, _: click.Parameter, count: int) -> None:
-    if count:
-        _listen(context, logging.INFO if count == 1 else logging.DEBUG)
-
-
-def _listen(context: click.Context, level: int) -> None:
-    """Show records from a level on until the command ends."""
-    handler, before = ToStandardError(), LOGGER.level
+    """Show records as loud as asked for until the command ends."""
+    if not count and any(isinstance(handler, ToStandardError) for handler in LOGGER.handlers):
+        return  # as loud as the command that called this one
+    level = logging.ERROR if is_quiet_in(context) else LOUDNESS[min(count, 2)]
+    handler, before = ToStandardError(level), LOGGER.level
     LOGGER.addHandler(handler)
     LOGGER.setLevel(level)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import importlib
+import logging
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,7 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from . import cache as store
+from .told import Told
 
+LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
@@ -38,12 +41,13 @@ class _Source:
 
     signatures: Signatures
     namespace: Callable[[], Mapping[str, Any]]
+    of: str
+    """What they belong to, in words."""
     text: str = ""
     """What defines them if that is in no file."""
 
 
-@cache
-def compiled_source(source: str, name: str, signature: str) -> Compiled:
+def compiled_source(source: str, name: str, signature: str, of: str = "") -> Compiled:
     """Compile a function from generated source, or load it from the cache.
 
     Parameters
@@ -54,15 +58,21 @@ def compiled_source(source: str, name: str, signature: str) -> Compiled:
         The function's name.
     signature : str
         Such as ``void(int64, float64*)``.
+    of : str, optional
+        What it belongs to, told while it is compiled.
     """
+    return _compiled_source(source, name, signature, Told(of))
 
+
+@cache
+def _compiled_source(source: str, name: str, signature: str, of: Told) -> Compiled:
     def namespace() -> dict[str, Any]:
         names: dict[str, Any] = {}
         exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations
         return names
 
     entry = store.name_of(store.KERNEL, source, _language_text(), _called_text(), signature)
-    return _loaded(entry, _Source(((name, signature),), namespace, source))[name]
+    return _loaded(entry, _Source(((name, signature),), namespace, of.words, source))[name]
 
 
 @cache
@@ -79,7 +89,10 @@ def _called_text() -> str:
 def compiled_routines(module: str, signatures: Signatures) -> dict[str, Compiled]:
     """Compile functions of one of the package's ``native`` modules together, or load them from the cache."""
     entry = store.name_of(store.ROUTINE, _language_text(), _native_text(), module, repr(signatures))
-    return _loaded(entry, _Source(signatures, lambda: vars(importlib.import_module(module))))
+    return _loaded(
+        entry,
+        _Source(signatures, lambda: vars(importlib.import_module(module)), f"the routines {module.rpartition('.')[2]}"),
+    )
 
 
 @cache
@@ -104,6 +117,7 @@ def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
     code = _unpacked(entry, store.read(entry))
     found = _linked(code, entry, source.signatures) if code else None
     if found is None:
+        LOGGER.info("compiling %s", source.of)
         code = _object_code(source, _symbol(entry, ""))
         store.write(entry, _header(entry, code) + code)
         found = _linked(code, entry, source.signatures)

@@ -54,8 +54,11 @@ class _Printer(PythonCodePrinter):
         product = "*".join([factor] * whole + [f"sqrt({self._print(base)})"] * half)
         return f"({product})" if power > 0 else f"(1.0/({product}))"
 
-    def _print_Pi(self, expr: sp.NumberSymbol) -> str:
+    def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
+        """The value of a constant such as pi."""
         return repr(float(expr))
+
+    _print_Pi = _print_Exp1 = _print_EulerGamma = _print_GoldenRatio = _print_Catalan = _print_NumberSymbol
 
     def _print_NonsmoothBase(self, expr: NonsmoothBase) -> str:
         arguments = [f"{argument}.0" if argument.is_Integer else self._print(argument) for argument in expr.args]

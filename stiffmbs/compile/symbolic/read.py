@@ -14,13 +14,17 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
+from ...describe.formula.functions import FUNCTIONS
 from ...errors import InputError
 from .nonsmooth import Chosen, Magnitude, NonsmoothBase, Sign, greater, less
 
 KNOWN: tuple[type[sp.Basic], ...] = (
-    sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.atan2, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log, sp.Piecewise,
-)  # fmt: skip
-"""Functions that kernels have as they are."""
+    *(
+        getattr(sp, name) for name, function in FUNCTIONS.items() if function.in_c and name != "sqrt"
+    ),  # which is a power
+    sp.Piecewise,
+)
+"""Functions that kernels have as they are: those that formulas have, and conditions."""
 BY_OTHERS = (sp.cos, sp.cosh, sp.tanh, sp.log)
 """Functions by which SymPy may write one that kernels do not have, tried in this order."""
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 
 @dataclass(frozen=True)
 class WrittenScene:
-    """The content of a scene's file, and what was changed of it.
+    """The content of a scene's file, and what was changed of it; scenes are equal wherever they come from.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class WrittenScene:
         Where meshes are looked for.
     """
 
-    content: Mapping[str, Any]
-    changes: tuple[tuple[str, Any], ...]
-    source: str
-    folder: Path | None
+    content: Mapping[str, Any] = field(compare=False)
+    changes: tuple[tuple[str, Any], ...] = field(compare=False)
+    source: str = field(compare=False)
+    folder: Path | None = field(compare=False)

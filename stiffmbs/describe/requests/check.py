@@ -94,7 +94,8 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
                     "force or a request"
                 )
             raise ValueError(
-                f"{where}: found '{owner}.{name}' in '{output.text}', expected a channel of a body, a joint or a force"
+                f"{where}: found '{owner}.{name}' in '{quoted(output.text)}', expected one of "
+                f"{', '.join(f'{owner}.{known}' for known in _of(owner, model, names)) or 'the requests by name'}"
             )
     _check_meanings(where, output, others)
 

@@ -7,16 +7,16 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 
 from ..formula import measured
-from ..formula.dimension import Known, measured_in
+from ..formula.dimension import Known, alike, measured_in, of_branch, of_first, of_step, plain_always
 from ..formula.field import FormulaOf
+from ..formula.functions import FUNCTIONS, Rule
 from ..formula.text import FormulaError
 from ..units.units import NUMBER, named_unit
 from .names import OF_RUN
 from .output import Output, Term, channel, placeholder
 
-ALIKE: dict[str, slice] = {"abs": slice(1), "min": slice(None), "max": slice(None), "mod": slice(None),
-                           "step": slice(2, 5, 2), "step5": slice(2, 5, 2), "branch": slice(1, 4)}  # fmt: skip
-"""The arguments of functions whose value is in the unit of these."""
+ALIKE: dict[Rule, slice] = {of_first: slice(1), alike: slice(None), of_step: slice(2, 5, 2), of_branch: slice(1, 4)}
+"""The arguments that a function's value is in the unit of, by the rule for its dimension."""
 ANGLES = ("asin", "acos", "atan", "atan2")
 """Functions whose value is in rad."""
 _ANYTHING = FormulaOf(coordinates=True, velocities=True)
@@ -139,5 +139,6 @@ def _kept(tree: ast.expr, of_name: Callable[[str], str]) -> Iterator[str]:
         case ast.Call(ast.Name(name), _) if name in ANGLES:
             yield "rad"
         case ast.Call(ast.Name(name), arguments):
-            for part in arguments[ALIKE[name]] if name in ALIKE else ():
+            rule = FUNCTIONS[name].dimension if name in FUNCTIONS else plain_always
+            for part in arguments[ALIKE[rule]] if rule in ALIKE else ():
                 yield from _kept(part, of_name)

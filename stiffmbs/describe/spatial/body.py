@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, WithJsonSchema, field_validator
+from pydantic import Field, ValidationInfo, WithJsonSchema, field_validator
 
 from .. import given
 from ..body import check_names
@@ -46,6 +46,8 @@ class Body(Described):
     open : tuple of str
         Which of ``velocity`` and ``omega`` are not prescribed: they follow, through joints and drives, from those that
         are; where these leave a choice, the value written stands.
+    any_moments : bool
+        Whether the principal moments may break the triangle inequality, as those of no distribution of mass do.
     markers : mapping of str to Placement
         Named points and orientations on the body, in its own axes from its origin.
     geometry : mappings, optional
@@ -53,6 +55,9 @@ class Body(Described):
     """
 
     mass: si.PositiveMass = Field(description="mass, kg")
+    any_moments: bool = Field(
+        False, description="whether a principal moment may be greater than the sum of the other two"
+    )
     inertia: Inertia = Field(
         description="Ixx, Iyy, Izz or the 3x3 tensor about the centre of mass in the body's own axes, kg m^2"
     )
@@ -81,6 +86,7 @@ class Body(Described):
             self,
             *,
             mass: given.Number,
+            any_moments: bool = False,
             inertia: given.Matrix,
             center_of_mass: given.Numbers = ORIGIN,
             position: given.Numbers = ORIGIN,
@@ -104,7 +110,7 @@ class Body(Described):
 
     @field_validator("inertia")
     @classmethod
-    def _of_a_body(cls, inertia: tuple[Row, Row, Row]) -> tuple[Row, Row, Row]:
+    def _of_a_body(cls, inertia: tuple[Row, Row, Row], info: ValidationInfo) -> tuple[Row, Row, Row]:
         largest = max(abs(part) for row in inertia for part in row)
         for row, column in itertools.combinations(range(3), 2):
             one, other = inertia[row][column], inertia[column][row]
@@ -116,7 +122,7 @@ class Body(Described):
         small, middle, large = np.linalg.eigvalsh(np.array(inertia))
         if small <= 0:
             raise ValueError(f"found a principal moment of {small:g} kg m^2, expected all three greater than zero")
-        if small + middle < large * (1 - MOMENT_ROUNDING):
+        if small + middle < large * (1 - MOMENT_ROUNDING) and not info.data.get("any_moments"):
             raise ValueError(
                 f"found the principal moments {small:g}, {middle:g} and {large:g} kg m^2, expected none greater than "
                 "the sum of the other two"

@@ -73,5 +73,8 @@ class Engine(Protocol):
     def statistics(self) -> dict[str, int | float | str]:
         """The linear solver, and counters since the first start."""
 
+    def last_step(self) -> tuple[float, int] | None:
+        """Size, s, and order of the last step, where they are known."""
+
     def history(self) -> History:
         """Ends of the steps, and their orders where they are known."""

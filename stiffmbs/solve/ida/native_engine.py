@@ -159,6 +159,10 @@ class NativeEngine:
         """The linear solver, and counters since the first start."""
         return {"linear_solver": self._matrix.sentence(), **self._ida.statistics()}
 
+    def last_step(self) -> tuple[float, int] | None:
+        """Size, s, and order of the last step, where they are known."""
+        return self._ida.history.last
+
     def history(self) -> History:
         """Ends of the steps and their orders."""
         return History(self._ida.history.t, self._ida.history.order)

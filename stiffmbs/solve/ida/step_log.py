@@ -49,6 +49,14 @@ class StepLog:
             self._chunks.append(self._rows[:kept].copy())
             self._kept += kept
 
+    @property
+    def last(self) -> tuple[float, int] | None:
+        """Size, s, and order of the last step that is kept."""
+        if not self._chunks or not len(self._chunks[-1]):
+            return None
+        _, order, size = self._chunks[-1][-1]
+        return float(size), int(order)
+
     def _all(self) -> np.ndarray:
         return np.concatenate([np.empty((0, WIDTH)), *self._chunks])
 

@@ -274,6 +274,10 @@ class SundaeEngine:
             **calls,
         }
 
+    def last_step(self) -> tuple[float, int] | None:
+        """Size, s, and order of the last step: scikit-sundae gives none of them."""
+        return None
+
     def history(self) -> History:
         """Ends of the steps; their orders are not known here."""
         return History(self.callbacks.step_times, np.empty(0, dtype=int))

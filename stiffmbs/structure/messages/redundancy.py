@@ -115,7 +115,7 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
                 "so much"
             )
         if not rank_result.motion_unique:
-            yield f"a force or rate depends on reactions of {listed(joints)} that are not unique, so the motion is not unique either"
+            yield f"a force (of friction, or by a formula) or a rate depends on reactions of {listed(joints)} that are not unique, so the motion is not unique either"
 
 
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:

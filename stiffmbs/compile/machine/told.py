@@ -1,0 +1,12 @@
+"""Words for what is told of a compilation, which have no part in what is compiled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Told:
+    """Words that equal all others, so that functions that keep their results by their arguments don't mind them."""
+
+    words: str = field(default="", compare=False)
