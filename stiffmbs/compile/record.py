@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from ..describe.element import Component, Element
 from .kind import Kind, Shape, with_place
 from .machine import cache as store
-from .machine.told import Told
+from .machine.description import Description
 from .terms import TERM_SETS
 
 if TYPE_CHECKING:
@@ -82,11 +82,11 @@ def record_of(kind: Kind, place: str = "") -> KindRecord:
     place : str, optional
         Its place among others that are asked for, such as ``2 of 7 kinds``; told while it is derived.
     """
-    return _record_of(kind, Told(place))
+    return _record_of(kind, Description(place))
 
 
 @cache
-def _record_of(kind: Kind, place: Told) -> KindRecord:
+def _record_of(kind: Kind, place: Description) -> KindRecord:
     entry = _entry(kind)
     record = _read(entry) if entry else None
     if record is not None:

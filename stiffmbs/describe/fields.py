@@ -82,14 +82,6 @@ else:
         """A model whose construction fails in one sentence."""
 
 
-class _SignatureOfBuilt:
-    """The signature of a class that is built when it is first used: asking for it is such a use."""
-
-    def __get__(self, one: Any, kind: type[BaseModel]) -> Any:
-        kind.model_rebuild()  # which puts the signature in place of this
-        return kind.__signature__
-
-
 class Described(_Base):
     """Base of all descriptions: frozen, no unknown keys, and errors of one sentence.
 
@@ -100,10 +92,6 @@ class Described(_Base):
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        cls.__signature__ = _SignatureOfBuilt()  # type: ignore[assignment]
 
     def __repr_args__(self) -> Iterator[tuple[str, Any]]:
         """The fields that do not have their defaults, for ``repr``."""

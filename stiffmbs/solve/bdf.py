@@ -29,8 +29,8 @@ from .ida.native_engine import NativeEngine
 from .ida.sundae import SundaeEngine
 from .initial import InitialValues
 from .solver import Traits
+from .step_logging import is_logged, log_step
 from .suspect import suspect
-from .told_step import is_heard, tell_step
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
 SHORT = 8
@@ -77,8 +77,8 @@ def integrated(
     with Ending() as ending:
         for stretch, reached in enumerate(integrator.run(start, grid)):
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
-            if is_heard() and (step := integrator.engine.last_step()):
-                tell_step(reached.t, *step)
+            if is_logged() and (step := integrator.engine.last_step()):
+                log_step(reached.t, *step)
             watch(reached.t)
             integrator.reached = reached
             failure = _failure(integrator, reached) if reached.failure or stretch > SHORT else ""

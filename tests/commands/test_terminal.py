@@ -88,7 +88,7 @@ def test_stages_and_steps_are_told_to_who_listens(examples, caplog):
 
 
 def test_two_kinds_with_the_same_kernel_share_it_whatever_is_told_of_them():
-    from stiffmbs.compile.machine.told import Told
+    from stiffmbs.compile.machine.description import Description
 
-    assert Told("revolute (1 of 2 kinds)") == Told("weight")
-    assert len({Told("one"), Told("another")}) == 1
+    assert Description("revolute (1 of 2 kinds)") == Description("weight")
+    assert len({Description("one"), Description("another")}) == 1

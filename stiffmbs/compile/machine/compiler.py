@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from . import cache as store
-from .told import Told
+from .description import Description
 
 LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
@@ -61,11 +61,11 @@ def compiled_source(source: str, name: str, signature: str, of: str = "") -> Com
     of : str, optional
         What it belongs to, told while it is compiled.
     """
-    return _compiled_source(source, name, signature, Told(of))
+    return _compiled_source(source, name, signature, Description(of))
 
 
 @cache
-def _compiled_source(source: str, name: str, signature: str, of: Told) -> Compiled:
+def _compiled_source(source: str, name: str, signature: str, of: Description) -> Compiled:
     def namespace() -> dict[str, Any]:
         names: dict[str, Any] = {}
         exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations

@@ -18,8 +18,8 @@ from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
 from ..native.statuses import AT_END, AT_EVENT, PAUSED
+from ..step_logging import is_logged, log_step
 from ..suspect import suspect
-from ..told_step import is_heard, tell_step
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
 from .scheme import Scheme
@@ -112,8 +112,8 @@ class AdaptiveRun:
             held = max(1, most // SOON) if leaving else most
             status = advance(stop, most, held, self._grid.times is None, work.at)
             work.collect(self._rows)
-            if is_heard():
-                tell_step(work.t, work.h)
+            if is_logged():
+                log_step(work.t, work.h)
             self._watch(work.t)
             if work.t < self._grid.end:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))

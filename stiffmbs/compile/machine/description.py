@@ -1,4 +1,4 @@
-"""Words for what is told of a compilation, which have no part in what is compiled."""
+"""What is logged of a compilation, which has no part in what is compiled."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
-class Told:
+class Description:
     """Words that equal all others, so that functions that keep their results by their arguments don't mind them."""
 
     words: str = field(default="", compare=False)

@@ -1,4 +1,4 @@
-"""Steps, told by Python's logging to whoever listens."""
+"""Steps, by Python's logging."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import logging
 LOGGER = logging.getLogger(__name__)
 
 
-def is_heard() -> bool:
-    """Whether anyone listens; asked before a step is looked up."""
+def is_logged() -> bool:
+    """Whether steps are logged; asked before one is looked up."""
     return LOGGER.isEnabledFor(logging.DEBUG)
 
 
-def tell_step(t: float, size: float, order: int = 0) -> None:
-    """Tell of the last step.
+def log_step(t: float, size: float, order: int = 0) -> None:
+    """Log the last step.
 
     Parameters
     ----------
