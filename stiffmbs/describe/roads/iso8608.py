@@ -80,6 +80,7 @@ class Iso8608Road(Road):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
+        """Cosines of each track, which rise from the start."""
         from .road import ramp
 
         height = two_tracks(r, x, y)

@@ -28,6 +28,7 @@ class SineSweep(Road):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
+        """A sine whose wavelength changes along x."""
         from sympy import Rational, pi, sin
 
         s = ramp(x, r.start, r.length)

@@ -42,6 +42,7 @@ class FialaTyre(Tyre):
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+        """Forces and moments by Fiala's formulas."""
         from sympy import Float, Rational, sqrt, tan
 
         across, slip = e.named(tan(rolling.slip_angle)), rolling.slip

@@ -46,6 +46,7 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
+        """The effective rolling radius by BREFF, DREFF and FREFF of the property file."""
         from sympy import atan
 
         p = e.properties
@@ -55,6 +56,7 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+        """Forces and moments by the Magic Formula."""
         from ...tyres.magic_formula import Slip, wrench
 
         p = e.properties
