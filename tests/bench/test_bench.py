@@ -1,6 +1,8 @@
 """The benchmarks: yardsticks by hand against references, closed values and this package; what the command prints."""
 
 import json
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -181,3 +183,10 @@ def test_contestants_that_never_arrive_are_left_out():
 
     problem = Problem("none", lambda: np.zeros(1), lambda: [Contestant("one", False, at)])
     assert problem.measured() == []
+
+
+def test_families_are_named_in_any_folder(tmp_path, monkeypatch):
+    """The scenes of one family lie in the folder `examples` of the directory at hand."""
+    monkeypatch.chdir(tmp_path)
+    code = "from stiffmbs.bench.benchmark import families; assert all(families().values())"
+    assert subprocess.run([sys.executable, "-c", code], cwd=tmp_path).returncode == 0
