@@ -10,6 +10,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from .algebraic_states import rates_of_algebraic
 from .dynamics import Dynamics
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
@@ -238,9 +239,11 @@ class Integrator:
         equations.start_from(start.q)
         y, yp = np.zeros(equations.n), np.zeros(equations.n)
         y[equations.independent] = coordinates.state(start.q, start.u)
-        yp[equations.independent] = coordinates.state(
-            self.dynamics.position_rates(start.q, start.u), start.acceleration
+        rates = self.dynamics.position_rates(start.q, start.u)
+        rates[self.dynamics.system.algebraic_coordinates] = rates_of_algebraic(
+            self.dynamics, t, start.q, start.u, start.acceleration
         )
+        yp[equations.independent] = coordinates.state(rates, start.acceleration)
         solved = at["lam"] != ABSENT
         multipliers = yp if equations.formulation.integrated else y
         multipliers[at["lam"][solved]] = start.lam[solved]

@@ -11,8 +11,8 @@ from scipy.sparse.linalg import splu
 from ..compile.system import System
 from ..compile.terms import TERM_AXES
 from ..errors import SolverError
+from .algebraic_states import failure
 from .dynamics import Dynamics
-from .failures import FAILURES
 from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
@@ -75,7 +75,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
+        raise SolverError(f"no equilibrium was found: {failure(dynamics, status, t)}")
     rates = dynamics.position_rates(state.q, state.u)[system.first_state :]
     lam = state.lam[: system.n_c].copy()
     steady = motion.acceleration(dynamics)

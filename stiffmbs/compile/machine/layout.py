@@ -44,7 +44,7 @@ EQUATIONS: Layout = {
     "n_slots": INT, "n_entries": INT, "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
-    "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
+    "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
 }  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
@@ -91,10 +91,11 @@ DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
     "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
+    "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
 }  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
 `behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
-depends on multipliers."""
+depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values."""
 
 
 IDA: Layout = {

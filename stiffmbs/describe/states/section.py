@@ -18,11 +18,12 @@ from ..formula.field import Formula
 from ..formula.names import FormulaNames
 from ..marker import GROUND
 from ..units.units import CONSTANTS, UNITS
+from .algebraic_state import AlgebraicState
 from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
 from .state import State, dimension_of_state
 
 KINDS: dict[str, type[StateEntry]] = {
-    "rate": State, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
+    "rate": State, "zero": AlgebraicState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
 }  # fmt: skip
 """The kinds of entries, by a key that only they have."""
 
