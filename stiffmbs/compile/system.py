@@ -118,6 +118,18 @@ class System:
         """The numbers of the coordinates that are algebraic states."""
         return self.first_state + np.flatnonzero(self.algebraic)
 
+    @cached_property
+    def following_reactions(self) -> np.ndarray:
+        """The numbers of the algebraic states, among the coordinates, that follow multipliers at once, directly or through others."""
+        found = np.intersect1d(self.term("tangent", "rate_lam").row, self.algebraic_coordinates)
+        among = self.term("tangent", "rate_q")
+        inside = np.isin(among.row, self.algebraic_coordinates)
+        while True:
+            more = np.union1d(found, among.row[inside & np.isin(among.column, found)])
+            if len(more) == len(found):
+                return found
+            found = more
+
     @property
     def n_counters(self) -> int:
         """Coordinates that count whole turns of angles."""

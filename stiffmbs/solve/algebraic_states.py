@@ -55,9 +55,12 @@ def failure(dynamics: Dynamics, status: int, t: float) -> str:
     return (no_value(dynamics, t) if status == NO_STATE else "") or FAILURES[status]
 
 
-def no_value_ahead(dynamics: Dynamics, t: float) -> str:
-    """A clause on the algebraic state that has no value at the state at hand, or from there on; empty where all have one."""
+def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
+    """A clause on the algebraic state that has no value at a state, or from there on; empty where all have one."""
     system, state = dynamics.system, dynamics.state
+    if not system.algebraic.any():
+        return ""
+    state.q[:], state.u[:] = q, u
     status, acceleration = dynamics.accelerate(t)
     if status >= 0:
         for ahead in BEYOND:

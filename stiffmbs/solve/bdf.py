@@ -10,7 +10,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from .algebraic_states import rates_of_algebraic
+from .algebraic_states import no_value_ahead, rates_of_algebraic
 from .dynamics import Dynamics
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
@@ -102,7 +102,10 @@ def _failure(integrator: Integrator, reached: Reached) -> str:
         reason = too_fine(integrator.dynamics.system, integrator.settings, q)
         if reason:
             return reason
-    return reached.failure and reached.failure + suspect(integrator.dynamics, reached.t, q, u)
+    if not reached.failure:
+        return ""
+    missing = no_value_ahead(integrator.dynamics, reached.t, q, u)
+    return missing or reached.failure + suspect(integrator.dynamics, reached.t, q, u)
 
 
 def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..compile.system import System
-from .algebraic_states import no_value_ahead
 from .dynamics import Dynamics
 
 AHEAD = (0.0, 1e-12, 1e-9, 1e-6)
@@ -33,11 +32,6 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     str
         Empty where nothing acts.
     """
-    if len(dynamics.system.algebraic_coordinates):
-        _move(dynamics, q, u)
-        clause = no_value_ahead(dynamics, t)
-        if clause:
-            return f"; {clause}"
     for ahead in AHEAD:
         later = ahead * max(1.0, abs(t))
         _move(dynamics, dynamics.system.of_body.moved(q, later * u), u)

@@ -173,5 +173,5 @@ def check_states_of(where: str, formula: Formula, states: Collection[str]) -> No
         if state not in states:
             raise ValueError(
                 f"{where}: found the unknown name '{state}' in '{formula.text}', expected t, a body's coordinate such as "
-                "cart.x, a parameter or a state"
+                f"cart.x, a parameter or a state ({', '.join(sorted(states)) or 'there is none'})"
             )
