@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     "--measure", default="positions", show_default=True, help="What errors are of: positions, velocities or forces."
 )
 @click.option(
-    "--over", metavar="P=A..B[:N]", help="Time at an equal error against a parameter, also with units (k=1..100 N/mm); by decades where A..B has any."
+    "--over",
+    metavar="P=A..B[:N]",
+    help="Time at an equal error against a parameter, also with units (k=1..100 N/mm); by decades where A..B has any.",
 )
 @click.option(
     "--error", type=float, help="With --over: at which times are compared; of positions 1e-4 m or rad by default."

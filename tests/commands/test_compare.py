@@ -145,12 +145,16 @@ def test_ranges_with_units_are_in_si(text, numbers):
 
 
 def test_a_unit_that_does_not_fit_the_parameter_is_refused(examples):
-    result = invoke("compare", examples / "cart_pendulum.yaml", "--over", "forces.spring.stiffness=1..10 mm", "--duration", "1")
+    result = invoke(
+        "compare", examples / "cart_pendulum.yaml", "--over", "forces.spring.stiffness=1..10 mm", "--duration", "1"
+    )
     assert result.exit_code == 2, result.output
     assert "N/m" in result.stderr
 
 
-@pytest.mark.parametrize("text", ["", "1..", "1..1", "1..2:1", "1..2:x", "a..b", "1 kN..2 furlongs", "1 kN..2 m", "1 kN..x", "1,,2"])
+@pytest.mark.parametrize(
+    "text", ["", "1..", "1..1", "1..2:1", "1..2:x", "a..b", "1 kN..2 furlongs", "1 kN..2 m", "1 kN..x", "1,,2"]
+)
 def test_what_is_no_range_is_refused(text):
     with pytest.raises(InputError, match=r"--over: found"):
         values_in("--over", f"k={text}")

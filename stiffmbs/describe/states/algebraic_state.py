@@ -21,7 +21,7 @@ class AlgebraicState(Described):
     --------
     The pressure behind a valve, whose flow is that of a piston of area A with a leak::
 
-        states: {p: {zero: "c*sign(p)*sqrt(abs(p)) + leak*p - A*piston.vx", start: 1 bar}}
+        states: {p: {zero: "p/(c + abs(p))^0.5 + leak*p - A*piston.vx", start: 100 kPa}}
         forces: {push: {type: force, i: piston, force: ["-A*p", 0]}}
 
     This is Adams' VARIABLE with IMPLICIT.
