@@ -194,13 +194,15 @@ ERROR_NORM: Layout = {
     "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
     "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
     "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL,
+    "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
 }  # fmt: skip
 """What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`).
 
 Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
 failures were last looked for; steps and failures of the error test, the same when they were last looked at; the step up to
-which estimates are filtered; the order of the last step."""
+which estimates are filtered; the order of the last step; the step up to which steps may not grow (0: they may), and the factor by
+which the test must let them grow else."""
 
 
 EVENT_SEARCH: Layout = {
