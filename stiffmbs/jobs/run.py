@@ -35,6 +35,7 @@ from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
 from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, consistent_values, initial_values
+from ..solve.nearest_turns import take_nearest_turns
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
 from ..solve.storage import with_gaps
 from ..solve.subsystems import Subsystem, leave_out_coordinates, solve_subsystems, subsystem_of
@@ -146,6 +147,7 @@ def start_of_job(job: Job) -> InitialValues:
 def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | None) -> InitialValues:
     """The saved state that is given, else the equilibrium or the described state, whichever the scene asks for."""
     if state is not None:
+        take_nearest_turns(dynamics, t, state.is_new)
         start = consistent_values(dynamics, t)
         return replace(
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
@@ -194,6 +196,8 @@ def examined(
 ) -> Examined:
     """Compile a model and look for redundant equations; parameters and errors as for `run`."""
     data = data_of(model)
+    if isinstance(data, Scene) and data.stages:
+        raise InputError("found a scene with stages, which only a run follows, expected a scene of one run")
     state = state_to_start_from(start_from)
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
     chosen = starting_at(chosen, state, settings, changes)
@@ -248,11 +252,15 @@ def run(
     AssemblyError
         When no consistent start is found.
     """
+    data = data_of(model)
+    if isinstance(data, Scene) and data.stages:
+        from .stages import run_stages
+
+        return run_stages(data, settings, watch, start_from, inputs, **changes)
     if inputs:
-        data = data_of(model)
         chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), {**changes})
-        model = with_inputs(data, inputs, chosen)
-    return solved(prepare(model, settings, start_from, **changes), watch)
+        data = with_inputs(data, inputs, chosen)
+    return solved(prepare(data, settings, start_from, **changes), watch)
 
 
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so

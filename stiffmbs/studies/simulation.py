@@ -151,8 +151,8 @@ class Simulation:
     def state(self) -> SavedState:
         """The present state, from which a run may start: ``stiffmbs.run(model, start_from=sim.state)``."""
         channels, turns = self._report()
-        at_present = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
-        return SavedState("the simulation", self.t, *at_present)
+        known, counted = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
+        return SavedState("the simulation", self.t, known, counted)
 
     def _report(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Channels and counts of turns at present, one value each."""
