@@ -167,16 +167,19 @@ SAMPLES = 16
 OUTPUT_CORRECTION: Layout = {
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
     "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
+    "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
-    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS,
+    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
 }  # fmt: skip
 """Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors.
 
 Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
 beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
-grows by in a second from there (below 0: not known), and states corrected since that was measured."""
+grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
+force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
+equations of motion: those of forces, then those of moments, and where either end."""
 
 ITERATION: Layout = {
     "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
