@@ -144,7 +144,7 @@ def test_mistakes_are_told_with_the_file_and_the_line(in_folder, change, words):
         (
             "model\nsim/stat\nsim/dyn, end=1, steps=4 ! run\nINTEG/SI2\nsim/dyn, end=2, dtout=0.25\nstop\nsim/dyn, end=9",
             {"duration": 2, "points": 9, "start": "equilibrium"},
-            "INTEGRATOR (line 4) of the command file left out: analysis settings",
+            "INTEGRATOR (line 4) but for HMAX, and ERROR below 1e-06 of the command file left out: analysis settings",
         ),
     ],
 )

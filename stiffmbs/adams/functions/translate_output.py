@@ -84,6 +84,8 @@ class OutputTranslation(Translation):
         """JOINT(id, jflag, comp, rm) and its like."""
         ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
         found = self.mechanism.dataset.statements.get(ELEMENTS[name], {}).get(ident)
+        if (ELEMENTS[name], ident) in self.mechanism.dataset.inactive:
+            return number(0.0)
         if found is None:
             raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
         if not 1 <= component <= len(FORCES):
@@ -106,6 +108,8 @@ class OutputTranslation(Translation):
                 raise function.fault(
                     f"found the force of {found.label} on another marker than its I, expected it there"
                 )
+        if not acting and self.mechanism.dataset.inactive:
+            return number(0.0)
         if not acting:
             raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
         return self._component(component, acting, axes, function)

@@ -28,6 +28,10 @@ def motions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
 
 def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     joint = mechanism.dataset.joints.get(motion.joint or 0)
+    if ("JOINT", motion.joint) in mechanism.dataset.inactive:
+        raise motion.fault(
+            f"found JOINT = {motion.joint}, which is inactive, expected the motion to be deactivated too"
+        )
     if joint is None:
         raise motion.fault(f"found JOINT = {motion.joint}, expected the number of a JOINT")
     sort = _sort(motion, joint)

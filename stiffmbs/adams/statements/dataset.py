@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from ...errors import InputError
 from .bodies import Marker, Part, read_marker
-from .changes import Changes
+from .changes import Changes, Key
 from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Numbered
 from .elastic import Beam, Elastic, SpringDamper
 from .fault import DatasetFault, raise_all
@@ -40,6 +40,8 @@ class Dataset:
         The data of all statements by full name and number.
     notes : tuple of str
         What was left out, a sentence each.
+    inactive : frozenset of (str, int)
+        Names and numbers of statements that commands have deactivated, which are not among the others.
     """
 
     title: str
@@ -47,6 +49,7 @@ class Dataset:
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     statements: Mapping[str, Mapping[int, Any]] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    inactive: frozenset[Key] = frozenset()
 
     def _all(self, kind: type[Any]) -> tuple[Any, ...]:
         return tuple(x for numbered in self.statements.values() for x in numbered.values() if isinstance(x, kind))
@@ -128,7 +131,7 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     for statement in _once("ACCGRAV", named):
         gravity = read_gravity(statement, units)
     data = _data(named, units)
-    return Dataset(title, units, gravity, data, tuple(_notes(named, ended, without_title)))
+    return Dataset(title, units, gravity, data, tuple(_notes(named, ended, without_title)), frozenset(changes.inactive))
 
 
 def _data(named: list[tuple[str | None, Statement]], units: Units) -> dict[str, dict[int, Any]]:
