@@ -31,9 +31,9 @@ from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..results.undefined_values import no_number_sentences
 from ..solve import SOLVERS, traits_of
+from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
-from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, consistent_values, initial_values
 from ..solve.nearest_turns import take_nearest_turns
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
@@ -269,7 +269,9 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
     trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
-        raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
+        raise AssemblyError(
+            f"no accelerations could be computed at the start: {failure(job.dynamics, rows.status, job.grid.start)}"
+        )
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
     if near_constraints(job.settings):
         statistics["drift"] = float(np.nanmax(rows.drift))
@@ -324,7 +326,7 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     if len(rows.t) == len(trajectory.t):
         return trajectory.outcome, trajectory.message
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
-    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {failure(job.dynamics, rows.status, t)}"
     fault = fault_of(job.dynamics.system)
     if fault:
         return Outcome.STOPPED, f"{sentence}; {fault.clause}"

@@ -14,7 +14,7 @@ from ..jobs.run import Job, Runnable, prepare
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
 from ..results.channels import channels_of, turns_of
 from ..results.saved_state import TURNS, SavedState
-from ..solve.failures import FAILURES
+from ..solve.algebraic_states import failure
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers
@@ -161,7 +161,7 @@ class Simulation:
             rows = dynamics.report(np.array([self.t]), self.q[None], self.u[None], project=True)
         if not len(rows.t):
             raise AssemblyError(
-                f"no accelerations and reactions were found at t = {self.t:.9g} s: {FAILURES[rows.status]}"
+                f"no accelerations and reactions were found at t = {self.t:.9g} s: {failure(dynamics, rows.status, self.t)}"
             )
         return channels_of(job.data, dynamics.system, rows), turns_of(dynamics.system, rows.q)
 
