@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import singledispatchmethod
-from itertools import combinations
 from operator import mul
 from typing import Any
 
@@ -11,7 +10,7 @@ from ..functions.expression import parse
 from ..functions.function import Function
 from ..functions.translate import Translation
 from ..statements.constraints import TRANSLATIONAL
-from ..statements.elastic import Beam, Elastic, Matrix, SpringDamper
+from ..statements.elastic import Beam, Elastic, SpringDamper
 from ..statements.fault import of_each
 from ..statements.forces import SingleForce, VectorForce
 from .mechanism import Mechanism, Place
@@ -19,12 +18,6 @@ from .number_format import plain, vector
 
 TORQUE = "_torque"
 """Behind the name of a GFORCE: its torque, which is an element of its own in the scene."""
-
-
-def _is_symmetric(matrix: Matrix) -> bool:
-    """Whether a matrix has a potential, but for what rounding leaves."""
-    parts = [(matrix[i][j], matrix[j][i]) for i, j in combinations(range(6), 2)]
-    return all(abs(a - b) <= 1e-12 * max(abs(a), abs(b)) for a, b in parts)
 
 
 class Forces:
@@ -98,7 +91,7 @@ class Forces:
 
     @_made.register
     def _elastic(self, force: Elastic) -> dict[str, Any]:
-        if not (_is_symmetric(force.stiffness) and _is_symmetric(force.damping)):
+        if not force.has_potential:
             return self._without_potential(force)
         i, j = self._ends(force)
         kind = force.keyword.lower()
