@@ -40,11 +40,13 @@ _ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(),
 _LATER = {
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
-    "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
+    "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "quasi_static": ".jobs.quasi_static", "modes": ".jobs.modes", "run": ".jobs.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
+    "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
+    "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
