@@ -185,7 +185,7 @@ class Equations:
         writes = np.zeros(len(self.system.groups), dtype=bool)
         for g, group in enumerate(self.system.groups):
             first = self.system.places[term_set][g, 1:]
-            width = np.array([group.count * group.entries(term) for term in terms])
+            width = np.array([group.count * group.entries[term] for term in terms])
             writes[g] = np.any(before[first + width] > before[first])
         return writes
 

@@ -19,6 +19,7 @@ from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_rea
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
+from ..describe.model_numbers import PlacedMarkers
 from ..describe.python_function import PythonFunction
 from ..describe.states.name import StateName
 from ..describe.states.state import StateValue
@@ -92,6 +93,14 @@ class Kind:
     n_states: int
     fields: tuple[tuple[str, Shape], ...]
 
+    def holds(self, *forms: str) -> bool:
+        """Whether a field, or one of several values of a field, has one of some forms."""
+        return any(_holds(shape, forms) for _, shape in self.fields)
+
+
+def _holds(shape: Shape, forms: tuple[str, ...]) -> bool:
+    return shape[0] in forms or (shape[0] == "several" and any(_holds(part, forms) for part in shape[1]))
+
 
 def with_place(kind: Kind, place: str) -> str:
     """A kind by its name, and its place among others in brackets where it is known."""
@@ -105,6 +114,8 @@ class ElementData:
 
     Attributes
     ----------
+    places : PlacedMarkers
+        Where markers sit.
     bodies : list of str
         By slot; the first is the one on which the reaction is reported.
     numbers : list of float
@@ -117,6 +128,7 @@ class ElementData:
         By slot.
     """
 
+    places: PlacedMarkers
     bodies: list[str] = field(default_factory=list)
     numbers: list[float] = field(default_factory=list)
     tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
@@ -147,9 +159,11 @@ class ElementData:
         return np.concatenate(parts)
 
 
-def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
-    """An element's kind, and what is its own."""
-    data = ElementData()
+def sorted_out(
+    element: Element, model: Compilable, places: PlacedMarkers | None = None
+) -> tuple[Kind, ElementData]:
+    """An element's kind, and what is its own; markers whose places are known are not looked for again."""
+    data = ElementData(places=PlacedMarkers(model) if places is None else places)
     fields = _fields(element, model, data)
     return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), len(data.states), fields), data
 
@@ -166,7 +180,7 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
     """The shape of a field's value; its data are appended to `data`."""
     match value:
         case MarkerReference():
-            return _marker_shape(value, model, data)
+            return _marker_shape(value, data)
         case JointName():
             joint: Joint = model.joints[value.joint]
             fields = _fields(joint, model, data)
@@ -199,11 +213,10 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             )
 
 
-def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:
-    body, placed = model.carried(marker)
-    slot = data.slot(body)
-    data.numbers += placed.numbers()
-    return ("marker", slot)
+def _marker_shape(marker: MarkerReference, data: ElementData) -> Shape:
+    body, numbers = data.places[marker]
+    data.numbers += numbers
+    return ("marker", data.slot(body))
 
 
 class _FormulaShape(ast.NodeTransformer):
@@ -227,7 +240,7 @@ class _FormulaShape(ast.NodeTransformer):
         tree = self.visit(copy.deepcopy(self.formula.tree))
         self.data.numbers += self.numbers
         measures = tuple(
-            (name, tuple(_marker_shape(marker, self.model, self.data) for marker in markers))
+            (name, tuple(_marker_shape(marker, self.data) for marker in markers))
             for name, markers in self.measures
         )
         first = len(self.data.numbers)

@@ -169,7 +169,7 @@ class System:
             for g, group in enumerate(self.groups):
                 places[g, 0] = group.first_row
                 places[g, 1 + k] = end
-                end += group.count * group.entries(term)
+                end += group.count * group.entries[term]
         return places
 
     def n_values(self, term_set: str) -> int:
@@ -179,7 +179,7 @@ class System:
     @cached_property
     def _numbers_of_values(self) -> dict[str, int]:
         return {
-            term_set: sum(group.count * group.entries(term) for group in self.groups for term in terms)
+            term_set: sum(group.count * group.entries[term] for group in self.groups for term in terms)
             for term_set, terms in TERM_SETS.items()
         }
 
@@ -196,7 +196,7 @@ class System:
     def _writer(self, term_set: str, at: int) -> tuple[Group, int]:
         for g, group in enumerate(self.groups):
             for k, term in enumerate(TERM_SETS[term_set]):
-                width = group.entries(term)
+                width = group.entries[term]
                 first = int(self.places[term_set][g, 1 + k])
                 if first <= at < first + group.count * width:
                     return group, (at - first) // width
@@ -214,12 +214,12 @@ class System:
     @cached_property
     def first_limit(self) -> int:
         """Where the limits of all forces begin among the values of the set ``event_function``."""
-        return sum(group.count * group.entries("event_function") for group in self.groups)
+        return sum(group.count * group.entries["event_function"] for group in self.groups)
 
     @cached_property
     def n_event_functions(self) -> int:
         """Number of event functions and limits, which are the first values of the set ``event_function``; arguments of laws follow."""
-        return self.first_limit + sum(group.count * group.entries("limit") for group in self.groups)
+        return self.first_limit + sum(group.count * group.entries["limit"] for group in self.groups)
 
     @cached_property
     def turning(self) -> np.ndarray:
@@ -234,7 +234,7 @@ class System:
             if element in group.names:
                 e = group.names.index(element)
                 for k, term in enumerate(TERM_SETS[term_set]):
-                    width = group.entries(term)
+                    width = group.entries[term]
                     first = self.places[term_set][g, 1 + k] + e * width
                     found[term] = values[first : first + width]
         return found

@@ -128,7 +128,7 @@ def _starts(lengths: list[int]) -> np.ndarray:
 
 
 def _of_group(system: System, g: int, group: Group, values: np.ndarray, rounding: np.ndarray) -> Dependence:
-    width, of_kind = group.entries("C_q"), _summands(group.kind)
+    width, of_kind = group.entries["C_q"], _summands(group.kind)
     first = int(system.places["position"][g, 1 + TERM_SETS["position"].index("C_q")])
     source, row, column = (part.reshape(group.count, width) for part in group.placed("C_q", first))
     least = np.where(of_kind.bounded, rounding[row[:, of_kind.entry]], 0.0)

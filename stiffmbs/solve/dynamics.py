@@ -91,6 +91,7 @@ class Dynamics:
         behind = [system.term("acceleration", name) for name in ("angle_rate", "rate")]
         source, row = (np.concatenate([getattr(term, part) for term in behind]) for part in ("source", "row"))
         self._behind = source.astype(np.int64), row.astype(np.int64)
+        self._has_inputs = any(group.has_inputs for group in system.groups)
         self._features = np.inf, -np.inf, InputFeatures()
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
@@ -145,6 +146,8 @@ class Dynamics:
 
     def input_features(self, start: float, end: float) -> InputFeatures:
         """The features of the inputs between two instants, sought once for all runs within them."""
+        if not self._has_inputs:
+            return InputFeatures()
         first, last, found = self._features
         if not first <= start <= end <= last:
             found = input_features(self.system, start, end)
@@ -153,7 +156,7 @@ class Dynamics:
 
     def input_end(self, start: float, end: float) -> InputEnd | None:
         """Where the first formula of time ends between two instants, sought once for all runs between them."""
-        if self._input_end[:2] != (start, end):
+        if self._has_inputs and self._input_end[:2] != (start, end):
             self._input_end = start, end, first_input_end(self.system, start, end)
         return self._input_end[2]
 
