@@ -8,11 +8,11 @@ from itertools import repeat
 
 import numpy as np
 
+from ..describe.body import body_numbers
 from ..describe.element import Element
 from ..describe.formula.text import FormulaError
-from ..describe.marker import GROUND
+from ..describe.marker import GROUND, PlacedMarkers
 from ..describe.model_builder import ModelBuilder
-from ..describe.model_numbers import PlacedMarkers, body_numbers
 from ..errors import InputError
 from .bodies import BODY_KINDS, BodyKind
 from .group import Group
@@ -116,7 +116,9 @@ def _rows(
     first: dict[str, int] = {}
     equations: list[tuple[str, str]] = []
     holonomic: list[bool] = []
-    labels = {member.name: member.element.equation_names() for members in sorted_elements.values() for member in members}
+    labels = {
+        member.name: member.element.equation_names() for members in sorted_elements.values() for member in members
+    }
     for kind, members in sorted_elements.items():
         record = records[kind]
         for member in members if record.n_equations else ():

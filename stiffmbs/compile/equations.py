@@ -119,7 +119,7 @@ class Equations:
             return constants[base] + diagonal, diagonal, diagonal
         term = system.term(term_set, base)
         if base == "Z":
-            q, u = system.of_body.straight(len(system.bodies))
+            q, u = system.straight
             straight = np.full(len(q), constants["I"])
             parts = ((term.source, straight), (term.row, q), (term.column, u))
             source, row, column = (np.concatenate(part) for part in parts)

@@ -43,6 +43,8 @@ class Group:
         Numbers of the coordinates that are states of each element, and of those that count turns for it.
     has_inputs, has_functions : bool
         Whether the elements have formulas or tables, and whether they have Python functions.
+    has_law : bool
+        Whether they have breakpoints, formulas or tables.
     """
 
     kind: Kind
@@ -60,23 +62,21 @@ class Group:
     counters: np.ndarray = field(init=False)
     has_inputs: bool = field(init=False)
     has_functions: bool = field(init=False)
+    has_law: bool = field(init=False)
 
     def __post_init__(self) -> None:
         behind, end = self.first_behind, self.index.shape[1]
+        has_inputs = self.kind.holds("formula", "table")
         vars(self).update(
             count=len(self.names),
             entries=self.record.entries,
             bodies=self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u,
             states=self.index[:, behind : behind + self.kind.n_states],
             counters=self.index[:, end - self.record.n_counters :],
-            has_inputs=self.kind.holds("formula", "table"),
+            has_inputs=has_inputs,
             has_functions=self.kind.holds("python"),
+            has_law=bool(self.record.entries["event_function"]) or has_inputs,
         )
-
-    @property
-    def has_law(self) -> bool:
-        """Whether the elements have breakpoints, formulas or tables."""
-        return bool(self.entries["event_function"]) or self.has_inputs
 
     @property
     def first_behind(self) -> int:

@@ -18,8 +18,7 @@ from ..describe.element import Component, Element, Joint, JointName
 from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
-from ..describe.marker import MarkerReference
-from ..describe.model_numbers import PlacedMarkers
+from ..describe.marker import MarkerReference, PlacedMarkers
 from ..describe.python_function import PythonFunction
 from ..describe.states.name import StateName
 from ..describe.states.state import StateValue
@@ -159,9 +158,7 @@ class ElementData:
         return np.concatenate(parts)
 
 
-def sorted_out(
-    element: Element, model: Compilable, places: PlacedMarkers | None = None
-) -> tuple[Kind, ElementData]:
+def sorted_out(element: Element, model: Compilable, places: PlacedMarkers | None = None) -> tuple[Kind, ElementData]:
     """An element's kind, and what is its own; markers whose places are known are not looked for again."""
     data = ElementData(places=PlacedMarkers(model) if places is None else places)
     fields = _fields(element, model, data)
@@ -240,8 +237,7 @@ class _FormulaShape(ast.NodeTransformer):
         tree = self.visit(copy.deepcopy(self.formula.tree))
         self.data.numbers += self.numbers
         measures = tuple(
-            (name, tuple(_marker_shape(marker, self.data) for marker in markers))
-            for name, markers in self.measures
+            (name, tuple(_marker_shape(marker, self.data) for marker in markers)) for name, markers in self.measures
         )
         first = len(self.data.numbers)
         self.data.tables += [(first + k, spline_data(table)) for k, table in enumerate(self.tables)]

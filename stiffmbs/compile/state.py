@@ -52,7 +52,7 @@ class State:
         self._relaxations = np.zeros(2 * system.n_c)
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
         self.table = self._packed(self._n_calls, self._calls_at)
-        self._evaluate = TERMS.load()
+        self._evaluate = TERMS.call
 
     def _packed(self, n_calls: np.ndarray, calls_at: np.ndarray) -> np.ndarray:
         system = self.system

@@ -6,7 +6,7 @@ write, and which equation and coordinate each belongs to.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -62,6 +62,16 @@ class System:
         Which rows have a position form, and which are not redundant and so are solved for.
     size : float
         Of the mechanism at the start, m.
+    n_q, n_u, n_c : int
+        Numbers of coordinates, velocities and constraint equations.
+    n_pose, n_counters : int
+        Coordinates of the bodies, the first of all, and of those that count whole turns of angles.
+    first_state : int
+        The number of the first coordinate that is a state.
+    has_inputs, has_functions : bool
+        Whether an element has a formula or a table, and whether one calls a Python function.
+    has_laws : bool
+        Whether forces or joints have breakpoints or laws (formulas, tables), which may change within one step.
     """
 
     bodies: tuple[str, ...]
@@ -78,21 +88,25 @@ class System:
     holonomic: np.ndarray
     active: np.ndarray
     size: float
+    n_q: int = field(init=False)
+    n_u: int = field(init=False)
+    n_c: int = field(init=False)
+    n_pose: int = field(init=False)
+    first_state: int = field(init=False)
+    n_counters: int = field(init=False)
+    has_inputs: bool = field(init=False)
+    has_laws: bool = field(init=False)
+    has_functions: bool = field(init=False)
 
-    @cached_property
-    def n_q(self) -> int:
-        """The number of coordinates."""
-        return len(self.q)
-
-    @cached_property
-    def n_u(self) -> int:
-        """The number of velocities."""
-        return len(self.u)
-
-    @cached_property
-    def n_c(self) -> int:
-        """The number of constraint equations."""
-        return len(self.equations)
+    def __post_init__(self) -> None:
+        n_q, n_pose = len(self.q), self.of_body.n_q * len(self.bodies)
+        first_state = n_q - len(self.states)
+        vars(self).update(
+            n_q=n_q, n_u=len(self.u), n_c=len(self.equations), n_pose=n_pose, first_state=first_state,
+            n_counters=first_state - n_pose, has_inputs=any(group.has_inputs for group in self.groups),
+            has_functions=any(group.has_functions for group in self.groups),
+            has_laws=any(group.has_law for group in self.groups if group.entries["f"] or group.record.n_equations),
+        )  # fmt: skip
 
     def per_coordinate(self, linear: float, angular: float) -> np.ndarray:
         """One number for the coordinates of every centre of mass, and another for those of orientations and all behind them,
@@ -100,26 +114,15 @@ class System:
         behind = np.full(self.n_q - self.n_pose, angular)
         return np.append(self._per_body(self.of_body.n_q, linear, angular), behind)
 
-    @property
-    def n_pose(self) -> int:
-        """Coordinates of the bodies, the first of all."""
-        return self.of_body.n_q * len(self.bodies)
-
-    @property
-    def first_state(self) -> int:
-        """The number of the first coordinate that is a state."""
-        return self.n_q - len(self.states)
-
-    @property
-    def n_counters(self) -> int:
-        """Coordinates that count whole turns of angles."""
-        return self.first_state - self.n_pose
+    @cached_property
+    def straight(self) -> tuple[np.ndarray, np.ndarray]:
+        """The coordinates whose rate is a velocity, and these velocities, by number."""
+        return self.of_body.straight(len(self.bodies))
 
     @property
     def quaternions(self) -> np.ndarray:
         """The numbers of the coordinates that are parts of quaternions; none in the plane."""
-        straight, _ = self.of_body.straight(len(self.bodies))
-        return np.setdiff1d(np.arange(self.n_pose), straight)
+        return np.setdiff1d(np.arange(self.n_pose), self.straight[0])
 
     def per_velocity(self, linear: float, angular: float) -> np.ndarray:
         """One number for the velocities of every centre of mass, and another for angular ones, shape (n_u,)."""

@@ -12,6 +12,7 @@ that cubic tells how long a step of order 2 may be.
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -64,8 +65,12 @@ class StabilityLimitDetection:
     def __init__(self, equations: Equations, settings: RunSettings) -> None:
         self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
         self._watches = settings.rtol >= TIGHTEST and settings.max_order is None
-        self._atol = independent_tolerances(equations, settings)
+        self._equations, self._settings = equations, settings
         self.forget()
+
+    @cached_property
+    def _atol(self) -> np.ndarray:
+        return independent_tolerances(self._equations, self._settings)
 
     def forget(self) -> None:
         """Begin a new run."""
