@@ -83,6 +83,8 @@ class Kind:
         States of the user's own that it reads or determines.
     fields : tuple of (str, Shape)
         Its fields by name; a shape says of what form a field is, never its numbers.
+    algebraic : tuple of int
+        Slots of the states that have no rate.
     """
 
     element: type[Element]
@@ -91,6 +93,7 @@ class Kind:
     n_joints: int
     n_states: int
     fields: tuple[tuple[str, Shape], ...]
+    algebraic: tuple[int, ...] = ()
 
     def holds(self, *forms: str) -> bool:
         """Whether a field, or one of several values of a field, has one of some forms."""
@@ -162,7 +165,10 @@ def sorted_out(element: Element, model: Compilable, places: PlacedMarkers | None
     """An element's kind, and what is its own; markers whose places are known are not looked for again."""
     data = ElementData(places=PlacedMarkers(model) if places is None else places)
     fields = _fields(element, model, data)
-    return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), len(data.states), fields), data
+    values = model.state_values() if data.states else {}
+    algebraic = tuple(slot for slot, name in enumerate(data.states) if values[name].algebraic)
+    counts = len(data.bodies), len(data.joints), len(data.states)
+    return Kind(type(element), model.dimensions, *counts, fields, algebraic), data
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:

@@ -17,7 +17,7 @@ from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
-from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, saddle_points
+from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
 from .storage import allocated, blocks, release
 
 T = TypeVar("T")
@@ -89,16 +89,23 @@ class Dynamics:
         self.state = State(system)
         for term_set in ("motion", "output"):
             self.state.load(term_set)
+        algebraic = system.algebraic_coordinates.astype(np.int64)
+        self._algebraic = {
+            "algebraic": algebraic,
+            "algebraic_scale": system.state_scales[system.algebraic],
+            "algebraic_before": np.zeros(len(algebraic)),
+        }
         self._positions, self._velocities, self._accelerations = saddle_points(
-            self.state, POSITION_STEP, VELOCITY_STEP, ACCELERATIONS
+            self.state, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES if len(algebraic) else ACCELERATIONS
         )
         self._kept: dict[str, tuple[object, object]] = {}
         counters, states = system.term("acceleration", "angle_rate"), system.term("acceleration", "rate")
         source, row = np.append(counters.source, states.source), np.append(counters.row, states.row)
+        moving = ~np.isin(row, algebraic)
+        self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
         self._n_output = system.n_values("output")
         self._potential = system.term("output", "potential").source
         self._power = system.term("output", "power").source
-        self._behind = source.astype(np.int64), row.astype(np.int64)
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
@@ -111,10 +118,12 @@ class Dynamics:
                 "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
-                "n_behind": len(row),
+                "n_behind": len(self._behind[1]),
                 "behind_source": self._behind[0],
                 "behind_row": self._behind[1],
-                "by_reactions": len(system.term("tangent", "rate_lam").row) > 0,
+                "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
+                "n_algebraic": len(algebraic),
+                **self._algebraic,
             },
         )
         self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]
@@ -181,7 +190,10 @@ class Dynamics:
         return ACCELERATE.call(t, acceleration.ctypes.data, self._at), acceleration
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known."""
+        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known.
+
+        That of an algebraic state is given as zero.
+        """
         rates = self.system.of_body.position_rates(q, u)
         source, row = self._behind
         if len(row):

@@ -88,8 +88,8 @@ def test_nothing_is_found_along_runs_with_impacts_and_stiff_bushings(name):
     assert found.balance.imbalance < 1e-4 * found.balance.scale
 
 
-def test_a_run_with_another_longest_step_where_the_scene_.has_laws:
-    assert prepare(body_at_a_bump(.has_laws).dynamics.system)
+def test_a_run_with_another_longest_step_where_the_scene_has_laws():
+    assert prepare(body_at_a_bump()).dynamics.system.has_laws
     pendulum = prepare(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"))
     assert not pendulum.dynamics.system.has_laws
     found = module.verify(stiffmbs.load_scene(EXAMPLES / "bouncing_ball.yaml"))

@@ -10,7 +10,7 @@ from .name import StateName
 
 
 class StateEquation(Element):
-    """The rate of a state: x' = formula."""
+    """The equation of a state: x' = formula, or 0 = formula of an algebraic one."""
 
     kind: ClassVar[str] = ""
 
