@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.machine.routines import Routine
+from ..algebraic_states import rates_by_states
 from ..dynamics import Dynamics
-from .algebraic_states import rates_by_states
 
 FASTEST_RATE = Routine(
     "stiffmbs.solve.native.fastest_rate",
