@@ -172,7 +172,7 @@ class Dynamics:
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known."""
-        rates = self.system.of_body.position_rates(q, u)
+        rates = self.system.of_body.position_rates(q, self.system.followed * u)
         source, row = self._behind
         if len(row):
             rates[row] = self.state.values["acceleration"][source]

@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from ..element import Element
+from ..element import Element, Symbolic
 from ..formula.field import OfMotion
 from .name import StateName
 
 
 class StateEquation(Element):
-    """The rate of a state: x' = formula."""
+    """The rate of a state."""
 
     kind: ClassVar[str] = ""
 
     state: StateName
+
+    @staticmethod
+    def rate(e: Symbolic) -> Any:
+        """x' of the state x."""
+        raise NotImplementedError
+
+
+class FormulaOfRate(StateEquation):
+    """The rate of a state: x' = formula."""
+
     formula: OfMotion
+
+    @staticmethod
+    def rate(e: Symbolic) -> Any:
+        return e.formula
 
 
 class Reported(Element):

@@ -24,15 +24,15 @@ class StateValue:
 
     Attributes
     ----------
-    rate : Formula
-        Of its rate of change.
+    rate : Formula or None
+        Of its rate of change; None where an element has it.
     start : float
         Initial value, SI units.
     scale : float
         A size of it that matters: its absolute tolerance is that of an angle times this.
     """
 
-    rate: Formula
+    rate: Formula | None
     start: float
     scale: float
 
