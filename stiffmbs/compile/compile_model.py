@@ -55,6 +55,7 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         bodies=bodies,
         states=tuple(states),
         state_scales=np.array([value.scale for value in states.values()]),
+        algebraic=np.array([value.algebraic for value in states.values()], dtype=bool),
         of_body=of_body,
         q=np.array([*coordinates, *[0.0] * n_counters, *(value.start for value in states.values())]),
         u=np.array([c for body in model.bodies.values() for c in body.rates()]),

@@ -89,6 +89,8 @@ class Kind:
     spins : tuple of str
         For each body the principal axis about which its quaternion doesn't turn with it, ``x``, ``y``, ``z`` or none; () where
         all quaternions do, or the equations ask for no derivative of the pose that would tell.
+    algebraic : tuple of int
+        Slots of the states that have no rate.
     """
 
     element: type[Element]
@@ -98,6 +100,7 @@ class Kind:
     n_states: int
     fields: tuple[tuple[str, Shape], ...]
     spins: tuple[str, ...] = ()
+    algebraic: tuple[int, ...] = ()
 
 
 def with_place(kind: Kind, place: str) -> str:
@@ -158,8 +161,10 @@ def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
     """An element's kind, and what is its own."""
     data = ElementData()
     fields = _fields(element, model, data)
+    values = model.state_values() if data.states else {}
+    algebraic = tuple(slot for slot, name in enumerate(data.states) if values[name].algebraic)
     counts = len(data.bodies), len(data.joints), len(data.states)
-    return Kind(type(element), model.dimensions, *counts, fields, _spins(element, model, data)), data
+    return Kind(type(element), model.dimensions, *counts, fields, _spins(element, model, data), algebraic), data
 
 
 def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str, ...]:

@@ -43,6 +43,8 @@ class System:
         Those of the user's own, whose values are the last coordinates.
     state_scales : ndarray, shape (states,)
         Sizes of them that matter.
+    algebraic : ndarray of bool, shape (states,)
+        Which of them have no rate: an equation determines them at every instant.
     of_body : BodyKind
         The coordinates and velocities that each of them has.
     q, u : ndarrays
@@ -69,6 +71,7 @@ class System:
     bodies: tuple[str, ...]
     states: tuple[str, ...]
     state_scales: np.ndarray
+    algebraic: np.ndarray
     of_body: BodyKind
     q: np.ndarray
     u: np.ndarray
@@ -112,6 +115,23 @@ class System:
     def first_state(self) -> int:
         """The number of the first coordinate that is a state."""
         return self.n_q - len(self.states)
+
+    @cached_property
+    def algebraic_coordinates(self) -> np.ndarray:
+        """The numbers of the coordinates that are algebraic states."""
+        return self.first_state + np.flatnonzero(self.algebraic)
+
+    @cached_property
+    def following_reactions(self) -> np.ndarray:
+        """The numbers of the algebraic states, among the coordinates, that follow multipliers at once, directly or through others."""
+        found = np.intersect1d(self.term("tangent", "rate_lam").row, self.algebraic_coordinates)
+        among = self.term("tangent", "rate_q")
+        inside = np.isin(among.row, self.algebraic_coordinates)
+        while True:
+            more = np.union1d(found, among.row[inside & np.isin(among.column, found)])
+            if len(more) == len(found):
+                return found
+            found = more
 
     @property
     def n_counters(self) -> int:

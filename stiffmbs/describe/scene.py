@@ -24,6 +24,7 @@ from .files.expand import (
 )
 from .files.include import read_including
 from .files.quoted import written
+from .files.stages import Stage, written_stages
 from .files.unchanged import Unchanged
 from .files.variables import read_variables
 from .files.written_scene import WrittenScene
@@ -58,10 +59,12 @@ class Scene(ModelData):
         "described",
         description="where a run starts: as described, at rest in the equilibrium found from there, or in steady motion",
     )
+    stages: tuple[Stage, ...] = Field((), description="runs one after the other, each with its own changes")
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
     _written: WrittenScene | None = PrivateAttr(default=None)
+    _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
 
     def check_requests(self) -> None:
         """The same for variables, whose formulas are read as those of requests."""
@@ -78,6 +81,19 @@ class Scene(ModelData):
     def written_parameters(self) -> dict[str, float | str]:
         """The parameters as a scene writes them, with their units."""
         return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
+
+    @property
+    def stage_scenes(self) -> tuple[Scene, ...]:
+        """The scene of each stage, in their order."""
+        return self._stage_scenes
+
+    @property
+    def whole_duration(self) -> float:
+        """How long all of it runs, s."""
+        if not self.stages:
+            return self.run.duration
+        pairs = zip(self.stages, self.stage_scenes, strict=True)
+        return sum(scene.run.duration for stage, scene in pairs if stage.over_time)
 
     @property
     def written(self) -> WrittenScene | None:
@@ -192,7 +208,23 @@ def made_scene(
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
     scene._written = scene_as_written
+    if scene.stages:
+        scene._stage_scenes = _stage_scenes(scene, source)
     return scene
+
+
+def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
+    """The scene of each stage; errors as for `made_scene`."""
+    if scene.written is None:
+        raise InputError(f"{source}: found stages, expected a scene of one run")
+    try:
+        stages = written_stages(scene.written, scene.stages)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    return tuple(
+        made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
+        for k, stage in enumerate(stages)
+    )
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:

@@ -46,7 +46,7 @@ EQUATIONS: Layout = {
     "n_slots": INT, "n_entries": INT, "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
-    "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
+    "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
 }  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
@@ -93,10 +93,11 @@ DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
     "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
+    "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
 }  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
 `behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
-depends on multipliers."""
+depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values."""
 
 
 IDA: Layout = {
@@ -168,16 +169,19 @@ SAMPLES = 16
 OUTPUT_CORRECTION: Layout = {
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
     "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
+    "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
-    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS,
+    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
 }  # fmt: skip
 """Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors.
 
 Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
 beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
-grows by in a second from there (below 0: not known), and states corrected since that was measured."""
+grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
+force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
+equations of motion: those of forces, then those of moments, and where either end."""
 
 ITERATION: Layout = {
     "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
@@ -195,13 +199,15 @@ ERROR_NORM: Layout = {
     "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
     "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
     "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL,
+    "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
 }  # fmt: skip
 """What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`).
 
 Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
 failures were last looked for; steps and failures of the error test, the same when they were last looked at; the step up to
-which estimates are filtered; the order of the last step."""
+which estimates are filtered; the order of the last step; the step up to which steps may not grow (0: they may), and the factor by
+which the test must let them grow else."""
 
 
 EVENT_SEARCH: Layout = {

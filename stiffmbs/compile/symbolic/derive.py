@@ -175,7 +175,9 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
-    return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()}, losses)
+    entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries["f_alg"] = _of_algebraic(kind, e, entries["f_q"])
+    return Derived(0, 0, symbols, entries, losses)
 
 
 def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
@@ -192,7 +194,14 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
         rates = {"rate": value, "rate_q": e.by_coordinates(value), "rate_u": e.by_velocities(value)}
         rates["rate_lam"] = e.by(value, joint_lam) if joint_lam else sp.zeros(0, 0)
         entries |= {name: [replace(entry, row=row) for entry in _entries(matrix)] for name, matrix in rates.items()}
+        entries["rate_alg"] = _of_algebraic(kind, e, entries["rate_q"])
     return Derived(0, 0, symbols, entries, [])
+
+
+def _of_algebraic(kind: Kind, e: SymbolicElement, entries: Sequence[Entry | LateEntry]) -> list[Entry | LateEntry]:
+    """Those entries of a matrix that stand in the columns of algebraic states."""
+    first = e.n_coordinates - len(e.states)
+    return [entry for entry in entries if entry.column - first in kind.algebraic]
 
 
 def _arguments(symbols: Symbols) -> sp.Matrix:

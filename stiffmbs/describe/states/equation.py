@@ -10,7 +10,7 @@ from .name import StateName
 
 
 class StateEquation(Element):
-    """The rate of a state."""
+    """The equation of a state: what its rate is, or what is zero for an algebraic one."""
 
     kind: ClassVar[str] = ""
 
@@ -18,12 +18,12 @@ class StateEquation(Element):
 
     @staticmethod
     def rate(e: Symbolic) -> Any:
-        """x' of the state x."""
+        """x' of the state x, or what is zero in place of it."""
         raise NotImplementedError
 
 
 class FormulaOfRate(StateEquation):
-    """The rate of a state: x' = formula."""
+    """The equation of a state by a formula: x' = formula, or 0 = formula of an algebraic one."""
 
     formula: OfMotion
 
