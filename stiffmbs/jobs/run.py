@@ -161,6 +161,10 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         from .settled import settled
 
         return settled(dynamics, start, t).start
+    if asked == "settled":
+        from .settled import moving_in_equilibrium
+
+        return moving_in_equilibrium(dynamics, start, t)
     return start
 
 
