@@ -56,9 +56,12 @@ def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Com
         return None
     name = with_place(kind, "")
     try:
-        return compiled_source(directional_source(source, "kernel", along), "kernel", SIGNATURE, f"{name}, derivatives")
+        found = directional_source(source, "kernel", along)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
+    if all(line.endswith("] = 0.0") for line in found.splitlines() if line.lstrip().startswith("value[")):
+        return None
+    return compiled_source(found, "kernel", SIGNATURE, f"{name}, derivatives")
 
 
 @dataclass
@@ -117,8 +120,8 @@ class Direction:
 
     @property
     def _whole(self) -> bool:
-        """Whether the state changes too."""
-        return set(self.along) > {NUMBER}
+        """Whether more than numbers changes."""
+        return set(self.along) != {NUMBER}
 
     def _made_calls(self, system: System) -> np.ndarray:
         calls = []

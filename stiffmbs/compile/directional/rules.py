@@ -93,12 +93,12 @@ def _step(name: str) -> Rule:
 
 def _spline(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
     """By the argument, and by the table's own numbers, which stand in ``number_d`` beside its unchanged points."""
-    _, table, x, order = arguments
-    by_numbers = called("spline", ast.Name("number_d"), table, x, order)
+    number_of_table, table, x, order = arguments
+    by_numbers = None if moved[0] is None else called("spline", moved[0], table, x, order)
     if moved[2] is None or literal(order) >= HIGHEST_OF_SPLINE:
         return by_numbers
     return added(
-        by_numbers, multiplied(called("spline", ast.Name("number"), table, x, number(literal(order) + 1)), moved[2])
+        by_numbers, multiplied(called("spline", number_of_table, table, x, number(literal(order) + 1)), moved[2])
     )
 
 

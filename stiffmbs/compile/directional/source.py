@@ -11,7 +11,7 @@ from .expressions import Part, added, difference, divided, multiplied, negated, 
 from .rules import RULES
 
 STATE = ("t", "q", "turn", "u", "a", "lam", "mu")
-NUMBER = "number"
+NUMBER, TIME = "number", "t"
 DIRECTION = f"{NUMBER}_d, " + ", ".join(f"{name}_d" for name in STATE)
 SIGNATURE = KERNEL_SIGNATURE.removesuffix(")") + ", float64*, float64, " + ", ".join(["float64*"] * 6) + ")"
 """Behind the arguments of a kernel, the derivatives of what it reads; its value is the derivative of the other's."""
@@ -54,7 +54,7 @@ class _Forward:
 
     def __init__(self, along: Collection[str]) -> None:
         self._along = along
-        self._moving: set[str] = {"t"} & set(along)
+        self._moving: set[str] = {TIME, NUMBER} & set(along)
 
     def statements(self, body: list[ast.stmt]) -> Iterator[str]:
         """Each statement, and the one for its derivative."""

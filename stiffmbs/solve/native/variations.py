@@ -3,6 +3,10 @@
 For s = dy/dp of r(t, y, y', p) = 0: r_y s + r_y' s' + r_p = 0.  The formulas are IDA's (Brenan, Campbell, Petzold 1996, ch. 5): of
 order k the predictor goes through the last k + 1 points, and s' = s'_predicted + cj (s - s_predicted).  The equation is linear,
 so that one solution with the matrix of the step gives s (Caracotsios and Stewart, Comput. Chem. Eng. 9, 1985).
+
+Behind an event whose instant moves by dt_e/dp, s + y' dt_e/dp is integrated in place of s: the motion seen from the event.  As
+r_y y' + r_y' y'' + r_t = 0, that takes r_p + r_t dt_e/dp in place of r_p.  It is smooth where s itself, which compares a state in
+a contact with one that has not come to it yet, is a large multiple of y'.
 """
 
 from __future__ import annotations
@@ -41,34 +45,38 @@ def _take_matrix(v, s, e, t, cj):
 
 
 @compiled
-def _add_part(v, s, part, t, y, yp):
-    """defect += dr/dp of one direction."""
+def _add_part(s, part, t, t_d, y, yp, r):
+    """r += the change of the residual in one direction."""
     p = part_view(part)
     d = direction_view(p.direction)
-    evaluate_along(s, d, t, 0.0)
+    evaluate_along(s, d, t, t_d)
     for k in range(p.n_plain):
-        v.defect[p.row[k]] += p.factor[k] * d.values[p.source[k]]
+        r[p.row[k]] += p.factor[k] * d.values[p.source[k]]
     for k in range(p.n_plain, p.n_with_y):
-        v.defect[p.row[k]] += p.factor[k] * d.values[p.source[k]] * y[p.operand[k]]
+        r[p.row[k]] += p.factor[k] * d.values[p.source[k]] * y[p.operand[k]]
     for k in range(p.n_with_y, p.n_with_yp):
-        v.defect[p.row[k]] += p.factor[k] * d.values[p.source[k]] * yp[p.operand[k]]
+        r[p.row[k]] += p.factor[k] * d.values[p.source[k]] * yp[p.operand[k]]
+
+
+@compiled
+def _take_rate(v, s, t, y, yp):
+    """of_time = r_t, where it is needed."""
+    if v.shifted:
+        for k in range(v.n):
+            v.of_time[k] = 0.0
+        _add_part(s, v.by_time, t, 1.0, y, yp, v.of_time)
 
 
 @compiled
 def _take_defect(v, s, direction, t, y, yp):
-    """defect = r_y s + r_y' s' + r_p for the s and s' at hand."""
+    """defect = r_y s + r_y' s' + r_p for the s and s' at hand, shifted as they are."""
+    shift = v.shift[direction]
     for k in range(v.n):
-        v.defect[k] = 0.0
+        v.defect[k] = shift * v.of_time[k] if v.shifted else 0.0
     for k in range(v.n_slots):
         column = v.column[k]
         v.defect[v.row[k]] += v.constant[k] * v.s[column] + v.rate[k] * v.rates[column]
-    _add_part(v, s, address(v.parts, direction), t, y, yp)
-
-
-@compiled
-def address(pointers, k):
-    """The table whose address stands at a place."""
-    return ints(pointers[k])
+    _add_part(s, ints(v.parts[direction]), t, 0.0, y, yp, v.defect)
 
 
 @compiled
@@ -116,6 +124,7 @@ def _stepped(v, s, e, t, order, y, yp, out):
     flag = _take_matrix(v, s, e, t, cj)
     if flag != 0:
         return flag
+    _take_rate(v, s, t, y, yp)
     for direction in range(v.n_directions):
         _predict(v, direction, order)
         _take_defect(v, s, direction, t, y, yp)
@@ -160,6 +169,7 @@ def defects(row, given, out, table):
     y, yp = shifted(row, 2), shifted(row, 2 + n)
     load(s, e, y, yp)
     flag = _take_matrix(v, s, e, row[0], 1.0)
+    _take_rate(v, s, row[0], y, yp)
     for direction in range(v.n_directions):
         for k in range(n):
             v.s[k] = given[direction * n + k]

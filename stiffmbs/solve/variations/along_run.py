@@ -11,7 +11,7 @@ from ...compile.equations import ABSENT
 from ..dynamics import Dynamics, OutputRows
 from .block_system import BlockSystem, Change
 from .equations import VariationalEquations
-from .jumps import Jumps
+from .jumps import Jumps, Shifted
 from .recorded import Recorder, Segment
 
 BreakpointRates = Callable[[float], np.ndarray]
@@ -58,13 +58,12 @@ class AlongRun:
         (int, Change)
             The state of the dynamics is then that of the instant.
         """
-        q, u, asked = start_q, start_u, list(wanted)
+        s, asked = Shifted(start_q, start_u, np.zeros(len(start_q))), list(wanted)
         segments = [segment for segment in self._recorder.segments if len(segment.rows)]
         for segment, following in zip(segments, [*segments[1:], None], strict=True):
-            change = self.block.change(segment.first[0], segment.start.q, segment.start.u, q, u)
             while asked and rows.t[asked[0]] <= segment.first[0]:
-                yield asked.pop(0), change
-            self._begin(segment, change)
+                yield asked[0], self._change(rows, asked.pop(0), s)
+            self._begin(segment, s)
             end = following.first[0] if following else np.inf
             done = 0
             while asked and rows.t[asked[0]] < end:
@@ -73,24 +72,36 @@ class AlongRun:
                 step = min(max(done, step), len(segment.rows) - 1)
                 self._variations.advance(segment.rows[done:step])
                 done = step
-                s = self._variations.within(self._row(rows, k, segment.rows[step, 1]))
-                yield k, self.block.change(rows.t[k], rows.q[k], rows.u[k], *self._parts(s))
+                at_instant = self._variations.within(self._row(rows, k, segment.rows[step, 1]))
+                yield k, self._change(rows, k, self._parts(at_instant, s.shift))
             if not asked or following is None:
                 return
             self._variations.advance(segment.rows[done:])
-            q, u = self._jumps.over(segment, following, self._variations.last)
+            s = self._jumps.over(segment, following, self._parts(self._variations.last, s.shift))
 
-    def _parts(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """How q and u change."""
-        return s[:, self._equations.at["q"]], s[:, self._equations.at["u"]]
+    def _parts(self, s: np.ndarray, shift: np.ndarray) -> Shifted:
+        """Of q and u."""
+        return Shifted(s[:, self._equations.at["q"]], s[:, self._equations.at["u"]], shift)
 
-    def _begin(self, segment: Segment, change: Change) -> None:
+    def _change(self, rows: OutputRows, k: int, s: Shifted) -> Change:
+        """How the state of an output instant changes."""
+        t, q, u = rows.t[k], rows.q[k], rows.u[k]
+        moved_q, moved_u = s.q, s.u
+        if s.shift.any():
+            self._dynamics.state.q[:], self._dynamics.state.u[:] = q, u
+            _, acceleration = self._dynamics.accelerate(t)
+            moved_q, moved_u = s.unshifted(self._dynamics.position_rates(q, u), acceleration)
+        return self.block.change(t, q, u, moved_q, moved_u, np.zeros(len(s.shift)))
+
+    def _begin(self, segment: Segment, given: Shifted) -> None:
         """Start the variational equations at the start of a segment."""
         at, first = self._equations.at, segment.first
+        change = self.block.change(first[0], segment.start.q, segment.start.u, given.q, given.u, given.shift)
         s = np.zeros((len(change.q), self._equations.n))
         s[:, at["q"]], s[:, at["u"]] = change.q, change.u
         solved = at["lam"] != ABSENT
         s[:, at["lam"][solved]] = change.lam[:, solved]
+        self._variations.shift(given.shift)
         defects, rates = self._variations.defects(first, s), np.zeros_like(s)
         rates[:, at["q"]] = -defects[:, at["q"]]
         rates[:, at["u"]] = -defects[:, at["u"]] / self._dynamics.system.mass

@@ -44,7 +44,9 @@ class BlockSystem:
         self._accelerations = [Direction(dynamics.state, "acceleration", numbers) for numbers in directions]
         self._outputs: list[Direction] = []
 
-    def change(self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray) -> Change:
+    def change(
+        self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray
+    ) -> Change:
         """How accelerations and multipliers change at a state.
 
         Parameters
@@ -52,6 +54,8 @@ class BlockSystem:
         t : float
         q, u : ndarrays, shapes (n_q,), (n_u,)
         moved_q, moved_u : ndarrays, shapes (directions, n_q), (directions, n_u)
+        moved_t : ndarray, shape (directions,)
+            How time changes.
 
         Raises
         ------
@@ -65,9 +69,9 @@ class BlockSystem:
             raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
         state.a[:] = acceleration
         right = []
-        for direction, of_q, of_u in zip(self._accelerations, moved_q, moved_u, strict=True):
+        for direction, of_q, of_u, of_t in zip(self._accelerations, moved_q, moved_u, moved_t, strict=True):
             direction.q[:], direction.u[:] = of_q, of_u
-            direction.evaluate(t)
+            direction.evaluate(t, of_t)
             force = (
                 direction.vector("f") - direction.numbers.mass * acceleration - direction.product("J", state.lam, True)
             )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...compile.directional.direction import Direction, Numbers
-from ...compile.directional.source import NUMBER
+from ...compile.directional.source import NUMBER, TIME
 from ...compile.equations import Equations
 from ...compile.machine.layout import DEPTH, PART, VARIATIONS, cells, packed
 from ...compile.machine.routines import together
@@ -58,7 +58,9 @@ class VariationalEquations:
         formulation = equations.formulation
         state.load(formulation.residual_set)
         state.load(formulation.matrix_set)
-        self._parts = [_Part(equations, state, numbers) for numbers in directions]
+        self._parts = [_Part(equations, state, numbers, NUMBER) for numbers in directions]
+        still = Numbers(tuple(group.numbers for group in state.system.groups), frozenset(), np.zeros(state.system.n_u))
+        self._by_time, self._shift = _Part(equations, state, still, TIME), np.zeros(len(directions))
         share = np.setdiff1d(state.system.turned(formulation.residual_set), state.system.turned(formulation.matrix_set))
         table, slots = equations.table()
         self._history, self._times = np.zeros((DEPTH, len(directions), n)), np.zeros(DEPTH)
@@ -68,6 +70,7 @@ class VariationalEquations:
             "row": row, "column": column, "place": place.astype(np.int32),
             "constant": np.zeros(len(row)), "rate": np.zeros(len(row)), "n_share": len(share), "share": share,
             "parts": np.array([part.table.ctypes.data for part in self._parts], dtype=np.int64),
+            "by_time": self._by_time.table, "shift": self._shift, "of_time": np.zeros(n),
             **{name: libraries.address(function) for name, function in FUNCTIONS.items()},
             "solver": assembled.solver, "matrix": assembled.matrix, "entries": assembled.values, "pattern": assembled.pattern,
             **self._vectors, **handles, "s": np.zeros(n), "rates": np.zeros(n),
@@ -80,6 +83,11 @@ class VariationalEquations:
     def close(self) -> None:
         """Free what SUNDIALS holds."""
         self._session.close()
+
+    def shift(self, shift: np.ndarray) -> None:
+        """Integrate s + y' times these from here on, s, shape (directions,)."""
+        self._shift[:] = shift
+        self._cells["shifted"] = bool(shift.any())
 
     def begin(self, t: float, first_step: float, s: np.ndarray, rates: np.ndarray) -> None:
         """Start from given s and s', shapes (directions, n); `first_step` is the length of the first step, s."""
@@ -137,9 +145,9 @@ def _singular(t: float) -> SolverError:
 class _Part:
     """dr/dp of one direction: the kernels of what changes, and where their values stand in the residual."""
 
-    def __init__(self, equations: Equations, state: State, numbers: Numbers) -> None:
+    def __init__(self, equations: Equations, state: State, numbers: Numbers, along: str) -> None:
         system, term_set = state.system, equations.formulation.residual_set
-        self._direction = Direction(state, term_set, numbers, (NUMBER,))
+        self._direction = Direction(state, term_set, numbers, (along,))
         written = np.zeros(len(self._direction.values), dtype=bool)
         for g in self._direction.writes:
             group = system.groups[g]

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...compile.directional.direction import Direction, Numbers
-from ...compile.equations import ABSENT, Equations
+from ...compile.equations import Equations
+from ...compile.record import source_of
 from ...errors import SolverError
 from ..dynamics import Dynamics
 from ..failures import FAILURES
@@ -22,6 +23,8 @@ from .saddle import saddle_solution
 
 SMALL = 100.0
 """Times the relative tolerance by which rates may differ on both sides of an instant without counting as a jump."""
+MUCH_LARGER = 2.0
+"""Times by which positions may change more, seen from an event, for them to be integrated so."""
 GRAZING = 1e-9
 """Part of an event function's change in the segment, over its time, below which its rate counts as zero."""
 
@@ -36,6 +39,32 @@ class _State:
     q_rates: np.ndarray
     acceleration: np.ndarray
     lam: np.ndarray
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """How a state changes in each direction, seen from an instant that moves: s + y' dt_e/dp.
+
+    Attributes
+    ----------
+    q, u : ndarrays, shapes (directions, n_q), (directions, n_u)
+    shift : ndarray, shape (directions,)
+        dt_e/dp.
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+    shift: np.ndarray
+
+    def unshifted(self, q_rates: np.ndarray, acceleration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """How it changes at a fixed instant, given its rates."""
+        return self.q - np.outer(self.shift, q_rates), self.u - np.outer(self.shift, acceleration)
+
+    def shifted_where(self, kept: np.ndarray, q_rates: np.ndarray, acceleration: np.ndarray) -> Shifted:
+        """The same with the shift of some directions alone."""
+        q, u = self.unshifted(q_rates, acceleration)
+        rows = kept[:, None]
+        return Shifted(np.where(rows, self.q, q), np.where(rows, self.u, u), np.where(kept, self.shift, 0.0))
 
 
 class Jumps:
@@ -67,30 +96,39 @@ class Jumps:
         self._events: list[Direction] = []
         self._motions: list[Direction] = []
 
-    def over(self, before: Segment, after: Segment, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """How q and u change behind the start of a segment.
-
-        Parameters
-        ----------
-        before, after : Segment
-        s : ndarray, shape (directions, n)
-            How the unknowns change at the end of the first.
-
-        Returns
-        -------
-        ndarrays, shapes (directions, n_q), (directions, n_u)
-        """
-        at = self._equations.at
-        q, u = s[:, at["q"]], s[:, at["u"]]
-        left, right = self._end(before), self._start(after)
-        jump_q, jump_u = left.q_rates - right.q_rates, left.acceleration - right.acceleration
-        moved = np.zeros(len(s))
-        if self._counts(jump_q, left.q_rates) or self._counts(jump_u, left.acceleration):
-            moved = self._event_rates(before, left, s) if before.fired else self._breakpoint_rates(right.t)
-        towards = u + np.outer(moved, left.acceleration)
+    def over(self, before: Segment, after: Segment, s: Shifted) -> Shifted:
+        """How the state changes behind the start of a segment, given how it changes at the end of the one before."""
+        left = self._end(before)
+        right = self._start(after, after.first[0] - left.t)
+        q, u = s.unshifted(left.q_rates, left.acceleration)
+        moved = self._instants(before, left, right, q, u)
+        if moved is None:
+            moved = np.zeros(len(q))
+        to_q, to_u = q + np.outer(moved, left.q_rates), u + np.outer(moved, left.acceleration)
         if self._dynamics.system.n_c:
-            towards = self._projected(left, right.t, q + np.outer(moved, left.q_rates), towards, moved)
-        return q + np.outer(moved, jump_q), towards - np.outer(moved, right.acceleration)
+            to_u = self._projected(left, right.t, to_q, to_u, moved)
+        found = Shifted(to_q, to_u, moved)
+        nearer = np.abs(to_q).max(axis=1) <= MUCH_LARGER * np.abs(q).max(axis=1)
+        return found.shifted_where(nearer & bool(before.fired), right.q_rates, right.acceleration)
+
+    def _instants(
+        self, before: Segment, left: _State, right: _State, q: np.ndarray, u: np.ndarray
+    ) -> np.ndarray | None:
+        """How the instant between two segments moves in each direction; None where it need not be known."""
+        jumps = self._counts(left.q_rates - right.q_rates, left.q_rates)
+        jumps = jumps or self._counts(left.acceleration - right.acceleration, left.acceleration)
+        if not before.fired:
+            return self._breakpoint_rates(right.t) if jumps else None
+        changes, rates, largest = self._event(before, left, q, u)
+        if np.all(np.abs(rates) > GRAZING * max(largest, np.abs(rates).max())):
+            return np.asarray(-changes / rates)
+        if not jumps:
+            return None
+        name = self._dynamics.system.writer("event_function", before.fired[0])
+        raise SolverError(
+            f"sensitivities: found that '{name}' only grazes its breakpoint at t = {left.t:.9g} s, where the motion is not "
+            "differentiable by parameters; expected an event that is passed"
+        )
 
     def _end(self, segment: Segment) -> _State:
         """The end of a segment, by the law that held there: the integrator's own y' has seen what follows."""
@@ -98,8 +136,10 @@ class Jumps:
         t, y = segment.rows[-1][0], segment.rows[-1][2 : 2 + n]
         return self._state(t, y[at["q"]], y[at["u"]])
 
-    def _start(self, segment: Segment) -> _State:
-        return self._state(segment.first[0], segment.start.q, segment.start.u)
+    def _start(self, segment: Segment, ahead: float) -> _State:
+        """The start of a segment, by the law that holds from there on: a little ahead, as at the very instant any law may."""
+        at = self._state(segment.first[0], segment.start.q, segment.start.u)
+        return self._state(at.t + ahead, at.q + ahead * at.q_rates, at.u + ahead * at.acceleration)
 
     def _state(self, t: float, q: np.ndarray, u: np.ndarray) -> _State:
         dynamics = self._dynamics
@@ -110,30 +150,36 @@ class Jumps:
         rates = dynamics.position_rates(q, u)
         return _State(t, q, u, rates, acceleration, dynamics.state.lam.copy())
 
-    def _event_rates(self, segment: Segment, left: _State, s: np.ndarray) -> np.ndarray:
-        """How the instant of an event moves in each direction: -g_p/g' by all that g hangs on."""
-        at, state = self._equations.at, self._dynamics.state
+    def _event(
+        self, segment: Segment, left: _State, q: np.ndarray, u: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, float]:
+        """How the event function that has fired changes in each direction, and with time; and the largest of all of them."""
+        state = self._dynamics.state
         self._events = self._events or [Direction(state, "event_function", numbers) for numbers in self._numbers]
         state.q[:], state.u[:], state.lam[:] = left.q, left.u, left.lam
         (event, *_), found = segment.fired, []
-        for direction, moved in zip(self._events, s, strict=True):
-            direction.q[:], direction.u[:] = moved[at["q"]], moved[at["u"]]
-            direction.lam[:] = np.where(at["lam"] == ABSENT, 0.0, moved[at["lam"]])
+        self._refuse_reactions(event, left.t)
+        for direction, of_q, of_u in zip(self._events, q, u, strict=True):
+            direction.q[:], direction.u[:] = of_q, of_u
             direction.evaluate(left.t)
-            at_once = direction.values[event]
+            change = direction.values[event]
             direction.q += left.q_rates
             direction.u += left.acceleration
             direction.evaluate(left.t, 1.0)
-            found.append((at_once, direction.values[event] - at_once))
+            found.append((change, direction.values[event] - change))
         changes, rates = np.array(found).T
         largest = np.abs(state.values["event_function"][: self._dynamics.system.n_event_functions]).max()
-        if not np.all(np.abs(rates) > GRAZING * max(largest, np.abs(rates).max())):
-            name = self._dynamics.system.writer("event_function", event)
+        return changes, rates, float(largest)
+
+    def _refuse_reactions(self, event: int, t: float) -> None:
+        system = self._dynamics.system
+        name = system.writer("event_function", event)
+        group = next(group for group in system.groups if name in group.names)
+        if "lam[" in (source_of(group.kind, "event_function") or ""):
             raise SolverError(
-                f"sensitivities: found that '{name}' only grazes its breakpoint at t = {left.t:.9g} s, where the motion is not "
-                "differentiable by parameters; expected an event that is passed"
+                f"sensitivities: found that a breakpoint of '{name}' at t = {t:.9g} s depends on a reaction, expected one that "
+                "depends on positions, velocities and time"
             )
-        return -changes / rates
 
     def _projected(
         self, left: _State, t: float, q: np.ndarray, u: np.ndarray, moved: np.ndarray

@@ -80,20 +80,24 @@ class Formula:
                     self._mark(part, here, wanted)
 
     def _series(self, node: ast.AST) -> np.ndarray:
-        value = self._dual(node, {}).value
+        value = self._dual(node, dict.fromkeys(self._channels, 0.0)).value
         return np.broadcast_to(np.asarray(value, dtype=float), self._time.shape)
 
-    def dual(self, slopes: Mapping[str, np.ndarray]) -> Dual:
+    def dual(self, slopes: Mapping[str, Any]) -> Dual:
         """The value with its derivatives, from those of the channels, shape (n, directions)."""
         with np.errstate(all="ignore"):
             return self._dual(self._tree, slopes)
 
-    def _dual(self, node: ast.AST, slopes: Mapping[str, np.ndarray]) -> Dual:
+    def _dual(self, node: ast.AST, slopes: Mapping[str, Any]) -> Dual:
         name = channel_of(node)
         if name is not None:
             if name == TIME:
                 return Dual(self._time, 0.0)
-            return Dual(self._channels[name], slopes.get(name, 0.0))
+            if name not in slopes:
+                raise InputError(
+                    f"of: found '{name}' in '{self.text}', which has no derivatives, expected another channel"
+                )
+            return Dual(self._channels[name], slopes[name])
         match node:
             case ast.Constant(value):
                 return Dual(value, 0.0)

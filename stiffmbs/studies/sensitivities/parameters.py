@@ -104,13 +104,18 @@ def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
     while k < len(parts):
         if parts[k].isdigit() and isinstance(at, list | tuple):
             places = tuple(map(int, parts[k:]))
-            _part(at, places, name)
+            if not _is_number(_part(at, places, name)):
+                raise InputError(f"to: found '{name}', which is no number, expected one; add a place such as .0")
             return ".".join(parts[:k]), places, at
         at, k = _next(at, parts, k, name)
-    if isinstance(at, bool) or not isinstance(at, int | float):
+    if not _is_number(at):
         what = "a vector; add a place such as .0" if isinstance(at, list | tuple) else "no number"
         raise InputError(f"to: found '{name}', which is {what}, expected a number")
     return name, (), at
+
+
+def _is_number(found: Any) -> bool:
+    return isinstance(found, int | float) and not isinstance(found, bool)
 
 
 def _next(at: Any, parts: Sequence[str], k: int, name: str) -> tuple[Any, int]:

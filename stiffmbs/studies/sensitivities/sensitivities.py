@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,11 +27,11 @@ from .formulas import Formula
 from .parameters import Parameter, Scenes
 from .set_up import SetUp, breakpoint_rates
 
+TIGHTER, TIGHTEST = 1e-4, 1e-12
+"""Part of the asked rtol with which the run is solved, and the least rtol.  A force in a stiff bushing hangs on a deflection that is a
+small part of a coordinate, and its derivative on the phase of a vibration: they are coarser than the motion."""
 HELD = {"solver": "bdf", "formulation": "SI2", "presolve": False}
 """Settings of the run along which sensitivities are integrated."""
-TIGHTER, TIGHTEST = 1e-3, 1e-12
-"""Part of the scene's rtol with which that run is solved, and the least rtol.  A force in a stiff bushing hangs on a deflection that is a
-small part of a coordinate, and its derivative on the phase of a vibration: they are coarser than the motion."""
 
 
 @dataclass(frozen=True)
@@ -103,8 +104,13 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     if not names or len(set(names)) < len(names):
         raise InputError(f"to: found {', '.join(names) or 'no parameter'}, expected one parameter or more, each once")
     (output,) = outputs_of(of)
-    (found,) = DifferentiatedRun(scene, names, settings).sensitivities([output.text])
-    return found
+    scenes = Scenes(written_scene(scene))
+    asked = changed(scenes.known.run, settings)
+    for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
+        run = DifferentiatedRun(scenes, names, changed(asked, {"rtol": rtol}))
+        if run.success:
+            break
+    return run.sensitivity(output.text)
 
 
 class DifferentiatedRun:
@@ -112,89 +118,82 @@ class DifferentiatedRun:
 
     Parameters
     ----------
-    scene : str, Path, Scene or Model
+    scenes : Scenes
     names : sequence of str
         Of the parameters.
-    settings : mapping
-        Fields of the run's settings to change.
+    settings : RunSettings
+        Solver and formulation are `bdf` and SI2 in any case, without presolve.
     times : ndarray, optional
         Output instants in place of those of the settings.
+
+    Attributes
+    ----------
+    success : bool
+        Whether the whole time was solved.
     """
 
     def __init__(
-        self, scene: Runnable, names: Sequence[str], settings: Mapping[str, Any], times: np.ndarray | None = None
+        self, scenes: Scenes, names: Sequence[str], settings: RunSettings, times: np.ndarray | None = None
     ) -> None:
-        scenes = Scenes(written_scene(scene))
         parameters = [Parameter(scenes, name) for name in names]
-        self._job = prepare(scenes.known, _settings(scenes.known.run, settings))
-        grid = self._job.grid if times is None else Grid(self._job.grid.start, self._job.grid.end, times)
-        self._set_ups = [SetUp(self._job, parameter) for parameter in parameters]
+        self._job = job = prepare(scenes.known, changed(settings, HELD))
+        self._set_ups = [SetUp(job, parameter) for parameter in parameters]
         self._numbers = [set_up.numbers for set_up in self._set_ups]
-        self._recorder = Recorder(self._job.dynamics, self._job.settings)
-        self.rows = self._run(grid)
-        self.channels = channels_of(self._job.data, self._job.dynamics.system, self.rows)
-
-    def _run(self, grid: Grid) -> OutputRows:
-        job = self._job
+        self._recorder = Recorder(job.dynamics, job.settings)
         job.dynamics.forget_pivots()
-        trajectory = integrated(self._recorder, job.start, grid, lambda _: None)
-        if trajectory.outcome is Outcome.INTERRUPTED:
+        grid = job.grid if times is None else Grid(job.grid.start, job.grid.end, times)
+        self._trajectory = integrated(self._recorder, job.start, grid, lambda _: None)
+        if self._trajectory.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        if trajectory.outcome is not Outcome.DONE:
-            raise SolverError(f"sensitivities: the run {trajectory.message}")
-        rows, gaps = reported(job.dynamics, trajectory, True)
-        if len(rows.t) < len(trajectory.t) or gaps:
+        self.success = self._trajectory.outcome is Outcome.DONE
+
+    def sensitivity(self, text: str) -> Sensitivity:
+        """Of a formula of channels; errors as for `sensitivities`."""
+        rows = self._rows
+        channels = channels_of(self._job.data, self._job.dynamics.system, rows)
+        (output,) = outputs_of(text)
+        output.refuse_unknown(channels)
+        formula = Formula(output.text, rows.t, channels)
+        dual = formula.dual(self._slopes(channels, formula.instants()))
+        by = np.broadcast_to(dual.slope, (*np.shape(dual.value), len(self._set_ups)))
+        if not np.isfinite(by).all():
+            raise SolverError(
+                f"sensitivities: found a derivative of '{formula.text}' that is no number, expected finite ones"
+            )
+        to = {set_up.parameter.name: _plain(by[..., k]) for k, set_up in enumerate(self._set_ups)}
+        return Sensitivity(formula.text, _plain(dual.value), to, rows.t)
+
+    @cached_property
+    def _rows(self) -> OutputRows:
+        if not self.success:
+            raise SolverError(f"sensitivities: the run {self._trajectory.message}")
+        rows, gaps = reported(self._job.dynamics, self._trajectory, True)
+        if len(rows.t) < len(self._trajectory.t) or gaps:
             raise SolverError(
                 "sensitivities: found instants without accelerations and reactions, expected them everywhere"
             )
         return rows
 
-    def sensitivities(self, texts: Sequence[str]) -> list[Sensitivity]:
-        """Of formulas of channels; errors as for `sensitivities`."""
-        outputs = outputs_of(tuple(texts))
-        for output in outputs:
-            output.refuse_unknown(self.channels)
-        formulas = [Formula(output.text, self.rows.t, self.channels) for output in outputs]
-        instants = np.unique(np.concatenate([formula.instants() for formula in formulas]))
-        slopes = self._slopes(instants)
-        names = [set_up.parameter.name for set_up in self._set_ups]
-        found = []
-        for formula in formulas:
-            dual = formula.dual(slopes)
-            by = np.broadcast_to(dual.slope, (*np.shape(dual.value), len(names)))
-            if not np.isfinite(by).all():
-                raise SolverError(
-                    f"sensitivities: found a derivative of '{formula.text}' that is no number, expected finite ones"
-                )
-            to = {name: _plain(by[..., k]) for k, name in enumerate(names)}
-            found.append(Sensitivity(formula.text, _plain(dual.value), to, self.rows.t))
-        return found
-
-    def _slopes(self, instants: np.ndarray) -> dict[str, np.ndarray]:
+    def _slopes(self, channels: dict[str, np.ndarray], instants: np.ndarray) -> dict[str, np.ndarray]:
         """Derivatives of all channels, shape (n, directions); zero at instants that are not asked for."""
-        job, count = self._job, len(self._set_ups)
+        job, rows, count = self._job, self._rows, len(self._set_ups)
         along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
-        shape = len(self.rows.t), count
+        shape = len(rows.t), count
         slopes: dict[str, np.ndarray] = {}
         moved_q = np.zeros((*shape, job.dynamics.system.n_q))
         start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))
         try:
-            for k, change in along.at(self.rows, instants, start_q, start_u):
-                values = along.block.outputs(self.rows.t[k], change)
-                found = changed_channels(job.dynamics.system, self.rows.u[k], self._numbers, change, values)
+            for k, change in along.at(rows, instants, start_q, start_u):
+                values = along.block.outputs(rows.t[k], change)
+                found = changed_channels(job.dynamics.system, rows.u[k], self._numbers, change, values)
                 moved_q[k] = change.q
                 for name, slope in found.items():
                     slopes.setdefault(name, np.zeros(shape))[k] = slope
         finally:
             along.close()
         if job.data.requests and instants.size:
-            slopes |= changed_requests(job, self._set_ups, self.rows, self.channels, slopes, moved_q)
+            slopes |= changed_requests(job, self._set_ups, rows, channels, slopes, moved_q)
         return slopes
-
-
-def _settings(settings: RunSettings, changes: Mapping[str, Any]) -> RunSettings:
-    asked = changed(settings, {**changes, **HELD})
-    return changed(asked, {"rtol": min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST))})
 
 
 def _plain(value: Any) -> Any:

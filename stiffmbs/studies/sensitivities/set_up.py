@@ -81,6 +81,10 @@ class SetUp:
                 raise InputError(
                     f"to: found that '{self.parameter.name}' changes the structure of the model, expected one that changes numbers"
                 )
+            if not np.array_equal(system.principal_axes, other.principal_axes):
+                raise InputError(
+                    f"to: found that '{self.parameter.name}' turns principal axes of a body, expected inertias about fixed ones"
+                )
         return found
 
     @cached_property
