@@ -49,6 +49,7 @@ from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.settings import SteadyMotion as SteadyMotion
 from .describe.states.linear_system import PID as PID
+from .describe.states.algebraic_state import AlgebraicState as AlgebraicState
 from .describe.states.linear_system import LinearSystem as LinearSystem
 from .describe.states.linear_system import TransferFunction as TransferFunction
 from .describe.states.state import State as State

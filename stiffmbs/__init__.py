@@ -25,6 +25,7 @@ from .describe.python_function import PythonFunction
 from .describe.scene import Scene, read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings, SteadyMotion
+from .describe.states.algebraic_state import AlgebraicState
 from .describe.states.linear_system import PID, LinearSystem, TransferFunction
 from .describe.states.state import State
 from .describe.table import Table
@@ -50,7 +51,7 @@ _LATER = {
 """The modules of what is loaded when it is used."""
 
 __all__ = [
-    "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
+    "AlgebraicState", "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
     "SolverError", "State", "SteadyMotion", "StiffmbsError", "Table", "TransferFunction", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
     *_LATER, *_ELEMENTS,
 ]  # fmt: skip

@@ -41,6 +41,7 @@ from .describe.scene import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.settings import SteadyMotion as SteadyMotion
+from .describe.states.algebraic_state import AlgebraicState as AlgebraicState
 from .describe.states.linear_system import PID as PID
 from .describe.states.linear_system import LinearSystem as LinearSystem
 from .describe.states.linear_system import TransferFunction as TransferFunction

@@ -13,11 +13,11 @@ from ..describe.files.text_file import STANDARD_INPUT, checked, file_text, sourc
 from ..describe.scene import Scene, made_scene
 from ..errors import InputError
 from .scene.scene import scene
+from .stages import followed
 from .statements.changes import Changes
-from .statements.commands import read_commands
+from .statements.commands import Segment, read_commands
 from .statements.dataset import NO_CHANGES, Dataset, read_dataset
 from .statements.fault import DatasetFault
-from .statements.simulations import refuse_velocities, run_settings
 
 COMMANDS = ".acf"
 """How the name of a command file ends."""
@@ -96,18 +96,21 @@ def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
         asked = read_commands(file_text(beside, ENCODING))
     except DatasetFault as fault:
         raise InputError(f"{beside}, {fault}") from None
-    dataset, found = _scene(text, source, asked.changes)
-    try:
-        run = run_settings(asked.simulations, dataset.units)
-        if asked.from_equilibrium is not None:
-            found["start"] = "equilibrium"
-            refuse_velocities(asked.from_equilibrium, dataset)
-    except DatasetFault as fault:
-        raise InputError(f"{beside}, {fault}") from None
-    if run:
-        found["run"] = run
-    told = [f"duration and output are those of {beside.name}"] if run else []
-    notes = [*found.get("notes", ()), *told, *asked.changes.notes(beside.name), *asked.notes]
+    first = asked.segments[0].changes if asked.segments else asked.changes
+    dataset, found = _scene(text, source, first)
+    told = [*first.notes(beside.name), *asked.notes]
+    if asked.segments:
+
+        def read(segment: Segment) -> tuple[Dataset, dict[str, Any]]:
+            return _scene(text, source, segment.changes)
+
+        try:
+            added = followed(asked.segments, (dataset, found), read, beside.name)
+        except DatasetFault as fault:
+            raise InputError(f"{beside}, {fault}") from None
+        told = [*added.pop("notes"), *told]
+        found |= added
+    notes = [*found.get("notes", ()), *told]
     return dataset, found | ({"notes": notes} if notes else {})
 
 

@@ -113,7 +113,7 @@ def solve_scene(path: str, scene: Scene, verified: bool, **start: Any) -> Soluti
     else:
         from ..jobs.run import run as solve
     first = start.get("start", scene.run.start)
-    with in_file(path), ProgressBar(first, first + scene.run.duration) as progress:
+    with in_file(path), ProgressBar(first, first + scene.whole_duration) as progress:
         return solve(scene, watch=progress, **start)
 
 

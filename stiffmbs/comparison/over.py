@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
 from ..describe.scene import read_scene
 from ..describe.settings import RunSettings, Settings, takes_settings
+from ..describe.units.units import Dimension, Quantity, in_text
 from ..errors import AssemblyError, InputError, SolverError
 from ..jobs.load_scene import load_scene
 from ..jobs.run import Runnable, data_of
@@ -259,16 +260,23 @@ def _error(error: float | None, measure: str) -> float:
     return error or USUAL_ERROR
 
 
-def with_parameter(path: str | Path, parameter: str, changes: Sequence[tuple[str, str]] = ()) -> Family:
-    """A scene as a function of one of its parameters, or of any other value in it; standard input is read once."""
+def with_parameter(
+    path: str | Path, parameter: str, changes: Sequence[tuple[str, str]] = (), dimension: Dimension | None = None
+) -> Family:
+    """A scene as a function of one of its parameters, or of any other value in it, in SI units; standard input is read once.
+
+    Where the dimension of the values is known, the scene refuses one that does not fit.
+    """
     if str(path) == STANDARD_INPUT:
         text = file_text(path)
-        return lambda value: read_scene(text, [*changes, (parameter, _written(value))], source_name(path))
-    return lambda value: load_scene(path, [*changes, (parameter, _written(value))])
+        return lambda value: read_scene(text, [*changes, (parameter, _written(value, dimension))], source_name(path))
+    return lambda value: load_scene(path, [*changes, (parameter, _written(value, dimension))])
 
 
-def _written(value: float) -> str:
-    """Whole numbers without a point, as counts are written."""
+def _written(value: float, dimension: Dimension | None) -> str:
+    """With its unit, where it has one; whole numbers without a point, as counts are written."""
+    if dimension is not None:
+        return str(in_text(Quantity(value, dimension)))
     return str(int(value)) if value.is_integer() and abs(value) < WHOLE else repr(value)
 
 

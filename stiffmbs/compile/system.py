@@ -43,6 +43,8 @@ class System:
         Those of the user's own, whose values are the last coordinates.
     state_scales : ndarray, shape (states,)
         Sizes of them that matter.
+    algebraic : ndarray of bool, shape (states,)
+        Which of them have no rate: an equation determines them at every instant.
     of_body : BodyKind
         The coordinates and velocities that each of them has.
     q, u : ndarrays
@@ -52,6 +54,8 @@ class System:
         Which velocities at the start are not given, so that constraints decide about them first.
     mass : ndarray, shape (n_u,)
         The diagonal of the mass matrix: masses, and moments of inertia about principal axes.
+    followed : ndarray, shape (n_u,)
+        0 for angular velocities that their body's quaternion doesn't follow (`stiffmbs.presolve.spinning_bodies`), else 1.
     principal_axes : ndarray, shape (bodies, 4)
         Quaternions of the principal axes in each body's own axes, which results are shown in; (bodies, 0) in the plane.
     groups : tuple of Group
@@ -67,11 +71,13 @@ class System:
     bodies: tuple[str, ...]
     states: tuple[str, ...]
     state_scales: np.ndarray
+    algebraic: np.ndarray
     of_body: BodyKind
     q: np.ndarray
     u: np.ndarray
     open_rates: np.ndarray
     mass: np.ndarray
+    followed: np.ndarray
     principal_axes: np.ndarray
     groups: tuple[Group, ...]
     equations: tuple[tuple[str, str], ...]
@@ -109,6 +115,23 @@ class System:
     def first_state(self) -> int:
         """The number of the first coordinate that is a state."""
         return self.n_q - len(self.states)
+
+    @cached_property
+    def algebraic_coordinates(self) -> np.ndarray:
+        """The numbers of the coordinates that are algebraic states."""
+        return self.first_state + np.flatnonzero(self.algebraic)
+
+    @cached_property
+    def following_reactions(self) -> np.ndarray:
+        """The numbers of the algebraic states, among the coordinates, that follow multipliers at once, directly or through others."""
+        found = np.intersect1d(self.term("tangent", "rate_lam").row, self.algebraic_coordinates)
+        among = self.term("tangent", "rate_q")
+        inside = np.isin(among.row, self.algebraic_coordinates)
+        while True:
+            more = np.union1d(found, among.row[inside & np.isin(among.column, found)])
+            if len(more) == len(found):
+                return found
+            found = more
 
     @property
     def n_counters(self) -> int:

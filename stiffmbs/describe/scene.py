@@ -24,6 +24,7 @@ from .files.expand import (
 )
 from .files.include import read_including
 from .files.quoted import written
+from .files.stages import Stage, written_stages
 from .files.unchanged import Unchanged
 from .files.variables import read_variables
 from .files.written_scene import WrittenScene
@@ -31,8 +32,9 @@ from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .model import PlanarData
 from .model_data import ModelData
-from .parts.instances import set_in_instances
+from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
 from .parts.placed import with_parts
+from .parts.placing import placed_in_use, set_in_instances
 from .requests.check import check_output
 from .requests.names import OF_PLANE
 from .requests.order import dimension, dimensions
@@ -54,14 +56,17 @@ class Scene(ModelData):
     roads: dict[str, AnyRoad] = Field(default_factory=dict, description="roads that tyres name")
     variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
-    start: Literal["described", "equilibrium"] | SteadyMotion = Field(
+    start: Literal["described", "equilibrium", "settled"] | SteadyMotion = Field(
         "described",
-        description="where a run starts: as described, at rest in the equilibrium found from there, or in steady motion",
+        description="where a run starts: as described, at rest in the equilibrium found from there, in its pose with the "
+        "described velocities (settled), or in steady motion",
     )
+    stages: tuple[Stage, ...] = Field((), description="runs one after the other, each with its own changes")
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
     _written: WrittenScene | None = PrivateAttr(default=None)
+    _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
 
     def check_requests(self) -> None:
         """The same for variables, whose formulas are read as those of requests."""
@@ -78,6 +83,19 @@ class Scene(ModelData):
     def written_parameters(self) -> dict[str, float | str]:
         """The parameters as a scene writes them, with their units."""
         return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
+
+    @property
+    def stage_scenes(self) -> tuple[Scene, ...]:
+        """The scene of each stage, in their order."""
+        return self._stage_scenes
+
+    @property
+    def whole_duration(self) -> float:
+        """How long all of it runs, s."""
+        if not self.stages:
+            return self.run.duration
+        pairs = zip(self.stages, self.stage_scenes, strict=True)
+        return sum(scene.run.duration for stage, scene in pairs if stage.over_time)
 
     @property
     def written(self) -> WrittenScene | None:
@@ -177,6 +195,8 @@ def made_scene(
         When it is no valid scene.
     """
     scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    found, changes = placed_in_use(found, changes)
+    found, chosen, changes = _chosen(found, changes, source)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
     in_parts = []
@@ -188,11 +208,43 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        scene = _validated(found, replaced, in_parts, folder, unchanged)
+        scene = _validated(found, replaced, in_parts, chosen, folder, unchanged)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
     scene._written = scene_as_written
+    if scene.stages:
+        scene._stage_scenes = _stage_scenes(scene, source)
     return scene
+
+
+def _chosen(
+    found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str
+) -> tuple[dict[str, Any], dict[str, Any], Sequence[tuple[str, Any]]]:
+    """A scene with the sections that it chooses among its options, what parts need to know of it, and the other changes."""
+    words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
+    for path, word in words.items():
+        set_value(found, path, word)
+    try:
+        chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
+        merged = with_chosen(found, chosen["words"], OPTIONS)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    merged.pop(CHOOSE, None)
+    return merged, chosen, [change for change in changes if change[0] not in words]
+
+
+def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
+    """The scene of each stage; errors as for `made_scene`."""
+    if scene.written is None:
+        raise InputError(f"{source}: found stages, expected a scene of one run")
+    try:
+        stages = written_stages(scene.written, scene.stages)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    return tuple(
+        made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
+        for k, stage in enumerate(stages)
+    )
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
@@ -229,6 +281,7 @@ def _validated(
     found: dict[str, Any],
     replaced: Mapping[str, Quantity],
     in_parts: Sequence[tuple[str, Any]],
+    chosen: Mapping[str, Any],
     folder: Path | None,
     unchanged: Unchanged | None,
 ) -> Scene:
@@ -241,6 +294,7 @@ def _validated(
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
         context["roads"] = read_roads(raw.get("roads"), context)
+        context |= chosen
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 from ..compile.system import System
-from ..describe.scene import notes_of
+from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, SolverError
 from ..solve.initial import InitialValues, initial_values
@@ -24,7 +24,7 @@ from ..structure.messages.redundancy import (
 from ..structure.messages.unconnected import unconnected_sentence
 from ..structure.overconstraint import Overconstraint, listed, overconstraints
 from .presolve_report import presolve_sentences, unknowns
-from .run import Examined, Runnable, examined, presolved
+from .run import Examined, Runnable, data_of, examined, presolved
 
 MOST_MOVES = 50
 """Bodies that are named of those which assembly moves; `Report.moved` has all."""
@@ -140,7 +140,10 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
     InputError
         When the model or a setting is wrong.
     """
-    found = examined(model, settings, **changes)
+    data = data_of(model)
+    if isinstance(data, Scene) and data.stages:
+        return _of_stages(data, [check(stage, settings, **changes) for stage in data.stage_scenes])
+    found = examined(data, settings, **changes)
     redundancy, system = found.redundancy, found.redundancy.system
     cases = tuple(overconstraints(redundancy))
     against = tuple(inconsistency_sentences(redundancy))
@@ -173,6 +176,19 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
         moved=start.moved if start else (),
         messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
     )  # fmt: skip
+
+
+def _of_stages(scene: Scene, reports: Sequence[Report]) -> Report:
+    """The report on the first stage, with what there is to say of the others."""
+    first = reports[0]
+    messages = [
+        f"stage {k} of {len(reports)}: {message}"
+        for k, report in enumerate(reports, start=1)
+        for message in (f"{report.degrees_of_freedom} degrees of freedom", *report.messages)
+        if k == 1 or message not in first.messages
+    ]
+    sound = all(report.sound for report in reports)
+    return replace(first, name=scene.name, messages=tuple(messages), sound=sound)
 
 
 def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:

@@ -14,7 +14,7 @@ from ..errors import SolverError
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.failures import FAILURES
+from ..solve.algebraic_states import failure
 from ..solve.trajectory import History, Outcome
 from .run import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
@@ -133,7 +133,7 @@ def _solution(job: Job, found: Settled) -> Solution:
     t, system = np.array([job.grid.start]), job.dynamics.system
     rows = job.dynamics.report(t, found.start.q[None], found.start.u[None], project=False)
     if not len(rows.t):
-        raise SolverError(f"no reactions were found in the equilibrium: {FAILURES[rows.status]}")
+        raise SolverError(f"no reactions were found in the equilibrium: {failure(job.dynamics, rows.status, t[0])}")
     channels = channels_of(job.data, system, rows)
     energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(

@@ -11,7 +11,7 @@ from ..linear_analysis.modes import Mode, Motion
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.failures import FAILURES
+from ..solve.algebraic_states import failure
 from ..solve.trajectory import History, Outcome
 from .at_state import AtState
 
@@ -55,7 +55,7 @@ def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amp
     if len(rows.t) < points:
         raise SolverError(
             f"mode {number} cannot be shown with an amplitude of {amplitude:g} of the mechanism's size: "
-            f"{FAILURES[rows.status]}; expected a smaller amplitude"
+            f"{failure(dynamics, rows.status, found.t)}; expected a smaller amplitude"
         )
     channels = channels_of(found.data, system, rows)
     energies = channels["energy.kinetic"], channels["energy.potential"]

@@ -31,10 +31,11 @@ from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..results.undefined_values import no_number_sentences
 from ..solve import SOLVERS, traits_of
+from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
-from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, consistent_values, initial_values
+from ..solve.nearest_turns import take_nearest_turns
 from ..solve.settings import changed, may_presolve, near_constraints, output_grid
 from ..solve.storage import with_gaps
 from ..solve.subsystems import Subsystem, leave_out_coordinates, solve_subsystems, subsystem_of
@@ -146,6 +147,7 @@ def start_of_job(job: Job) -> InitialValues:
 def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | None) -> InitialValues:
     """The saved state that is given, else the equilibrium or the described state, whichever the scene asks for."""
     if state is not None:
+        take_nearest_turns(dynamics, t, state.is_new)
         start = consistent_values(dynamics, t)
         return replace(
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
@@ -160,6 +162,10 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         from .settled import settled
 
         return settled(dynamics, start, t).start
+    if asked == "settled":
+        from .settled import moving_in_equilibrium
+
+        return moving_in_equilibrium(dynamics, start, t)
     return start
 
 
@@ -168,7 +174,8 @@ def presolved(
 ) -> tuple[Subsystem, ...]:
     """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
 
-    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.
+    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.  Where all
+    steps are implicit, quaternions do not follow spins; explicit ones would only come nearer to the limit of their stability.
 
     Parameters
     ----------
@@ -181,9 +188,11 @@ def presolved(
     """
     if not may_presolve(settings):
         return ()
-    parts = parts_of(model, dynamics.system, apart=grid.times is not None)
+    traits = traits_of(settings)
+    way = (grid.end - grid.start) * start.u if traits.implicit and not traits.switches else None
+    parts = parts_of(model, dynamics.system, way, apart=grid.times is not None)
     subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
-    if traits_of(settings).implicit:
+    if traits.implicit:
         for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
             leave_out_coordinates(solved, grid.start)
     return subsystems
@@ -194,6 +203,8 @@ def examined(
 ) -> Examined:
     """Compile a model and look for redundant equations; parameters and errors as for `run`."""
     data = data_of(model)
+    if isinstance(data, Scene) and data.stages:
+        raise InputError("found a scene with stages, which only a run follows, expected a scene of one run")
     state = state_to_start_from(start_from)
     chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
     chosen = starting_at(chosen, state, settings, changes)
@@ -248,11 +259,15 @@ def run(
     AssemblyError
         When no consistent start is found.
     """
+    data = data_of(model)
+    if isinstance(data, Scene) and data.stages:
+        from .stages import run_stages
+
+        return run_stages(data, settings, watch, start_from, inputs, **changes)
     if inputs:
-        data = data_of(model)
         chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), {**changes})
-        model = with_inputs(data, inputs, chosen)
-    return solved(prepare(model, settings, start_from, **changes), watch)
+        data = with_inputs(data, inputs, chosen)
+    return solved(prepare(data, settings, start_from, **changes), watch)
 
 
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
@@ -261,7 +276,9 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
     trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
-        raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
+        raise AssemblyError(
+            f"no accelerations could be computed at the start: {failure(job.dynamics, rows.status, job.grid.start)}"
+        )
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
     if near_constraints(job.settings):
         statistics["drift"] = float(np.nanmax(rows.drift))
@@ -316,7 +333,7 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     if len(rows.t) == len(trajectory.t):
         return trajectory.outcome, trajectory.message
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
-    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {failure(job.dynamics, rows.status, t)}"
     fault = fault_of(job.dynamics.system)
     if fault:
         return Outcome.STOPPED, f"{sentence}; {fault.clause}"

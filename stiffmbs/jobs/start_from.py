@@ -98,7 +98,7 @@ def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
     turns = np.zeros(system.n_counters)
     for (name, k), place in counters_of(system).items():
         known = state.turns.get(f"{name}/{k}")
-        if known is None and name not in of_requests:
+        if known is None and name not in of_requests and not state.is_new(name):
             raise InputError(
                 f"{state.source}: found no count of the turns of '{name}', expected a file .npz of the same mechanism"
             )

@@ -36,12 +36,19 @@ class SavedState:
         Every channel at that instant.
     turns : mapping of str to float
         What is counted of angles over whole turns in space, rad, by element and number: ``spring/0``.
+    elements : frozenset of str, optional
+        Joints and forces of the run that it is of, where that is known: the turns of others are counted anew.
     """
 
     source: str
     t: float
     channels: Mapping[str, float]
     turns: Mapping[str, float] = field(default_factory=dict)
+    elements: frozenset[str] | None = None
+
+    def is_new(self, element: str) -> bool:
+        """Whether the run that it is of did not have an element."""
+        return self.elements is not None and element not in self.elements
 
 
 def read_state(path: str | Path, at: float | None = None) -> SavedState:

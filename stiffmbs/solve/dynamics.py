@@ -17,7 +17,7 @@ from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
-from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
+from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, SaddlePoint
 from .storage import allocated, blocks, release
 
 T = TypeVar("T")
@@ -86,11 +86,17 @@ class Dynamics:
             self.state.load(term_set)
         self._positions = SaddlePoint(POSITION_STEP, self.state)
         self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
-        self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
+        self._algebraic = {
+            "algebraic": (algebraic := system.algebraic_coordinates.astype(np.int64)),
+            "algebraic_scale": system.state_scales[system.algebraic],
+            "algebraic_before": np.zeros(len(algebraic)),
+        }
+        self._accelerations = SaddlePoint(WITH_ALGEBRAIC_STATES if len(algebraic) else ACCELERATIONS, self.state)
         self._kept: dict[str, tuple[object, object]] = {}
         behind = [system.term("acceleration", name) for name in ("angle_rate", "rate")]
         source, row = (np.concatenate([getattr(term, part) for term in behind]) for part in ("source", "row"))
-        self._behind = source.astype(np.int64), row.astype(np.int64)
+        moving = ~np.isin(row, algebraic)
+        self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
         self._features = np.inf, -np.inf, InputFeatures()
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
@@ -103,10 +109,12 @@ class Dynamics:
                 "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
-                "n_behind": len(row),
+                "n_behind": len(self._behind[1]),
                 "behind_source": self._behind[0],
                 "behind_row": self._behind[1],
-                "by_reactions": len(system.term("tangent", "rate_lam").row) > 0,
+                "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
+                "n_algebraic": len(algebraic),
+                **self._algebraic,
             },
         )
         self._at, self._cells = self.table.ctypes.data, cells(self.table, DYNAMICS)
@@ -171,8 +179,11 @@ class Dynamics:
         return ACCELERATE.load()(t, acceleration.ctypes.data, self._at), acceleration
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known."""
-        rates = self.system.of_body.position_rates(q, u)
+        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known.
+
+        That of an algebraic state is given as zero.
+        """
+        rates = self.system.of_body.position_rates(q, self.system.followed * u)
         source, row = self._behind
         if len(row):
             rates[row] = self.state.values["acceleration"][source]

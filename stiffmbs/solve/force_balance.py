@@ -11,8 +11,8 @@ from scipy.sparse.linalg import splu
 from ..compile.system import System
 from ..compile.terms import TERM_AXES
 from ..errors import SolverError
+from .algebraic_states import failure
 from .dynamics import Dynamics
-from .failures import FAILURES
 from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
@@ -75,7 +75,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
+        raise SolverError(f"no equilibrium was found: {failure(dynamics, status, t)}")
     rates = dynamics.position_rates(state.q, state.u)[system.first_state :]
     lam = state.lam[: system.n_c].copy()
     steady = motion.acceleration(dynamics)
@@ -109,19 +109,20 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     system, q = dynamics.system, dynamics.state.q
     own, active = slice(system.first_state, None), np.flatnonzero(system.active)
     by_velocity = _position_rates(dynamics)
-    of_rates = sparse_term(dynamics, "rate_q")[own]
+    of_rates, of_states = sparse_term(dynamics, "rate_q")[own], sparse_term(dynamics, "f_q")[:, own]
     by_pose = -of_rates @ by_velocity
     if not motion.is_rest:
         velocity, _ = motion.derivatives(dynamics, t, by_velocity)
         by_pose = by_pose - sparse_term(dynamics, "rate_u")[own] @ velocity
-    stiffness = [[known.stiffness, -sparse_term(dynamics, "f_q")[:, own]], [by_pose, -of_rates[:, own]]]
+    stiffness = [[known.stiffness, -of_states], [by_pose, -of_rates[:, own]]]
     no_state = csc_array((len(active), len(system.states)))
     reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
     sizes = system.per_coordinate(system.size, 1.0)
     sizes[own] = system.state_scales
     allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)))
+    rounding = ROUNDING * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
     return Balance(
-        np.append(known.left, rates), known.lam, known.largest, np.append(known.allowed, allowed),
+        np.append(known.left, rates), known.lam, known.largest, np.append(np.maximum(known.allowed, rounding), allowed),
         block_array(stiffness, format="csc"), block_array([[known.jacobian, no_state]], format="csc"),
         block_array(reactions, format="csc"), len(system.states),
     )  # fmt: skip

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AssemblyError
+from .algebraic_states import failure
 from .dynamics import POSITION_TOLERANCE, Dynamics
 from .failures import FAILURES
 from .moves import Move, moves, position_words, velocity_words
@@ -131,7 +132,7 @@ def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
         return _balance_sentence(dynamics)
     if status == NOT_FINITE:
         return _undefined_sentence(dynamics, t)
-    return f"no consistent start was found: {FAILURES[status]}"
+    return f"no consistent start was found: {failure(dynamics, status, t)}"
 
 
 def _balance_sentence(dynamics: Dynamics) -> str:

@@ -8,13 +8,13 @@ from ..compile.inputs.features import InputFeatures
 from ..compile.inputs.of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
+from .algebraic_states import failure
 from .dynamics import Dynamics
 from .events.limits import refuse_beyond_limits
 from .events.narrow_inputs import hidden_peak, narrower_than_output
-from .failures import FAILURES
 from .initial import InitialValues
 from .kinematic_states import Instant, states_after
-from .native.statuses import NO_BALANCE, NO_MEMORY, NOT_FINITE
+from .native.statuses import NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
@@ -186,8 +186,8 @@ class _Motion:
 
     def _stuck(self) -> str:
         """Why even the shortest step fails: the mechanism locks, unless the last try failed for a reason of its own."""
-        if self._status in (NOT_FINITE, NO_BALANCE, NO_MEMORY):
-            return f"stopped after t = {self.t:.9g} s: {FAILURES[self._status]}"
+        if self._status in (NOT_FINITE, NO_BALANCE, NO_MEMORY, NO_STATE):
+            return f"stopped after t = {self.t:.9g} s: {failure(self._dynamics, self._status, self.t)}"
         return self._locked()
 
     def _locked(self) -> str:

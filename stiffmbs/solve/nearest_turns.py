@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,8 +13,8 @@ from .dynamics import Dynamics
 TURN = 2 * math.pi
 
 
-def take_nearest_turns(dynamics: Dynamics, t: float) -> None:
-    """Start the first angle of each equation in the turn in which the equation has the least left.
+def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], bool] = lambda name: True) -> None:
+    """Start the first angle of each equation of the wanted elements in the turn in which the equation has the least left.
 
     A drive from 200 degrees finds its joint at -160 degrees, one turn short; without this, assembly would look for the
     turn in other poses.
@@ -23,13 +24,17 @@ def take_nearest_turns(dynamics: Dynamics, t: float) -> None:
         return
     state = dynamics.state
     first = np.concatenate([group.counters[:, 0] for group in groups])
+    new = np.array([wanted(name) for group in groups for name in group.names])
+    if not new.any():
+        return
+    kept = state.q[first]
     state.q[first] = 0.0
     left = _violations(dynamics, groups, t)
     state.q[first] = TURN
     of_a_turn = _violations(dynamics, groups, t) - left
     squares = np.sum(of_a_turn**2, axis=1)
     turns = -np.sum(of_a_turn * left, axis=1) / np.where(squares > 0, squares, np.inf)
-    state.q[first] = TURN * np.round(turns)
+    state.q[first] = np.where(new, TURN * np.round(turns), kept)
 
 
 def _violations(dynamics: Dynamics, groups: list[Group], t: float) -> np.ndarray:

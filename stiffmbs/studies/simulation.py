@@ -14,7 +14,7 @@ from ..jobs.run import Job, Runnable, prepare
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
 from ..results.channels import channels_of, turns_of
 from ..results.saved_state import TURNS, SavedState
-from ..solve.failures import FAILURES
+from ..solve.algebraic_states import failure
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers
@@ -151,8 +151,8 @@ class Simulation:
     def state(self) -> SavedState:
         """The present state, from which a run may start: ``stiffmbs.run(model, start_from=sim.state)``."""
         channels, turns = self._report()
-        at_present = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
-        return SavedState("the simulation", self.t, *at_present)
+        known, counted = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
+        return SavedState("the simulation", self.t, known, counted)
 
     def _report(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Channels and counts of turns at present, one value each."""
@@ -161,7 +161,7 @@ class Simulation:
             rows = dynamics.report(np.array([self.t]), self.q[None], self.u[None], project=True)
         if not len(rows.t):
             raise AssemblyError(
-                f"no accelerations and reactions were found at t = {self.t:.9g} s: {FAILURES[rows.status]}"
+                f"no accelerations and reactions were found at t = {self.t:.9g} s: {failure(dynamics, rows.status, self.t)}"
             )
         return channels_of(job.data, dynamics.system, rows), turns_of(dynamics.system, rows.q)
 

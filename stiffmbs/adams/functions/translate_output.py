@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
 from ..statements.constraints import GeneralConstraint, Numbered
+from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
 from .translate import Translation, identifier
@@ -84,6 +85,8 @@ class OutputTranslation(Translation):
         """JOINT(id, jflag, comp, rm) and its like."""
         ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
         found = self.mechanism.dataset.statements.get(ELEMENTS[name], {}).get(ident)
+        if (ELEMENTS[name], ident) in self.mechanism.dataset.inactive:
+            return number(0.0)
         if found is None:
             raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
         if not 1 <= component <= len(FORCES):
@@ -106,6 +109,8 @@ class OutputTranslation(Translation):
                 raise function.fault(
                     f"found the force of {found.label} on another marker than its I, expected it there"
                 )
+        if not acting and self.mechanism.dataset.inactive:
+            return number(0.0)
         if not acting:
             raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
         return self._component(component, acting, axes, function)
@@ -162,4 +167,6 @@ class OutputTranslation(Translation):
                 if component[0] == "T" or any(found.force)
                 else []
             )
+        if isinstance(found, Elastic) and not found.has_potential and component[0] == "T":
+            return [found.name, found.name + TORQUE]
         return [found.name]

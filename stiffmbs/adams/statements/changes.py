@@ -85,6 +85,22 @@ class Changes:
         commands = self.altered.get(key_of(statement), ())
         return replace(statement, changes=tuple((c.line, c.pieces) for c in commands)) if commands else statement
 
+    def since(self, before: Changes) -> Changes:
+        """What commands change beyond earlier ones: arguments given anew, and statements that are switched."""
+        altered = {
+            key: commands[len(before.altered.get(key, ())) :]
+            for key, commands in self.altered.items()
+            if len(commands) > len(before.altered.get(key, ()))
+        }
+        off = {key: line for key, line in self.inactive.items() if key not in before.inactive}
+        return Changes(altered, off)
+
+    def told_since(self, before: Changes, source: str) -> list[str]:
+        """What commands change beyond earlier ones, a sentence each."""
+        on = [f"{name}/{ident}" for name, ident in before.inactive if (name, ident) not in self.inactive]
+        told = [f"{', '.join(on)} {'are' if len(on) > 1 else 'is'} active again by {source}"] if on else []
+        return [*self.since(before).notes(source), *told]
+
     def notes(self, source: str) -> list[str]:
         """What the commands have changed, a sentence each."""
         told = []

@@ -1,29 +1,50 @@
-"""What a command file (.acf) asks for: simulations, and what it changes before them.  MSC Adams/Solver, commands.
+"""What a command file (.acf) asks for: simulations, and what it changes before each.  MSC Adams/Solver, commands.
 
 A command that would change results and is not followed is refused, never left out.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from .between_runs import refuse_between_runs
 from .changes import Changes, alters, key_of
 from .fault import DatasetFault
+from .integrator import USUAL_ERROR, integrator_settings
 from .keywords import keyword
-from .simulations import STATICS, Simulation, read_simulation
+from .simulations import Simulation, read_simulation
 from .text import Statement, commands
 
-FOLLOWED = ("SIMULATE", "ACTIVATE", "DEACTIVATE")
+FOLLOWED = ("SIMULATE", "ACTIVATE", "DEACTIVATE", "INTEGRATOR")
 ENDING = ("STOP", "EXIT")
 HARMLESS = (
     "FILE", "OUTPUT", "PREFERENCES", "INFO", "SHOW", "RESULTS", "MODEL", "SAVE", "FSAVE", "LIST", "HELP", "EPLOT",
     "GRAPHICS", "TITLE", "MREQUEST", "DEBUG",
 )  # fmt: skip
 """Commands that have no effect on the results."""
-SETTINGS = ("INTEGRATOR", "EQUILIBRIUM", "KINEMATICS", "IC", "LSOLVER", "LINEAR")
+SETTINGS = ("EQUILIBRIUM", "KINEMATICS", "IC", "LSOLVER", "LINEAR")
 """Commands that say how Adams computes what it computes, which is left to this package."""
 NAMED_FIRST = 2
 """How many first lines may answer the questions of Adams/Solver for the names of files."""
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A simulation with what the commands before it have changed of the dataset.
+
+    Attributes
+    ----------
+    simulation : Simulation
+    changes : Changes
+        All of them so far.
+    settings : mapping of str to float
+        Of the run: ``rtol``, and ``max_step`` in the dataset's units.
+    """
+
+    simulation: Simulation
+    changes: Changes
+    settings: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -32,18 +53,15 @@ class Commands:
 
     Attributes
     ----------
-    simulations : tuple of Simulation
-        Over time, one after the other.
-    from_equilibrium : int or None
-        The line of the static simulation before them.
+    segments : tuple of Segment
+        One for each simulation, but for those of initial conditions, from which every run starts.
     changes : Changes
-        Of the dataset, before them.
+        Of the dataset, all of them.
     notes : tuple of str
         What of it is left out, a sentence each.
     """
 
-    simulations: tuple[Simulation, ...] = ()
-    from_equilibrium: int | None = None
+    segments: tuple[Segment, ...] = ()
     changes: Changes = field(default_factory=Changes)
     notes: tuple[str, ...] = ()
 
@@ -56,10 +74,8 @@ def read_commands(text: str) -> Commands:
     DatasetFault
         When it cannot be read, or asks for what is not followed and changes results.
     """
-    simulations: list[Simulation] = []
-    changes = Changes()
-    later: list[Statement] = []
-    from_equilibrium: int | None = None
+    segments: list[Segment] = []
+    changes, settings = Changes(), dict[str, float]()
     left_out = []
     for command in commands(text):
         name = _full(command.word)
@@ -67,25 +83,21 @@ def read_commands(text: str) -> Commands:
             break
         if name == "SIMULATE":
             simulation = read_simulation(command)
-            _refuse_between(simulation, simulations, later)
-            if simulation.over_time:
-                simulations.append(simulation)
-            elif simulation.kind == STATICS:
-                from_equilibrium = simulation.line
+            if simulation.kind != "INITIAL_CONDITIONS":
+                segments.append(Segment(simulation, changes, dict(settings)))
+        elif name == "INTEGRATOR":
+            settings |= integrator_settings(command)
+            left_out.append(f"INTEGRATOR (line {command.line}) but for HMAX, and ERROR below {USUAL_ERROR:g}")
         elif name in SETTINGS:
             left_out.append(f"{name} (line {command.line})")
         elif name in HARMLESS or _is_name_of_file(command, name):
             continue
-        elif simulations:
-            later.append(command)
-        elif from_equilibrium is not None:
-            raise _fault(
-                command, "found it after SIMULATE/STATICS, expected it before: changes between runs are not followed"
-            )
         else:
+            if segments:
+                refuse_between_runs(command, name or "")
             changes = _followed(changes, command, name)
     notes = (f"{', '.join(left_out)} of the command file left out: analysis settings",) if left_out else ()
-    return Commands(tuple(simulations), from_equilibrium, changes, notes)
+    return Commands(tuple(segments), changes, notes)
 
 
 def _full(word: str) -> str | None:
@@ -113,26 +125,10 @@ def _followed(changes: Changes, command: Statement, name: str | None) -> Changes
         return changes.switched(command, name == "ACTIVATE")
     if alters(name):
         return changes.with_arguments(command)
-    raise _fault(
-        command,
-        f"found a command that is not followed, expected SIMULATE, ACTIVATE, DEACTIVATE, STOP, new values of statements, "
-        f"or one of {', '.join((*HARMLESS, *SETTINGS))}, which are left out",
+    word, ident = key_of(command)
+    raise DatasetFault(
+        command.line,
+        f"{word}/{ident or command.ident}".rstrip("/"),
+        f"found a command that is not followed, expected SIMULATE, ACTIVATE, DEACTIVATE, INTEGRATOR, STOP, new values of "
+        f"statements, or one of {', '.join((*HARMLESS, *SETTINGS))}, which are left out",
     )
-
-
-def _refuse_between(simulation: Simulation, before: list[Simulation], changed: list[Statement]) -> None:
-    """Refuse what would need a run of its own after the first one."""
-    if before and changed:
-        names = ", ".join(f"{_label(command)} (line {command.line})" for command in changed)
-        raise simulation.fault(f"found {names} between two simulations, expected changes before the first one alone")
-    if before and not simulation.over_time:
-        raise simulation.fault(f"found {simulation.kind} after a simulation over time, expected it before")
-
-
-def _label(command: Statement) -> str:
-    name, ident = key_of(command)
-    return f"{name}/{ident or command.ident}".rstrip("/")
-
-
-def _fault(command: Statement, reason: str) -> DatasetFault:
-    return DatasetFault(command.line, _label(command), reason)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -44,8 +45,37 @@ class Simulation:
     interval: float | None = None
 
     @property
-    def over_time(self) -> bool:
-        return self.kind in OVER_TIME
+    def takes_time(self) -> bool:
+        """Whether it has an end; STATICS with one is a sequence of equilibria."""
+        return self.end is not None or self.duration is not None
+
+    def length(self, start: float) -> float:
+        """How long it is, in the dataset's units, where it starts at some time.
+
+        Raises
+        ------
+        DatasetFault
+            When it ends before.
+        """
+        length = self.duration if self.end is None else self.end - start
+        if length is None or not length > 0:
+            raise self.fault(f"found END = {self.end}, expected a time after {start:g}, where it begins")
+        return length
+
+    def settings(self, start: float, units: Units) -> dict[str, Any]:
+        """Duration, output and solver of its run."""
+        if not self.takes_time:
+            return {}
+        length = self.length(start)
+        solver = {"solver": "kinematic"} if self.kind == "KINEMATICS" else {}
+        return {"duration": length * units.time, **self._output(length, self.between_outputs(length), units), **solver}
+
+    def _output(self, length: float, interval: float | None, units: Units) -> dict[str, Any]:
+        if interval is None:
+            return {}
+        if self.interval:
+            return {"output": self.interval * units.time}
+        return {"points": round(length / interval) + 1}
 
     def fault(self, reason: str) -> DatasetFault:
         """What to raise where it cannot be followed."""
@@ -62,7 +92,7 @@ def read_simulation(command: Statement) -> Simulation:
     Raises
     ------
     DatasetFault
-        When it cannot be read, has no end, or is a quasi-static one.
+        When it cannot be read, or has no end.
     """
     kind = (Subsystem(command.ident, command.line),) if command.ident else ()
     found = Arguments(
@@ -78,61 +108,40 @@ def read_simulation(command: Statement) -> Simulation:
             raise found.fault(f"found {name} = {found.text(name)}, expected a number above zero", found.line(name))
     if analysis in OVER_TIME and limit is None:
         raise found.fault("found neither END nor DURATION, expected one of them")
-    if analysis not in OVER_TIME and (limit or sampled):
+    if analysis not in (*OVER_TIME, STATICS) and (limit or sampled):
         raise found.fault(
             f"found {limit or sampled} with {analysis}, which is not followed over time, expected neither"
         )
     return Simulation(analysis, command.line, numbers["END"], numbers["DURATION"], numbers["STEPS"], numbers["DTOUT"])
 
 
-def run_settings(simulations: tuple[Simulation, ...], units: Units) -> dict[str, Any]:
-    """The settings of the one run that simulations over time make together; none without any.
+def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] | None:
+    """The settings of the one run over time that simulations make together; None where they make more than one.
 
     Raises
     ------
     DatasetFault
-        When one of them ends before it begins, or they differ in kind or in the time between outputs.
+        When one of them ends before it begins.
     """
-    if not simulations:
-        return {}
-    time, between = 0.0, []
+    first, time, between = simulations[0], 0.0, []
     for simulation in simulations:
-        length = simulation.duration if simulation.end is None else simulation.end - time
-        if length is None or not length > 0:
-            raise simulation.fault(f"found END = {simulation.end}, expected a time after {time:g}, where it begins")
+        if not simulation.takes_time or simulation.kind == STATICS:
+            return None
+        length = simulation.length(time)
         between.append(simulation.between_outputs(length))
         time += length
-    first = simulations[0]
-    for simulation, interval in zip(simulations, between, strict=True):
-        if (simulation.kind == "KINEMATICS") != (first.kind == "KINEMATICS"):
-            raise simulation.fault(f"found {simulation.kind} after {first.kind}, expected runs of one kind")
-        if not _same(interval, between[0]):
-            raise simulation.fault(
-                f"found {_told(interval)} from one output to the next after {_told(between[0])}, expected the same in all runs"
-            )
-    return {"duration": time * units.time} | _output(time, first, between[0], units) | _solver(first)
-
-
-def _output(time: float, first: Simulation, interval: float | None, units: Units) -> dict[str, Any]:
-    if interval is None:
-        return {}
-    if first.interval:
-        return {"output": first.interval * units.time}
-    return {"points": round(time / interval) + 1}
-
-
-def _solver(first: Simulation) -> dict[str, Any]:
-    return {"solver": "kinematic"} if first.kind == "KINEMATICS" else {}
+    alike = all(
+        (simulation.kind == "KINEMATICS") == (first.kind == "KINEMATICS") and _same(interval, between[0])
+        for simulation, interval in zip(simulations, between, strict=True)
+    )
+    whole = replace(first, end=None, duration=time, steps=time / between[0] if between[0] else None)
+    return whole.settings(0.0, units) if alike else None
 
 
 def _same(one: float | None, other: float | None) -> bool:
     if one is None or other is None:
         return one is other
     return math.isclose(one, other, rel_tol=SAME)
-
-
-def _told(interval: float | None) -> str:
-    return "no time" if interval is None else f"{interval:.6g}"
 
 
 def refuse_velocities(line: int, dataset: Dataset) -> None:

@@ -29,11 +29,13 @@ STATE: Layout = {
     "n_q": INT, "n_pose": INT, "n_u": INT, "n_c": INT, "spatial": INT,
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS, "n_turned": INTS, "turned": INTS,
     "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS, "left_open": FLOATS,
+    "followed": FLOATS,
 }  # fmt: skip
 """A system's state and kernels: the number of coordinates, and of those of bodies, which come first; whether its bodies are spatial; q, u and accelerations a with the ground's at their end;
 what kernels share of each body's orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first
 coordinate) for which that is read, the number of its kernel calls, the address of their arguments (rows of `CALL`) and
-the address of its values; the first row of each joint; what each equation may be off by."""
+the address of its values; the first row of each joint; what each equation may be off by;
+0 for each velocity that no coordinate follows, else 1."""
 
 CALL = ("kernel", "count", "index", "number", "place")
 """The arguments of one kernel call, as 64-bit numbers."""
@@ -52,7 +54,7 @@ EQUATIONS: Layout = {
     "n_slots": INT, "n_entries": INT, "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
-    "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
+    "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
 }  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
@@ -99,10 +101,11 @@ DYNAMICS: Layout = {
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
     "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
+    "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
 }  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
 `behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
-depends on multipliers."""
+depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values."""
 
 
 IDA: Layout = {
@@ -176,16 +179,19 @@ SAMPLES = 16
 OUTPUT_CORRECTION: Layout = {
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
     "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
+    "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
-    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS,
+    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
 }  # fmt: skip
 """Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors.
 
 Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
 beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
-grows by in a second from there (below 0: not known), and states corrected since that was measured."""
+grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
+force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
+equations of motion: those of forces, then those of moments, and where either end."""
 
 VARIATIONS: Layout = {
     "state": INTS, "equations": INTS, "n": INT, "n_directions": INT, "n_slots": INT,
@@ -227,13 +233,15 @@ ERROR_NORM: Layout = {
     "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
     "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
     "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL,
+    "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
 }  # fmt: skip
 """What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`).
 
 Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
 failures were last looked for; steps and failures of the error test, the same when they were last looked at; the step up to
-which estimates are filtered; the order of the last step."""
+which estimates are filtered; the order of the last step; the step up to which steps may not grow (0: they may), and the factor by
+which the test must let them grow else."""
 
 
 EVENT_SEARCH: Layout = {

@@ -175,23 +175,33 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
-    return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()}, losses)
+    entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries["f_alg"] = _of_algebraic(kind, e, entries["f_q"])
+    return Derived(0, 0, symbols, entries, losses)
 
 
 def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
     """The rate of a state, in the row of that state, and what is reported of it."""
-    e, (formula,) = symbols.element, (symbols.element.formula,)
+    e, element = symbols.element, kind.element
+    formula = sp.sympify(element.rate(e) if issubclass(element, StateEquation) else e.formula)
     value = sp.Matrix([formula])
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
     terms = {"signal": value, "event_function": sp.Matrix(symbols.event_functions), "argument": _arguments(symbols)}
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
-    entries["signal"] = [Entry(sp.sympify(formula), 0)]
-    if issubclass(kind.element, StateEquation):
+    entries["signal"] = [Entry(formula, 0)]
+    if issubclass(element, StateEquation):
         row = e.n_coordinates - len(e.states) + e.states.index(e.state)
         rates = {"rate": value, "rate_q": e.by_coordinates(value), "rate_u": e.by_velocities(value)}
         rates["rate_lam"] = e.by(value, joint_lam) if joint_lam else sp.zeros(0, 0)
         entries |= {name: [replace(entry, row=row) for entry in _entries(matrix)] for name, matrix in rates.items()}
+        entries["rate_alg"] = _of_algebraic(kind, e, entries["rate_q"])
     return Derived(0, 0, symbols, entries, [])
+
+
+def _of_algebraic(kind: Kind, e: SymbolicElement, entries: Sequence[Entry | LateEntry]) -> list[Entry | LateEntry]:
+    """Those entries of a matrix that stand in the columns of algebraic states."""
+    first = e.n_coordinates - len(e.states)
+    return [entry for entry in entries if entry.column - first in kind.algebraic]
 
 
 def _arguments(symbols: Symbols) -> sp.Matrix:
@@ -203,7 +213,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
     """Z of p' = Z w, in the rows and columns of a body's coordinates and velocities, and d(Z w)/dq."""
     (body,) = e.frames
     Z, rates = sp.zeros(len(body.q), len(body.u)), sp.zeros(len(body.q), 1)
-    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:]))
+    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:])) * sp.Matrix(body.followed).jacobian(body.u[3:])
     rates[3:, :] = Z[3:, 3:] * sp.Matrix(body.u[3:])
     return {"Z": Z, "Z_q": e.by_coordinates(rates)}
 

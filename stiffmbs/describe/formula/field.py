@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Collection, Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
@@ -291,7 +291,7 @@ class FormulaOf:
         return (*MEASURES, *(REACTIONS if self.velocities else ())) if self.coordinates else ()
 
     def quantities(
-        self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Container[str] = ()
+        self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Collection[str] = ()
     ) -> Iterator[tuple[str, Quantity]]:
         """The parameters, units and constants in a tree, in which other names may be states.
 
@@ -307,16 +307,20 @@ class FormulaOf:
                         raise FormulaError(f"found '{name}' after a number in '{quoted(text)}', expected a unit")
                     yield f"{UNIT}.{name}", UNITS[name]
                 case ast.Name(name) if name != TIME and name not in self.variables and name not in states:
-                    yield name, self._quantity(name, text, tree, known)
+                    yield name, self._quantity(name, text, tree, known, states)
 
-    def _quantity(self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Quantity:
+    def _quantity(
+        self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Collection[str]
+    ) -> Quantity:
         stated = not self.variables or any(map(is_unit, ast.walk(tree)))
         units = UNITS if stated else {}  # a lone s in a law of v would be a second
         if name in known or name in units or name in CONSTANTS:
             return of_name(name, text, tree, known, units)
         meanings = [*self.variables, *(["t"] if self.time else [])]
         meanings += ["a body's coordinate such as cart.x"] if self.coordinates else []
-        expected = ", ".join([*meanings, "a parameter of the scene"])
+        meanings += ["a parameter of the scene"]
+        meanings += [f"a state or input ({', '.join(states)})"] if states and self.coordinates else []
+        expected = ", ".join(meanings)
         raise FormulaError(f"found the unknown name '{name}' in '{quoted(text)}', expected {expected}")
 
     def dimension_of(

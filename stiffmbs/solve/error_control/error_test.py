@@ -63,11 +63,15 @@ class ErrorControl:
 
     @staticmethod
     def _tested(equations: Equations) -> np.ndarray:
-        """Which of the independent coordinates and velocities the error test counts."""
+        """Which of the independent coordinates and velocities the error test counts; algebraic states that follow multipliers
+        are left out as these are."""
         independent, tested = equations.coordinates, equations.formulation.tested
-        return np.repeat(
+        counted = np.repeat(
             ["q" in tested, "u" in tested], [independent.independent.sum(), independent.independent_u.sum()]
         )
+        pressed = np.isin(np.flatnonzero(independent.independent), equations.system.following_reactions)
+        counted[: len(pressed)] &= ~pressed
+        return counted
 
 
 CHOSEN = {2: ErrorControl(), 3: ErrorControl(margin=0.12, growth=1.6)}

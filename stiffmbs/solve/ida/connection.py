@@ -74,7 +74,7 @@ class Connection:
         self.history = StepLog()
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self.output_correction, self.iteration, self.step_bound = OutputCorrection(n), Iteration(n), StepBound()
+        self.output_correction, self.iteration, self.step_bound = OutputCorrection(equations), Iteration(n), StepBound()
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
         self.n_event_functions = equations.system.n_event_functions
@@ -164,13 +164,14 @@ class Connection:
         self.signs[:] = 0.0
         self.watch.begin()
         self.iteration.begin()
+        self.output_correction.begin()
         self.history.begin(t)
 
-    def correct_outputs(self, long_step: float, part: float) -> None:
-        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
+    def correct_outputs(self, long_step: float, part: float, balanced: float) -> None:
+        """Have states within long steps brought back to the equations, as `OutputCorrection.limit` has it."""
         if long_step < np.inf and not self.output_correction.ready:
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector)
-        self.output_correction.limit(long_step, part)
+        self.output_correction.limit(long_step, part, balanced)
 
     def suppress(self, suppressed: np.ndarray) -> None:
         """Leave unknowns out of the error test."""

@@ -52,6 +52,7 @@ class ErrorNorm:
         functions = {
             "norm": "N_VWrmsNorm_Serial", "array_of": "N_VGetArrayPointer", "solve": "SUNLinSolSolve",
             "steps_of": "IDAGetNumSteps", "failures_of": "IDAGetNumErrTestFails", "order_of": "IDAGetLastOrder",
+            "set_growth": "IDASetEtaFixedStepBounds",
         }  # fmt: skip
         fill(
             self._table,
@@ -72,6 +73,10 @@ class ErrorNorm:
     def filter_always(self, asked: bool) -> None:
         """Have all estimates filtered, or those alone that follow many failures."""
         self._cells["always"] = asked
+
+    def begin(self, growth: float) -> None:
+        """Let steps grow from the start on where the error test allows this factor."""
+        self._cells["growth"], self._cells["equal_until"] = growth, 0
 
     def forget(self) -> None:
         """Forget failures of an earlier run."""

@@ -56,8 +56,8 @@ class NativeIda:
         Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
     renewal : float, optional
         Relative change of cj from which the iteration matrix is made anew (IDASetDeltaCjLSetup); 0.25 by default.
-    growth : float, optional
-        Factor by which a step must be allowed to grow before it is changed (IDASetEtaFixedStepBounds); 2 by default.
+    growth : float
+        Factor by which a step must be allowed to grow before it is changed (IDASetEtaFixedStepBounds); IDA's own by default.
     predicted_residual : bool
         Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix
         (`stiffmbs.solve.native.iteration`); IDA's own test trusts it until cj changes.
@@ -97,7 +97,7 @@ class NativeIda:
         suppressed: np.ndarray | None = None,
         newton: float | None = None,
         renewal: float | None = None,
-        growth: float | None = None,
+        growth: float = 2.0,
         predicted_residual: bool = False,
         reported: np.ndarray | None = None,
     ) -> None:
@@ -124,8 +124,7 @@ class NativeIda:
             ida.ask("IDASetNonlinConvCoef", newton)
         if renewal is not None:
             ida.ask("IDASetDeltaCjLSetup", renewal)
-        if growth is not None:
-            ida.ask("IDASetEtaFixedStepBounds", 1.0, growth)
+        self._growth = growth
         if predicted_residual:
             ida.take_own_convergence_test()
 
@@ -179,9 +178,12 @@ class NativeIda:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
         self._ida.ask("IDASetNonlinConvCoef", part)
 
-    def correct_outputs(self, long_step: float, part: float) -> None:
-        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
-        self._ida.correct_outputs(long_step, part)
+    def correct_outputs(self, long_step: float, part: float, balanced: float) -> None:
+        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance.
+
+        They are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest.
+        """
+        self._ida.correct_outputs(long_step, part, balanced)
 
     def filter_always(self, asked: bool) -> None:
         """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""
@@ -214,6 +216,8 @@ class NativeIda:
         self._ida.ask("IDASetInitStep", first_step)
         if highest_order is not None:
             self._ida.ask("IDASetMaxOrd", highest_order)
+        self._ida.ask("IDASetEtaFixedStepBounds", 1.0, self._growth)
+        self._ida.error_norm.begin(self._growth)
         self._ida.begin(t)
         self._begun, self._flag = True, 0
 

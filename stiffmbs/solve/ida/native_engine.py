@@ -81,7 +81,9 @@ class NativeEngine:
         """Start, or start anew, at consistent values."""
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
-        self._ida.correct_outputs(stiffness.long_step, max(stiffness.allowed_residual, NUMBERS_END / self._rtol))
+        self._ida.correct_outputs(
+            stiffness.long_step, max(stiffness.allowed_residual, NUMBERS_END / self._rtol), self._rtol
+        )
         self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)

@@ -27,7 +27,7 @@ class Eliminated:
     Attributes
     ----------
     serves : bool
-        Whether the system is of the kind: no force depends on multipliers, and the factors stay sparse.
+        Whether the system is of the kind: no force depends on multipliers or algebraic states, and the factors stay sparse.
     pivots_tell : bool
         Whether pivots tell how near to singular a pose is: it serves, and no inertia is so small that it decides about them.
     table : ndarray of int
@@ -50,7 +50,9 @@ class Eliminated:
         columns = _filled({(a, b) for a, b, *_ in products}, len(rows))
         updates = sum(len(below) * (len(below) + 1) // 2 for below in columns)
         hanging = len(system.term("acceleration", "f_lam").source)
-        self.serves = not hanging and updates <= MOST_UPDATES_PER_ENTRY * max(len(self._j[0]), 1)
+        self.serves = (
+            not hanging and not system.algebraic.any() and updates <= MOST_UPDATES_PER_ENTRY * max(len(self._j[0]), 1)
+        )
         resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
         self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))
         self.table = np.zeros(len(ELIMINATED), dtype=np.int64)

@@ -25,6 +25,27 @@ ACCELERATIONS = Formulation(
 )
 """[M J^T; J 0] [u'; lam] = [f; gamma]; one Newton step of it where friction makes f depend on lam."""
 
+WITH_ALGEBRAIC_STATES = Formulation(
+    name="accelerations with algebraic states",
+    unknowns=("u", "lam", "x"),
+    residual_set="acceleration",
+    matrix_set="acceleration",
+    residual=(
+        *ACCELERATIONS.residual,
+        Product("u", -1, "f_alg", "x"),
+        Product("x", +1, "rate"),
+        Product("x", -1, "rate_alg", "x"),
+        Product("x", -1, "rate_lam", "lam"),
+    ),
+    matrix=(
+        *ACCELERATIONS.matrix,
+        Block("u", "x", "f_alg", -1),
+        Block("x", "x", "rate_alg", -1),
+        Block("x", "lam", "rate_lam", -1),
+    ),
+)
+"""The same with algebraic states among the unknowns, 0 = z(x, lam): one Newton step of all of them."""
+
 POSITION_STEP = Formulation(
     name="position step",
     unknowns=("q", "mu"),

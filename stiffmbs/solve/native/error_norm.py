@@ -8,6 +8,10 @@ and stays at order 1.  So the estimate d is multiplied by what a step of implici
 with the iteration matrix and the factors that Newton's iteration has.  For y' = f this is (I - f_y / cj)^-1 d: errors in
 directions with fast decay are damped, and what they do to other unknowns counts; slow directions keep theirs.
 
+A run that creeps has one more trap.  After a failure a step passes so easily that IDA doubles the next one, which fails
+again.  IDA raises the order after equal steps alone, so such a run stays at order 1 for good.  So steps may not grow again
+before these equal steps have been taken.
+
 References
 ----------
 L. F. Shampine, L. S. Baca, Error estimators for stiff differential equations, J. Comput. Appl. Math. 11 (1984) 197-207.
@@ -35,6 +39,8 @@ FADES_LOW, FADES, LOW = 0.99, 0.8, 2
 TROUBLED, LASTS = 7.0, 1000
 """Count of failures from which estimates are filtered, and for how many steps.  A run that creeps fails in each step, or in one of seven, which
 counts up to 100 or 15; Andrews' mechanism, where the filter only costs, counts up to 6."""
+BEFORE_A_RISE, NEVER = 3, 1e9
+"""Equal steps at order 1 after which IDA may raise it; growth of a step that no estimate allows."""
 NO_ESTIMATE = 1e12
 """Filtered norm beyond which a vector is none of IDA's estimates: IDA measures the solution too, to see what rounding takes of it."""
 
@@ -77,6 +83,18 @@ def _look(c):
     c.trouble += max(failures, 0)
     if c.trouble > TROUBLED:
         c.until = c.steps + LASTS
+        if failures > 0 and c.order == 1:
+            c.equal_until = c.steps + BEFORE_A_RISE
+            call_int(c.set_growth, (c.memory, 1.0, NEVER))
+
+
+@compiled
+def _let_grow(c):
+    """Let steps grow again where enough equal ones have been taken."""
+    call_int(c.steps_of, (c.memory, address_of(c.steps)))
+    if c.steps >= c.equal_until:
+        c.equal_until = 0
+        call_int(c.set_growth, (c.memory, 1.0, c.growth))
 
 
 def error_norm(estimate, weights):
@@ -85,6 +103,8 @@ def error_norm(estimate, weights):
     cj = iteration_view(c.iteration).cj
     if cj != c.looked:  # as it does with every failure
         _look(c)
+    if c.equal_until > 0:
+        _let_grow(c)
     wanted = c.always or c.steps < c.until
     if wanted and cj < float("inf") and _filtered(c, estimate):
         size = call_float(c.norm, (c.at_filtered, weights))

@@ -1,0 +1,131 @@
+"""Segments of a command file as stages of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
+
+from ..describe.files.stages import merge_patch
+from .statements.commands import Segment
+from .statements.constraints import Motion
+from .statements.dataset import Dataset
+from .statements.simulations import STATICS, one_run, refuse_velocities
+from .statements.units import Units
+
+Described: TypeAlias = tuple[Dataset, dict[str, Any]]
+"""A dataset and its scene."""
+NOT_OF_A_STAGE = ("run", "notes", "start")
+POSES = ("position", "orientation", "velocity", "omega", "open")
+"""Of a body: where the first run starts, and the frame of its state."""
+BY_INITIAL_POSE = ("COUPLER", "GEAR", "SCREW", "RACKPIN")
+"""Constraints that hold joints as they are at the initial pose."""
+
+
+def followed(
+    segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str
+) -> dict[str, Any]:
+    """What simulations add to the scene of their dataset: ``run``, ``start``, ``stages`` and ``notes``.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+        One at least.
+    described : (Dataset, mapping)
+        The dataset as the commands before the first simulation leave it, and its scene.
+    read : callable
+        The same of a segment.
+    source : str
+        What notes call the command file.
+
+    Raises
+    ------
+    DatasetFault
+        When a simulation cannot be followed from where the one before it ends.
+    """
+    dataset, _ = described
+    units = dataset.units
+    first = segments[0].simulation
+    if first.kind == STATICS:
+        refuse_velocities(first.line, dataset)
+    settled = first.kind == STATICS and not first.takes_time
+    over_time = segments[1:] if settled and len(segments) > 1 else segments
+    unchanged = all(s.changes == segments[0].changes and s.settings == over_time[0].settings for s in over_time)
+    whole = one_run([s.simulation for s in over_time], units) if unchanged else None
+    if whole is not None:
+        whole = _solvable(whole, described)
+        start = {"start": "equilibrium"} if settled else {}
+        notes = [f"duration and output are those of {source}"]
+        return {"run": whole | _in_si(over_time[0], units), **start, "notes": notes}
+    return _staged(segments, described, read, source)
+
+
+def _staged(
+    segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str
+) -> dict[str, Any]:
+    stages: list[dict[str, Any]] = []
+    notes = [f"{source} asks for {len(segments)} simulation{'s' if len(segments) > 1 else ''}, one after the other"]
+    units = described[0].units
+    time, before, known = 0.0, segments[0], described
+    for k, segment in enumerate(segments, start=1):
+        simulation = segment.simulation
+        stage: dict[str, Any] = {"analysis": "static"} if simulation.kind == STATICS else {}
+        if segment.changes != before.changes:
+            now = read(segment)
+            stage |= _changed(known, now, segment)
+            notes += [f"from simulation {k} on {told}" for told in segment.changes.told_since(before.changes, source)]
+            known = now
+        run = _solvable(simulation.settings(time, units), known) | _in_si(segment, units)
+        stages.append(stage | ({"run": run} if run else {}))
+        time += simulation.length(time) if simulation.takes_time else 0.0
+        before = segment
+    if any(segment.simulation.kind == STATICS for segment in segments[1:]):
+        notes.append("all velocities are zero after a static simulation")
+    return {"run": {}, "stages": stages, "notes": notes}
+
+
+def _solvable(run: dict[str, Any], described: Described) -> dict[str, Any]:
+    """The settings of a run, as of dynamics where a motion of a kinematic analysis prescribes a velocity."""
+    driven = any("velocity" in joint for joint in described[1].get("joints", {}).values())
+    return {name: value for name, value in run.items() if not (name == "solver" and driven)}
+
+
+def _in_si(segment: Segment, units: Units) -> dict[str, float]:
+    return {name: value * (units.time if name == "max_step" else 1.0) for name, value in segment.settings.items()}
+
+
+def _changed(before: Described, now: Described, segment: Segment) -> dict[str, Any]:
+    """What a stage changes of the scene before it."""
+    patch = merge_patch(_without(before[1]), _without(now[1]))
+    _refuse_other_frames(patch.get("bodies") or {}, segment)
+    _refuse_other_turns(patch.get("joints") or {}, now[0], segment)
+    return {"change": patch} if patch else {}
+
+
+def _without(found: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in found.items() if name not in NOT_OF_A_STAGE}
+
+
+def _refuse_other_frames(bodies: Mapping[str, Any], segment: Segment) -> None:
+    for name, patch in bodies.items():
+        if any(key in POSES for key in patch or {}):
+            raise segment.simulation.fault(
+                f"found another centre-of-mass marker of {name} since the simulation before it, expected the same in all"
+            )
+
+
+def _refuse_other_turns(joints: Mapping[str, Any], dataset: Dataset, segment: Segment) -> None:
+    """Refuse constraints that begin in a pose which is not the initial one and count from that."""
+    for kind in dataset.statements.values():
+        for found in kind.values():
+            if not joints.get(getattr(found, "name", "")):
+                continue
+            sort = getattr(found, "kind", "") or found.keyword
+            if sort in BY_INITIAL_POSE:
+                raise segment.simulation.fault(
+                    f"found {found.label}, {sort}, made active or changed since the simulation before it, expected it before the first"
+                )
+            if isinstance(found, Motion) and found.order and "position" in joints[found.name]:
+                raise segment.simulation.fault(
+                    f"found {found.label}, an integral since t = 0, made active or changed since the simulation before it, "
+                    "expected a displacement, or a velocity without ICDISP"
+                )

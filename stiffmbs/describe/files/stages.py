@@ -1,0 +1,105 @@
+"""Scenes that are run in stages, each with other joints, forces or numbers, one after the other."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+from pydantic import Field
+
+from ...errors import InputError
+from ..fields import Described
+from .written_scene import WrittenScene
+
+OWN_SETTINGS = ("duration", "output", "points", "start")
+"""Of ``run``, which each stage has for itself."""
+GRIDS = ("output", "points")
+
+
+class Stage(Described):
+    """One of the runs of a scene, which starts where the one before it ends.
+
+    Parameters
+    ----------
+    analysis : str
+        ``dynamic`` over time, or ``static``: the equilibrium found from where the stage starts, at that time; with a duration
+        one at each output time.
+    change : mapping
+        What is other than in the stage before (in the scene, for the first), as a merge patch (RFC 7386): mappings are
+        merged, null takes an entry away, anything else takes the place of what was there.
+    run : mapping
+        Settings of this stage beside those of the scene.
+    """
+
+    analysis: Literal["dynamic", "static"] = Field("dynamic", description="over time, or the equilibrium at its start")
+    change: dict[str, Any] = Field(default_factory=dict, description="what is other than before; null takes away")
+    run: dict[str, Any] = Field(default_factory=dict, description="settings of this stage")
+
+    @property
+    def over_time(self) -> bool:
+        """Whether it takes any time."""
+        return self.analysis == "dynamic" or "duration" in self.run
+
+
+def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[WrittenScene]:
+    """What each stage is, written as a scene of its own.
+
+    Raises
+    ------
+    InputError
+        When a setting is changed from outside that each stage has for itself.
+    """
+    for path, _ in scene.changes:
+        if path.partition(".")[0] == "run" and path.partition(".")[2] in OWN_SETTINGS:
+            raise InputError(
+                f"--set {path}: found a scene with stages, which have durations and outputs of their own, expected no change of it"
+            )
+    content = {key: value for key, value in scene.content.items() if key != "stages"}
+    found = []
+    for stage in stages:
+        content = merged(content, stage.change)
+        settings = dict(content.get("run") or {})
+        if any(grid in stage.run for grid in GRIDS):
+            settings = {name: value for name, value in settings.items() if name not in GRIDS}
+        whole = copy.deepcopy({**content, "run": settings | stage.run})
+        found.append(WrittenScene(whole, _of_stage(scene.changes, whole), scene.source, scene.folder))
+    return found
+
+
+def merged(old: Any, change: Any) -> Any:
+    """Something as a merge patch changes it (RFC 7386)."""
+    if not isinstance(change, Mapping):
+        return change
+    found = dict(old) if isinstance(old, Mapping) else {}
+    for name, value in change.items():
+        if value is None:
+            found.pop(name, None)
+        else:
+            found[name] = merged(found.get(name), value)
+    return found
+
+
+def merge_patch(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+    """The patch that makes one mapping of another; see `merged`."""
+    patch: dict[str, Any] = {name: None for name in old if name not in new}
+    for name, value in new.items():
+        before = old.get(name)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            inner = merge_patch(before, value)
+            patch |= {name: inner} if inner else {}
+        elif name not in old or value != before:
+            patch[name] = value
+    return patch
+
+
+def _of_stage(changes: Sequence[tuple[str, Any]], content: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
+    """The changes from outside without those of joints, forces and requests that a stage does not have."""
+
+    def is_there(path: str) -> bool:
+        section, _, name = path.partition(".")
+        if section not in ("joints", "forces", "requests"):
+            return True
+        return any(name == known or name.startswith(f"{known}.") for known in content.get(section) or ())
+
+    return tuple((path, value) for path, value in changes if is_there(path))

@@ -1,0 +1,87 @@
+"""Runs of scenes with stages: each starts from the state in which the one before it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from ..describe.files.stages import OWN_SETTINGS, Stage
+from ..describe.scene import Scene, notes_of
+from ..describe.settings import RunSettings
+from ..errors import InputError, StiffmbsError
+from ..results.joined import joined
+from ..results.saved_state import SavedState
+from ..results.solution import Solution
+from ..solve.settings import changed, output_grid
+from ..solve.trajectory import ProgressCallback
+from .equilibrium import equilibrium
+from .given_inputs import Given
+from .run import run
+from .start_from import StartFrom, state_to_start_from
+
+
+def run_stages(
+    scene: Scene,
+    settings: RunSettings | None = None,
+    watch: ProgressCallback | None = None,
+    start_from: StartFrom | None = None,
+    inputs: Mapping[str, Given] | None = None,
+    **changes: Any,
+) -> Solution:
+    """Solve all stages of a scene, up to the first that stops early; parameters and errors as for `stiffmbs.run`.
+
+    Positions and velocities are made consistent with the joints and drives of each stage before it starts: positions by the
+    smallest moves, velocities by the smallest change in the mass matrix.  A stage after an equilibrium starts at rest.
+    """
+    own = [name for name in OWN_SETTINGS if name in changes and (name != "start" or start_from is None)]
+    if settings is not None or own:
+        raise InputError(
+            f"found {own[0] if own else 'settings'} for a scene with stages, which have their own, expected none"
+        )
+    start = changes.pop("start", None)
+    state = state_to_start_from(start_from)
+    solutions: list[Solution] = []
+    for k, (stage, of_stage) in enumerate(zip(scene.stages, scene.stage_scenes, strict=True)):
+        place = f"stage {k + 1} of {len(scene.stages)}"
+        at_start = {"start": start} if start is not None and k == 0 else {}
+        try:
+            found = _solved(stage, of_stage, watch, state, inputs, {**changes, **at_start})
+        except StiffmbsError as error:
+            raise type(error)(f"{place}: {error}") from None
+        solutions.append(replace(found, message=f"{place}: {found.message}"))
+        if not found.success:
+            break
+        state = replace(found.state(), source=f"stage {k + 1}", elements=_elements(of_stage))
+    return joined(scene.name, solutions)
+
+
+def _elements(scene: Scene) -> frozenset[str]:
+    return frozenset((*scene.joints, *scene.forces))
+
+
+def _solved(
+    stage: Stage,
+    scene: Scene,
+    watch: ProgressCallback | None,
+    state: SavedState | None,
+    inputs: Mapping[str, Given] | None,
+    changes: dict[str, Any],
+) -> Solution:
+    if stage.analysis == "dynamic":
+        return run(scene, watch=watch, start_from=state, inputs=inputs, **changes)
+    if not stage.over_time:
+        return _settled(scene, state, changes)
+    grid = output_grid(changed(scene.run, {**changes, "start": state.t if state else scene.run.start}))
+    if grid.times is None:
+        raise InputError("found points = steps for an equilibrium, expected a number or an output interval")
+    rows: list[Solution] = []
+    for t in grid.times:
+        rows.append(_settled(scene, state, {**changes, "start": float(t)}))
+        state = replace(rows[-1].state(), elements=_elements(scene))
+    return joined(scene.name, rows)
+
+
+def _settled(scene: Scene, state: SavedState | None, changes: dict[str, Any]) -> Solution:
+    found = equilibrium(scene, start_from=state, **changes).solution
+    return replace(found, notes=(*notes_of(scene), *found.notes))

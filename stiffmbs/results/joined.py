@@ -1,0 +1,149 @@
+"""Solutions one after the other as one."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..solve.trajectory import History
+from .energy_balance import Balance
+from .scales import kind_of
+from .solution import Solution
+
+SAME = 1e-6
+"""Part of the size of a channel's kind by which two values may differ and be one."""
+VIOLATIONS = "constraint."
+MECHANICAL = ("force", "torque")
+"""Kinds of channels that are zero where their element is not there."""
+COUNTED = (
+    "steps", "residuals", "jacobians", "factorizations", "error_test_failures", "convergence_failures", "newton_iterations",
+    "newton_failures", "rejected", "accelerations", "breakpoints", "events", "moves", "seconds",
+)  # fmt: skip
+"""Statistics of solvers that add up; of others the last run's stand."""
+
+
+def joined(name: str, solutions: Sequence[Solution]) -> Solution:
+    """The results of runs that follow each other in time.
+
+    Where one ends and the next begins there are two rows of one time, before and after what changes there; one, that after it, where
+    no channel changes.  Channels that a run does not have are zero if they are forces or torques of an element, which is not
+    there then; others have no value.
+
+    Parameters
+    ----------
+    name : str
+    solutions : sequence of Solution
+        One at least.
+    """
+    first = solutions[0]
+    if len(solutions) == 1:
+        return replace(first, name=name)
+    channels = list(dict.fromkeys(channel for solution in solutions for channel in solution.channels))
+    turns = list(dict.fromkeys(key for solution in solutions for key in solution.turns))
+    requested = {key: unit for solution in solutions for key, unit in solution.requested.items()}
+    kept = _kept_rows(solutions)
+    pairs = list(zip(solutions, kept, strict=True))
+    return Solution(
+        name=name,
+        time=np.concatenate([s.time[rows] for s, rows in pairs]),
+        channels={
+            channel: np.concatenate([_values(s, channel, requested)[rows] for s, rows in pairs]) for channel in channels
+        },
+        outcome=solutions[-1].outcome,
+        message=solutions[-1].message if not solutions[-1].success else f"{len(solutions)} runs: all were solved",
+        notes=_notes([s.notes for s in solutions]),
+        solver=_statistics(solutions),
+        history=History(
+            np.concatenate([s.history.t for s in solutions]), np.concatenate([s.history.order for s in solutions])
+        ),
+        balance=_balance([s.balance for s in solutions]),
+        not_unique=tuple(dict.fromkeys(channel for s in solutions for channel in s.not_unique)),
+        requested=requested,
+        presolve=_notes([s.presolve for s in solutions]),
+        figure=first.figure,
+        turns={
+            key: np.concatenate([s.turns.get(key, np.full(len(s.time), np.nan))[rows] for s, rows in pairs])
+            for key in turns
+        },
+    )
+
+
+def _kept_rows(solutions: Sequence[Solution]) -> list[slice]:
+    """All rows of each, without the last where the next begins with the same."""
+    sizes: dict[str, float] = {}
+    for solution in solutions:
+        for name, values in solution.channels.items():
+            kind = kind_of(name) or name
+            sizes[kind] = max(sizes.get(kind, 0.0), float(np.nanmax(np.abs(values), initial=0.0)))
+    found = []
+    for before, after in itertools.pairwise(solutions):
+        same = before.time[-1] == after.time[0] and before.channels.keys() == after.channels.keys()
+        found.append(slice(None, -1 if same and _goes_on(before, after, sizes) else None))
+    return [*found, slice(None)]
+
+
+def _goes_on(before: Solution, after: Solution, sizes: Mapping[str, float]) -> bool:
+    """Whether all channels end as they begin, to what the tolerance of a run leaves; `sizes` are those of their kinds."""
+    return all(
+        np.isclose(
+            values[-1], after.channels[name][0], rtol=0, atol=SAME * sizes[kind_of(name) or name], equal_nan=True
+        )
+        for name, values in before.channels.items()
+        if not name.startswith(VIOLATIONS)
+    )
+
+
+def _values(solution: Solution, channel: str, requested: Iterable[str]) -> np.ndarray:
+    if channel in solution.channels:
+        return solution.channels[channel]
+    there = kind_of(channel) not in MECHANICAL or channel in requested
+    return np.full(len(solution.time), np.nan if there else 0.0)
+
+
+def _notes(told: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """Sentences once, with the numbers of the runs that they are of where not all say them."""
+    all_of_them = dict.fromkeys(sentence for sentences in told for sentence in sentences)
+    found = []
+    for sentence in all_of_them:
+        runs = [str(k) for k, sentences in enumerate(told, start=1) if sentence in sentences]
+        place = "" if len(runs) == len(told) else f"run{'s' if len(runs) > 1 else ''} {', '.join(runs)}: "
+        found.append(place + sentence)
+    return tuple(found)
+
+
+def _statistics(solutions: Sequence[Solution]) -> dict[str, Any]:
+    """Counts added up, other things as in the last run."""
+    found: dict[str, Any] = {}
+    for solution in solutions:
+        for name, value in solution.solver.items():
+            found[name] = found.get(name, 0) + value if name in COUNTED else value
+    return {**found, "name": " ".join(dict.fromkeys(str(s.solver["name"]) for s in solutions))}
+
+
+def _balance(balances: Sequence[Balance]) -> Balance:
+    """The balance over all runs: what changes between them is no work."""
+    change, work = (_one_after_the_other([getattr(b, name) for b in balances]) for name in ("change", "work"))
+    between = np.zeros(1)
+    return Balance(
+        t=np.concatenate([b.t for b in balances]),
+        change=change,
+        work=work,
+        within=np.concatenate([part for b in balances for part in (between, b.within)][1:]),
+        steps=np.concatenate([part for b in balances for part in (between.astype(int), b.steps)][1:]),
+        resolved=max(b.resolved for b in balances),
+        scale=max(b.scale for b in balances),
+        keeps_energy=all(b.keeps_energy for b in balances),
+    )
+
+
+def _one_after_the_other(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Histories since the start of each, as one since the start of the first."""
+    found, reached = [], 0.0
+    for part in parts:
+        found.append(part + reached)
+        reached = float(found[-1][-1]) if len(part) else reached
+    return np.concatenate(found)
