@@ -191,7 +191,7 @@ class NativeIda:
 
     def forget(self) -> None:
         """Forget counters, history and pivots, as if it had never begun."""
-        self._begun = False
+        self._begun, self._look = False, self._usual_pace
         self._statistics.forget()
         self._ida.forget()
 
