@@ -13,13 +13,13 @@ OWN_ARE_PRINCIPAL = np.array([1.0, 0.0, 0.0, 0.0])
 def in_own_axes(
     system: System, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates, velocities and accelerations, one instant a row, of bodies in space as they are described.
+    """Coordinates, velocities and accelerations, one instant a row, of bodies as they are described.
 
-    Counters of turns and states are left out.  Where all own axes are principal ones the arrays are returned as they are.
+    Counters of turns and states are left out.  Where all own axes are principal ones, and in the plane, the arrays are returned as they are.
     """
     axes = system.principal_axes
     q = q[:, : system.n_pose]
-    if np.array_equal(axes, np.broadcast_to(OWN_ARE_PRINCIPAL, axes.shape)):
+    if not axes.size or np.array_equal(axes, np.broadcast_to(OWN_ARE_PRINCIPAL, axes.shape)):
         return q, u, acceleration
     return _turned_back(q, CONJUGATE * axes), _seen_from(u, axes), _seen_from(acceleration, axes)
 
