@@ -13,6 +13,7 @@ from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
 from ..solve.dynamics import Dynamics
 from ..solve.equilibrium import Equilibrium, find_equilibrium
+from ..solve.failures import FAILURES
 from ..solve.force_balance import balance_at
 from ..solve.initial import InitialValues
 from ..solve.steady_motion import at_rest
@@ -81,6 +82,36 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
         found = next(pose for pose in poses if pose is not None)
         state.q[:] = found.q
     return _settled(found, start, [*notes, "the pose found is unstable too: no stable equilibrium was found beside it"])
+
+
+def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
+    """The pose of the equilibrium at rest with the described velocities, made consistent: a car that begins to roll.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    start : InitialValues
+        The pose from which it is sought, and the velocities.
+    t : float
+        s.
+
+    Raises
+    ------
+    SolverError
+        Where no equilibrium is found, or the velocities have no accelerations there.
+    """
+    found = settled(dynamics, start, t).start
+    state = dynamics.state
+    state.q[:], state.u[:] = found.q, start.u
+    status = min(dynamics.correct_velocities(t), 0)
+    state.count_anew(t)
+    acceleration = start.acceleration
+    if status == 0:
+        status, acceleration = dynamics.accelerate(t)
+    if status < 0:
+        raise SolverError(f"the described velocities do not go on in the equilibrium: {FAILURES[status]}")
+    lam = state.lam[: dynamics.system.n_c].copy()
+    return replace(found, u=state.u.copy(), acceleration=acceleration, lam=lam)
 
 
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
