@@ -44,6 +44,7 @@ _LATER = {
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
+    "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",

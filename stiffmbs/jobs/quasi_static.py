@@ -10,9 +10,9 @@ from ..describe.scene import Scene
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, SolverError
 from ..results.solution import Solution
+from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
 from ..solve.equilibrium import Equilibrium, find_equilibrium
-from ..solve.failures import FAILURES
 from .run import Runnable, data_of, prepare
 from .solution_at_rest import solution_at_rest
 
@@ -60,7 +60,7 @@ def _next(dynamics: Dynamics, t: float) -> Equilibrium:
     """The equilibrium at an instant from the present pose, which is then that of the equilibrium."""
     status = dynamics.assemble(t)
     if status < 0:
-        raise AssemblyError(f"t = {t:g} s: the constraints do not meet: {FAILURES[status]}")
+        raise AssemblyError(f"t = {t:g} s: the constraints do not meet: {failure(dynamics, status, t)}")
     try:
         return find_equilibrium(dynamics, t)
     except SolverError as error:

@@ -11,7 +11,7 @@ from ..errors import SolverError
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.failures import FAILURES
+from ..solve.algebraic_states import failure
 from ..solve.trajectory import History, Outcome
 from .run import Job
 
@@ -40,13 +40,12 @@ def solution_at_rest(
     rows = job.dynamics.report(t, q, u, project=False)
     if len(rows.t) < len(t):
         raise SolverError(
-            f"no reactions were found in the equilibrium at t = {t[len(rows.t)]:g} s: {FAILURES[rows.status]}"
+            f"no reactions were found in the equilibrium at t = {t[len(rows.t)]:g} s: {failure(job.dynamics, rows.status, t[len(rows.t)])}"
         )
     channels = channels_of(job.data, system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=message, notes=notes,
         solver=solver, history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, rows.t, *energies, rows.values, np.empty(0)), not_unique=job.redundancy.not_unique,
+        balance=energy_balance(system, rows, np.empty(0)), not_unique=job.redundancy.not_unique,
         requested=units(job.data.outputs()), turns=turns_of(system, rows.q),
     )  # fmt: skip
