@@ -32,6 +32,7 @@ PLANE = """
 from typing import Literal
 
 from . import spatial as spatial
+from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model

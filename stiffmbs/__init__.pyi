@@ -25,6 +25,7 @@ from stiffmbs.describe.joints.revolute import Revolute as _Revolute
 from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _VelocityEquation
 
 from . import spatial as spatial
+from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
