@@ -45,7 +45,7 @@ _LATER = {
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
-    "listed_statements": ".adams.listing",
+    "listed_statements": ".adams.listing", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""

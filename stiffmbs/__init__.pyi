@@ -60,6 +60,7 @@ from .jobs.load_scene import load_scene as load_scene
 from .jobs.modes import modes as modes
 from .jobs.run import run as run
 from .jobs.transfer import transfer as transfer
+from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
