@@ -48,6 +48,7 @@ _LATER = {
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",
+    "listed_statements": ".adams.listing", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
