@@ -75,6 +75,8 @@ from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
+from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
+from .studies.sensitivities.sensitivities import sensitivities as sensitivities
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
 from .studies.sweep import sweep as sweep

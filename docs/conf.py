@@ -23,6 +23,7 @@ extensions = [
     "kinds",
     "scenes",
     "measured",
+    "shipped_parts",
 ]
 exclude_patterns = ["extensions"]
 suppress_warnings = ["toc.empty_glob"]  # a page that a pattern stands for may be missing

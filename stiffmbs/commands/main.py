@@ -20,8 +20,10 @@ from .report import report
 from .response import response
 from .run import run
 from .schema import schema
+from .sensitivities import sensitivities
 from .starting.examples import examples
 from .starting.init import init
+from .starting.parts import parts
 from .starting.version import show_version
 from .stress import stress
 from .study import study
@@ -45,6 +47,6 @@ def main() -> None:
 
 
 for command in (
-    run, check, equilibrium, modes, response, study, compare, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress, init, examples, show_version,
+    run, check, equilibrium, modes, response, study, sensitivities, compare, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
 ):  # fmt: skip
     main.add_command(with_logging_options(command))

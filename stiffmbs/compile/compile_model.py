@@ -61,6 +61,7 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         u=np.array([c for body in model.bodies.values() for c in body.rates()]),
         open_rates=np.array([way for body in model.bodies.values() for way in body.open_rates()]),
         mass=np.array([m for body in model.bodies.values() for m in body.masses()]),
+        followed=_followed(model, of_body),
         principal_axes=_principal_axes(model),
         groups=tuple(groups),
         equations=tuple(equations),
@@ -84,6 +85,16 @@ def _sorted_elements(model: Compilable) -> dict[Kind, list[_Member]]:
             raise InputError(f"{name}: {error}") from None
         sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
     return sorted_elements
+
+
+def _followed(model: Compilable, of_body: BodyKind) -> np.ndarray:
+    """Which velocities coordinates follow."""
+    followed = np.ones((len(model.bodies), of_body.n_u))
+    axes = model.spin_axes()
+    for k, body in enumerate(model.bodies):
+        if body in axes:
+            followed[k, of_body.linear + "xyz".index(axes[body])] = 0.0
+    return followed.ravel()
 
 
 def _principal_axes(model: Compilable) -> np.ndarray:

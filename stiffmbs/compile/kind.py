@@ -64,6 +64,9 @@ class Compilable(Protocol):
     def size(self) -> float:
         """Of the mechanism at the start, m."""
 
+    def spin_axes(self) -> Mapping[str, str]:
+        """The bodies whose quaternions don't follow their spin, and the principal axis of each, ``x``, ``y`` or ``z``."""
+
 
 @dataclass(frozen=True)
 class Kind:
@@ -83,6 +86,9 @@ class Kind:
         States of the user's own that it reads or determines.
     fields : tuple of (str, Shape)
         Its fields by name; a shape says of what form a field is, never its numbers.
+    spins : tuple of str
+        For each body the principal axis about which its quaternion doesn't turn with it, ``x``, ``y``, ``z`` or none; () where
+        all quaternions do, or the equations ask for no derivative of the pose that would tell.
     algebraic : tuple of int
         Slots of the states that have no rate.
     """
@@ -93,6 +99,7 @@ class Kind:
     n_joints: int
     n_states: int
     fields: tuple[tuple[str, Shape], ...]
+    spins: tuple[str, ...] = ()
     algebraic: tuple[int, ...] = ()
 
 
@@ -157,7 +164,15 @@ def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
     values = model.state_values() if data.states else {}
     algebraic = tuple(slot for slot, name in enumerate(data.states) if values[name].algebraic)
     counts = len(data.bodies), len(data.joints), len(data.states)
-    return Kind(type(element), model.dimensions, *counts, fields, algebraic), data
+    return Kind(type(element), model.dimensions, *counts, fields, _spins(element, model, data), algebraic), data
+
+
+def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str, ...]:
+    """`Kind.spins`: constraints are differentiated by time, and kinematics are derivatives; other forces see no difference."""
+    axes = model.spin_axes()
+    if not (isinstance(element, Joint) or getattr(element, "turns", False)) or axes.keys().isdisjoint(data.bodies):
+        return ()
+    return tuple(axes.get(body, "") for body in data.bodies)
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:

@@ -54,6 +54,8 @@ class System:
         Which velocities at the start are not given, so that constraints decide about them first.
     mass : ndarray, shape (n_u,)
         The diagonal of the mass matrix: masses, and moments of inertia about principal axes.
+    followed : ndarray, shape (n_u,)
+        0 for angular velocities that their body's quaternion doesn't follow (`stiffmbs.presolve.spinning_bodies`), else 1.
     principal_axes : ndarray, shape (bodies, 4)
         Quaternions of the principal axes in each body's own axes, which results are shown in; (bodies, 0) in the plane.
     groups : tuple of Group
@@ -75,6 +77,7 @@ class System:
     u: np.ndarray
     open_rates: np.ndarray
     mass: np.ndarray
+    followed: np.ndarray
     principal_axes: np.ndarray
     groups: tuple[Group, ...]
     equations: tuple[tuple[str, str], ...]

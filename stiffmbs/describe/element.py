@@ -173,6 +173,15 @@ class Element(Described):
 
         return namesake(self, angles)
 
+    def spins_with(self) -> dict[str, str]:
+        """The markers whose bodies may spin without a change of the equations, by field, and what spinning asks of each.
+
+        ``x``, ``y`` or ``z``: the marker's point is on the spin axis, which lies along this axis of the marker.  ``point``: its
+        point is on the spin axis.  ``body``: nothing.  A body with a marker that is not among them keeps its spin in its
+        quaternion (`stiffmbs.presolve.spinning_bodies`).
+        """
+        return {}
+
     def at_initial_pose(self, model: ModelData) -> Self:
         """The element with what it leaves open taken from the bodies' described poses."""
         return self

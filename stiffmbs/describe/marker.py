@@ -14,7 +14,7 @@ from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .handle import Handle
 from .parts.names import GROUND as GROUND
-from .parts.names import MOUNT, names_of
+from .parts.names import names_of
 from .units import si
 
 if TYPE_CHECKING:
@@ -70,11 +70,12 @@ class MarkerReference(Described):
         if isinstance(found, dict) and isinstance(found.get("body"), Handle):
             found = {**found, "body": found["body"].name}
         if isinstance(found, str):
-            if MOUNT in names.local and (found == MOUNT or found.startswith(f"{MOUNT}.")):
-                return {"body": MOUNT, "marker": found[len(MOUNT) + 1 :] or None}  # placed with the part
+            mount, _, named = found.partition(".")
+            if mount in names.mounts:
+                return {"body": mount, "marker": named or None}  # placed with the part
             body, marker = names.body_and_marker(found)
             return {"body": body, "marker": marker or None}
-        if isinstance(found, dict) and isinstance(found.get("body"), str) and found["body"] != MOUNT:
+        if isinstance(found, dict) and isinstance(found.get("body"), str) and found["body"] not in names.mounts:
             found = {**found, "body": names.full(found["body"])}
         if (
             isinstance(found, dict)

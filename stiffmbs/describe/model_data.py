@@ -22,7 +22,7 @@ from .requests.check import by_channel, check_output
 from .requests.names import OutputNames
 from .requests.order import dimensions
 from .requests.output import Output
-from .states.equation import Reported, StateEquation
+from .states.equation import FormulaOfRate, Reported
 from .states.inputs import InputValue, formulas_of_inputs
 from .states.name import StateName
 from .states.section import (
@@ -179,7 +179,7 @@ class ModelData(Described):
         """The rates of the states, by the names of the states, and the outputs of their equations."""
         for name, state in self.states.items():
             for full, value in state.values(name):
-                yield full, StateEquation.model_construct(state=StateName(full), formula=value.rate)
+                yield full, FormulaOfRate.model_construct(state=StateName(full), formula=value.rate)
         for full, formula in self.state_outputs().items():
             yield full, Reported.model_construct(formula=formula)
 
@@ -208,6 +208,10 @@ class ModelData(Described):
             points += [self.point(marker) for _, marker in element.markers()]
         widths = (max(p[k] for p in points) - min(p[k] for p in points) for k in range(self.dimensions))
         return math.hypot(*widths) or 1.0
+
+    def spin_axes(self) -> Mapping[str, str]:
+        """None: as described, every quaternion follows its body's angular velocity."""
+        return {}
 
     def point(self, marker: MarkerReference) -> tuple[float, ...]:
         """Where a marker is in ground axes at the start, m."""

@@ -162,6 +162,10 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         from .settled import settled
 
         return settled(dynamics, start, t).start
+    if asked == "settled":
+        from .settled import moving_in_equilibrium
+
+        return moving_in_equilibrium(dynamics, start, t)
     return start
 
 
@@ -170,7 +174,8 @@ def presolved(
 ) -> tuple[Subsystem, ...]:
     """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
 
-    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.
+    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.  Where all
+    steps are implicit, quaternions do not follow spins; explicit ones would only come nearer to the limit of their stability.
 
     Parameters
     ----------
@@ -183,9 +188,11 @@ def presolved(
     """
     if not may_presolve(settings):
         return ()
-    parts = parts_of(model, dynamics.system, apart=grid.times is not None)
+    traits = traits_of(settings)
+    way = (grid.end - grid.start) * start.u if traits.implicit and not traits.switches else None
+    parts = parts_of(model, dynamics.system, way, apart=grid.times is not None)
     subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
-    if traits_of(settings).implicit:
+    if traits.implicit:
         for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
             leave_out_coordinates(solved, grid.start)
     return subsystems

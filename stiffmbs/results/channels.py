@@ -34,7 +34,7 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
         return channels
     from .requests import requested
 
-    return channels | requested(model, rows.t, channels, _counters(model, system, rows.q))
+    return channels | requested(model, rows.t, channels, counters(model, system, rows.q))
 
 
 def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
@@ -47,7 +47,7 @@ def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
     return {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()}
 
 
-def _counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:
+def counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:
     """What is counted of angles over whole turns for requests, rad, by the angle's text."""
     names = {name for name, _ in model.angle_counters()}
     return {

@@ -183,7 +183,7 @@ class Dynamics:
 
         That of an algebraic state is given as zero.
         """
-        rates = self.system.of_body.position_rates(q, u)
+        rates = self.system.of_body.position_rates(q, self.system.followed * u)
         source, row = self._behind
         if len(row):
             rates[row] = self.state.values["acceleration"][source]

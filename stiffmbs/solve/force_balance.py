@@ -17,6 +17,8 @@ from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
 """Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
+PASSED_ON = 1e-8
+"""Imbalance, relative to the largest force, up to which rounding counts that joints have passed on from other bodies."""
 FOLLOWED = 1e-9
 """Part of the accelerations that constraints may ask for beside those of the motion, and count as none."""
 
@@ -87,9 +89,17 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     stiffness, jacobian = _derivatives(dynamics, t, motion, lam)
     farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
     rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
+    roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which passes on no more than there is
+    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), PASSED_ON * largest)
     left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
     found = Balance(
-        left, lam, float(largest), np.maximum(BALANCED * largest, rounding), stiffness, jacobian, jacobian.T
+        left,
+        lam,
+        float(largest),
+        np.maximum.reduce([np.full(len(left), BALANCED * largest), rounding, passed_on]),
+        stiffness,
+        jacobian,
+        jacobian.T,
     )
     return with_states(dynamics, found, rates, motion, t) if system.states else found
 

@@ -20,8 +20,9 @@ NEARLY_ALL, SMALLEST = 0.98, 0.3
 """A peak in a thousand may be outside, as two runs have its error by accident: one of the 83 of a half car at times."""
 IN_DOUBT = {
     "cam_follower": ("less certain",), "chain": ("between the output",),
+    "car": ("take a smaller output",), "leaf_sprung_car": ("take a smaller output",),
 }  # fmt: skip
-"""Examples that are no clean scenes: impacts that magnify all errors, whips between output instants."""
+"""Examples that are no clean scenes: impacts that magnify all errors, whips and small parts on bushings between output instants."""
 
 
 @pytest.fixture(autouse=True)
@@ -186,7 +187,7 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
         assert part in told
 
 
-LONG = ("bricard", "governor", "spatial_chain")
+LONG = ("bricard", "car", "governor", "leaf_sprung_car", "spatial_chain")
 
 
 @pytest.mark.parametrize(

@@ -16,9 +16,11 @@ from ...describe.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
 from ..scene.number_format import plain
 from .adams_functions import ADAMS_FUNCTIONS
+from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED
 from .function import Function
-from .trees import measured, over, power, product, times, total
+from .states import differential, value_of_system
+from .trees import measured, name_of, over, power, product, times, total
 
 POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
 VELOCITIES, ANGULAR_VELOCITIES = ("VX", "VY", "VZ", "VM", "VR"), ("WX", "WY", "WZ", "WM")
@@ -131,6 +133,17 @@ class Translation:
             return self.curve(name, arguments, function, translate)
         if name == "ARYVAL":
             return self.array_value(arguments, function)
+        if name == "DIF":
+            return name_of(differential(self.mechanism.dataset, identifier(arguments, 0, function), function).name)
+        if name == "DIF1":
+            return translate(
+                differential(self.mechanism.dataset, identifier(arguments, 0, function), function).function.tree
+            )
+        if name in ANGLES_OF_AXES:
+            return self._angle(name, arguments, function)
+        if name == "INCANG":
+            ends = [self.reference(identifier(arguments, k, function), function) for k in range(3)]
+            return included_angle(*ends)
         raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected one that is read here")
 
     def measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
@@ -186,6 +199,13 @@ class Translation:
             )
         return self.mechanism.placed(marker).reference
 
+    def _angle(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
+        idents = [identifier(arguments, k, function) for k in range(len(arguments))]
+        if not 1 <= len(idents) <= 2 or not idents[0]:
+            raise function.fault(f"found {len(idents)} markers of {name}, expected 1 or 2")
+        places = [self.mechanism.place(ident, function) if ident else on_ground() for ident in (*idents, 0)[:2]]
+        return angle(name, self.mechanism, *places)
+
     def curve(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
     ) -> ast.expr:
@@ -212,6 +232,9 @@ class Translation:
     def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         """A number out of an ARRAY."""
         ident, at = (identifier(arguments, k, function) for k in range(2))
+        of_system = value_of_system(self.mechanism.dataset, ident, at, function)
+        if of_system is not None:
+            return of_system
         array = self.mechanism.dataset.arrays.get(ident)
         if array is None or not 1 <= at <= len(array.numbers):
             raise function.fault(f"found ARYVAL({ident}, {at}), expected an ARRAY and the place of one of its numbers")

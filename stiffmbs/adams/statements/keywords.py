@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from . import bodies, constraints, elastic, forces, outputs
+from . import bodies, constraints, contact, elastic, forces, outputs, systems
 from .text import Statement
 from .units import Units
 
@@ -32,6 +32,11 @@ READERS: dict[str, Reader] = {
     "VARIABLE": outputs.read_variable,
     "SPLINE": outputs.read_spline,
     "ARRAY": outputs.read_array,
+    "CONTACT": contact.read_contact,
+    "DIFF": systems.read_differential,
+    "LSE": systems.read_linear_system,
+    "TFSISO": systems.read_transfer_function,
+    "MATRIX": systems.read_matrix,
 }
 """What makes data of a statement, by its name.  UNITS and ACCGRAV have no number and are read apart."""
 
@@ -56,15 +61,14 @@ LEFT_OUT = {
     "POUTPUT": "analysis settings",
     "PSTATE": "analysis settings",
     "STRING": "data that nothing here uses",
-    "MATRIX": "data that nothing here uses",
     "CURVE": "data that nothing here uses",
     "SURFACE": "data that nothing here uses",
     "TITLE": "text",
 }
 """Statements without mass, force or constraint, and what they hold."""
 REFUSED = (
-    "FLEX_BODY", "FE_PART", "FE_NODE", "FE_LOAD", "EXTERNAL_SYSTEM", "CONTACT", "CLEARANCE", "FRICTION", "NFORCE",
-    "MFORCE", "MODAL", "PTCV", "CVCV", "PTSF", "CVSF", "SFSF", "UCON", "DIFF", "GSE", "LSE", "TFSISO", "TIRE", "PFORCE",
+    "FLEX_BODY", "FE_PART", "FE_NODE", "FE_LOAD", "EXTERNAL_SYSTEM", "CLEARANCE", "FRICTION", "NFORCE",
+    "MFORCE", "MODAL", "PTCV", "CVCV", "PTSF", "CVSF", "SFSF", "UCON", "GSE", "TIRE", "PFORCE",
     "DEACTIVATE", "ACTIVATE", "NONLINEAR_BEAM",
 )  # fmt: skip
 """Statements with mass, force, constraint or states of their own that are not read."""

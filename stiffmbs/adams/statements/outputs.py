@@ -62,9 +62,10 @@ class Spline(Numbered):
 
 @dataclass(frozen=True)
 class Array(Numbered):
-    """A list of numbers."""
+    """A list of numbers, or of variables that are the inputs of a system."""
 
     numbers: tuple[float, ...]
+    variables: tuple[int, ...] = ()
 
 
 _REQUEST = (
@@ -122,6 +123,13 @@ def read_spline(statement: Statement, units: Units) -> Spline:
 
 
 def read_array(statement: Statement, units: Units) -> Array:
-    """A list of numbers; arrays of states, inputs and outputs belong to statements that are not read."""
+    """A list of numbers, or the states, inputs or outputs of a system."""
     found = Arguments(statement, "ARRAY", ("IC", "SIZE", "NUMBERS", "X", "Y", "U", "VARIABLES"))
-    return Array(found.ident(), statement.line, statement.alias, "ARRAY", found.numbers("NUMBERS") or ())
+    return Array(
+        found.ident(),
+        statement.line,
+        statement.alias,
+        "ARRAY",
+        found.numbers("NUMBERS") or (),
+        found.idents("VARIABLES"),
+    )

@@ -29,14 +29,24 @@ STATE: Layout = {
     "n_q": INT, "n_pose": INT, "n_u": INT, "n_c": INT, "spatial": INT,
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS, "n_turned": INTS, "turned": INTS,
     "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS, "left_open": FLOATS,
+    "followed": FLOATS,
 }  # fmt: skip
 """A system's state and kernels: the number of coordinates, and of those of bodies, which come first; whether its bodies are spatial; q, u and accelerations a with the ground's at their end;
 what kernels share of each body's orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first
 coordinate) for which that is read, the number of its kernel calls, the address of their arguments (rows of `CALL`) and
-the address of its values; the first row of each joint; what each equation may be off by."""
+the address of its values; the first row of each joint; what each equation may be off by;
+0 for each velocity that no coordinate follows, else 1."""
 
 CALL = ("kernel", "count", "index", "number", "place")
 """The arguments of one kernel call, as 64-bit numbers."""
+
+DIRECTION: Layout = {
+    "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS,
+    "n_turned": INT, "turned": INTS, "n_calls": INT, "calls": INTS, "values": FLOATS,
+}  # fmt: skip
+"""A direction in which the terms of one set change (`stiffmbs.compile.directional`): how the state changes, with the ground's
+numbers at their ends; bodies whose orientation is shared, the arguments of the calls of kernels (rows of `CALL` and, last,
+the address of how the elements' numbers change); the derivatives of the values."""
 
 EQUATIONS: Layout = {
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
@@ -152,13 +162,15 @@ NATIVE_IDA: Layout = {
     "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
+    "trace": INT_CELL, "traced": INT_CELL,
 }  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
 
 Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
 last step, size of the one that it will try next; output points served, tiny steps in succession, whether the last event
-was found by the search within the step; steps in the history, steps since the last sample, place of the next one."""
+was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
+of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call."""
 MOST_STEPS, HISTORY_WIDTH = 2048, 3
 """Steps of any one call, and rows of the history: time of the end, order, size."""
 SAMPLES = 16
@@ -180,6 +192,30 @@ beyond which states within it are corrected; the time at which the factors were 
 grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
 force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
 equations of motion: those of forces, then those of moments, and where either end."""
+
+VARIATIONS: Layout = {
+    "state": INTS, "equations": INTS, "n": INT, "n_directions": INT, "n_slots": INT,
+    "row": INDICES, "column": INDICES, "place": INDICES, "constant": FLOATS, "rate": FLOATS,
+    "n_share": INT, "share": INTS, "parts": INTS, "by_time": INTS, "shift": FLOATS, "shifted": INT_CELL, "of_time": FLOATS,
+    "clear": INT, "setup": INT, "solve": INT, "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
+    "at_defect": INT, "defect": FLOATS, "at_correction": INT, "correction": FLOATS, "s": FLOATS, "rates": FLOATS,
+    "history": FLOATS, "times": FLOATS, "weight": FLOATS, "slope": FLOATS, "newest": INT_CELL, "cj": FLOAT_CELL,
+}  # fmt: skip
+"""The variational equations along a run (`stiffmbs.solve.native.variations`): rows and columns of the matrix' slots, their place
+in the linear solver, and their parts by y and by y'; addresses of the tables of `PART`; linear solver and vectors; a
+direction's s and s'; the last `DEPTH` s of all directions with their times, and the coefficients of a step.
+
+`by_time` is the `PART` of r_t, `shift` the time by which each direction's s is shifted.
+
+Cells: whether any is, which row of the history is the last, and cj of the step."""
+DEPTH = 8
+"""Steps that are remembered; order 5 needs six before the present one."""
+
+PART: Layout = {
+    "direction": INTS, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
+    "row": INDICES, "source": INDICES, "operand": INDICES, "factor": FLOATS,
+}  # fmt: skip
+"""dr/dp of one direction: its `DIRECTION`, and lines as those of a residual."""
 
 ITERATION: Layout = {
     "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,

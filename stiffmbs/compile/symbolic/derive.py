@@ -182,13 +182,14 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
 
 def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
     """The rate of a state, in the row of that state, and what is reported of it."""
-    e, (formula,) = symbols.element, (symbols.element.formula,)
+    e, element = symbols.element, kind.element
+    formula = sp.sympify(element.rate(e) if issubclass(element, StateEquation) else e.formula)
     value = sp.Matrix([formula])
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
     terms = {"signal": value, "event_function": sp.Matrix(symbols.event_functions), "argument": _arguments(symbols)}
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
-    entries["signal"] = [Entry(sp.sympify(formula), 0)]
-    if issubclass(kind.element, StateEquation):
+    entries["signal"] = [Entry(formula, 0)]
+    if issubclass(element, StateEquation):
         row = e.n_coordinates - len(e.states) + e.states.index(e.state)
         rates = {"rate": value, "rate_q": e.by_coordinates(value), "rate_u": e.by_velocities(value)}
         rates["rate_lam"] = e.by(value, joint_lam) if joint_lam else sp.zeros(0, 0)
@@ -212,7 +213,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
     """Z of p' = Z w, in the rows and columns of a body's coordinates and velocities, and d(Z w)/dq."""
     (body,) = e.frames
     Z, rates = sp.zeros(len(body.q), len(body.u)), sp.zeros(len(body.q), 1)
-    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:]))
+    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:])) * sp.Matrix(body.followed).jacobian(body.u[3:])
     rates[3:, :] = Z[3:, 3:] * sp.Matrix(body.u[3:])
     return {"Z": Z, "Z_q": e.by_coordinates(rates)}
 

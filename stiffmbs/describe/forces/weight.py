@@ -22,6 +22,9 @@ class Weight(Force):
     mass: si.Mass
     gravity: tuple[si.Acceleration, ...]
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "body"}
+
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         return [(e.mass * g, x) for g, x in zip(e.gravity, e.i.body.origin, strict=True)]

@@ -7,6 +7,7 @@ sign would be a wrong number.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,15 +36,18 @@ class Mirror:
         Of the part, in ground axes.
     part
         Its sections, validated, with their short names, as they are without the mirror.
+    mounts : collection of str
+        What the part calls the bodies that it is placed on.
     """
 
     name: str
     frame: Any
     part: Any
+    mounts: Collection[str]
 
     def inside(self, marker: MarkerReference) -> bool:
         """Whether a marker is on a body of the part, or on its mount as a marker of the part."""
-        own = f"{marker.marker}.".startswith(f"{self.name}.") if marker.marker else marker.body == MOUNT
+        own = f"{marker.marker}.".startswith(f"{self.name}.") if marker.marker else marker.body in self.mounts
         return own or f"{marker.body}.".startswith(f"{self.name}.")
 
     def mirrored(self, element: Element, where: str) -> Element:
@@ -116,7 +120,7 @@ class Mirror:
         return signs, turned
 
     def _own(self, marker: MarkerReference) -> bool:
-        return marker.body == MOUNT or self.inside(marker)
+        return marker.body in self.mounts or self.inside(marker)
 
     def _coordinate(self, joint: JointName | None) -> float:
         """The sign of a joint's coordinate."""
@@ -150,7 +154,7 @@ class Mirror:
         """A marker on the part's own bodies in its mirror image; `way` is the axis whose direction matters, if any."""
         if way in ("x", "y", "z") and self._own(marker) and self.frame.signs["xyz".index(way)] < 0:
             marker = self.frame.half_turned(self._placed(marker), way)
-        if marker.body in (MOUNT, GROUND) or marker.marker is not None or not self.inside(marker):
+        if marker.body in (*self.mounts, GROUND) or marker.marker is not None or not self.inside(marker):
             return marker
         return marker if marker.placement() is None else self.frame.mirror().placed(marker)
 

@@ -77,6 +77,9 @@ class Tyre(Force):
         1.0, description="speed below which slips refer to (slow^2 + Vx^2)/(2 slow) in place of abs(Vx), m/s"
     )
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "y"}
+
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
         """Fx, Fy, Mx, My, Mz on the tyre at the point of contact, along the ISO axes, N and N m."""

@@ -24,8 +24,8 @@ class StateValue:
 
     Attributes
     ----------
-    rate : Formula
-        Of its rate of change; of an algebraic state what is zero in place of it.
+    rate : Formula or None
+        Of its rate of change; of an algebraic state what is zero in place of it.  None where an element has it.
     start : float
         Initial value, SI units; of an algebraic state where it is sought from.
     scale : float
@@ -34,7 +34,7 @@ class StateValue:
         Whether it has no rate: 0 = formula.
     """
 
-    rate: Formula
+    rate: Formula | None
     start: float
     scale: float
     algebraic: bool = False
