@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from .compiler import Compiled, compiled_routines
@@ -27,10 +28,12 @@ class Routine:
     signature: str
     others: Signatures = ()
 
-    def load(self) -> Callable[..., Any]:
+    @cached_property
+    def call(self) -> Callable[..., Any]:
         """The function, for calls from Python; pointers are passed as addresses."""
         return self._compiled().call
 
+    @cached_property
     def address(self) -> int:
         """The function's address, for calls from compiled code."""
         return self._compiled().address

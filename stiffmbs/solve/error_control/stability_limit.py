@@ -13,6 +13,7 @@ order is free again then, before the errors of order 2 count.
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -71,8 +72,12 @@ class StabilityLimitDetection:
     def __init__(self, equations: Equations, settings: RunSettings) -> None:
         self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
         self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST
-        self._atol = independent_tolerances(equations, settings)
+        self._equations, self._settings = equations, settings
         self.forget()
+
+    @cached_property
+    def _atol(self) -> np.ndarray:
+        return independent_tolerances(self._equations, self._settings)
 
     def forget(self) -> None:
         """Begin a new run."""
