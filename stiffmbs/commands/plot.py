@@ -49,7 +49,8 @@ def plot(
         if live:
             figure = _live(source, channels, against, title, others, output, options)
             _tell(source, figure, None, as_json)
-            return show_window()
+            show_window()
+            return
         for path in (source, *(str(other) for other in others)) if output is not None else ():
             refuse_own_input("-o", path, output)  # type: ignore[arg-type]
         runs = runs_of(source, others, options)
