@@ -46,6 +46,7 @@ _LATER = {
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
+    "listed_statements": ".adams.listing", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""

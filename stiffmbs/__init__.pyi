@@ -25,6 +25,7 @@ from stiffmbs.describe.joints.revolute import Revolute as _Revolute
 from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _VelocityEquation
 
 from . import spatial as spatial
+from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
@@ -59,6 +60,7 @@ from .jobs.load_scene import load_scene as load_scene
 from .jobs.modes import modes as modes
 from .jobs.run import run as run
 from .jobs.transfer import transfer as transfer
+from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
