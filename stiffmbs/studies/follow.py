@@ -106,10 +106,9 @@ def _so_far(job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, outcome: Outc
     with job.dynamics.state.unchanged():
         rows = job.dynamics.report(t, q, u, project=True)
     channels = channels_of(job.data, system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome, message=message, notes=(),
         solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
-        balance=energy_balance(system, rows.t, *energies, rows.values, np.empty(0)),
+        balance=energy_balance(system, rows, np.empty(0)),
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
     )  # fmt: skip
