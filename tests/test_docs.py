@@ -118,7 +118,9 @@ def test_what_a_page_shows_is_true(page, workplace):
             case "python":
                 printed = run_python(text, line, page, names)
             case "{eval-rst}" if text.startswith(PLOT):
-                run_python(dedent(text.removeprefix(PLOT)), line + 2, page, {})
+                options, _, code = text.removeprefix(PLOT).partition("\n\n")
+                assert all(option.strip().startswith(":") for option in options.splitlines())
+                run_python(dedent(code if options.strip() else text.removeprefix(PLOT)), line + 2, page, {})
             case "console" if re.match(QUICK, text):
                 found = run_command(text)
                 assert as_expected(text, found), f"{page.name}:{line}: found {found}"
