@@ -41,7 +41,8 @@ def eigenvalues_beside(
     state = state_matrix(linearised(dynamics, t, acceleration), scale)
     turning = motion.turning(system)
     own = state.matrix[len(state.matrix) - state.n_states :]
-    values = np.vstack([*(part / scale[:, None] for part in (state.poses, state.velocities)), _states(own)])
+    states = np.eye(len(state.matrix))[len(state.matrix) - state.n_states :]
+    values = np.vstack([*(part / scale[:, None] for part in (state.poses, state.velocities)), states])
     x, v = state.velocities - turning @ state.poses, state.accelerations - turning @ state.velocities
     rates = np.vstack([x / scale[:, None], v / scale[:, None], own])
     matrix, *_ = np.linalg.lstsq(values, rates, rcond=None)
@@ -49,8 +50,3 @@ def eigenvalues_beside(
         return None
     found: np.ndarray = np.linalg.eigvals(matrix)
     return found[np.lexsort((found.imag, -found.real))]
-
-
-def _states(own: np.ndarray) -> np.ndarray:
-    """The states themselves, the last of what a state matrix is in."""
-    return np.eye(*own.shape, k=own.shape[1] - own.shape[0])

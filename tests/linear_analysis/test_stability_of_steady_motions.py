@@ -27,7 +27,7 @@ def test_a_free_body_that_spins_about_a_principal_axis(axis):
 def test_a_disc_that_rolls_upright_falls_below_its_critical_speed(examples, part):
     """Thin disc: l^2 = (m g R A - C (C + m R^2) w^2)/(A (A + m R^2)); Neimark and Fufaev (1972), chapter III."""
     mass, radius = 2.0, 0.3
-    rate = part * np.sqrt(9.81 / (3 * radius))
+    rate = part * float(np.sqrt(9.81 / (3 * radius)))
     changes = {"lean": f"{np.pi / 2!r} rad", "falling": "0 rad/s", "turning": "0 rad/s", "rolling": f"{rate!r} rad/s"}
     scene = stiffmbs.load_scene(examples / "rolling_disc.yaml", list(changes.items()))
     found = stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(-radius * rate, 0, 0), rolling=("disc",)))

@@ -68,3 +68,25 @@ def test_a_simulation_takes_the_inputs_of_its_model(solver):
         )  # fmt: skip
         exact = piece.y[:, -1]
         assert [simulation["cart.x"], simulation["cart.vx"], simulation["lag"]] == pytest.approx(exact, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    "push",
+    [lambda t: 5 * np.sin(7 * t) + 3 * np.exp(-t), lambda t: 3.0 if t > 0.6543210 else 0.0],
+    ids=["smooth", "jumps"],
+)
+def test_a_function_as_an_input_is_followed_between_the_output_instants(push):
+    model = Model("pushed")
+    model.add("cart", Body(mass=2, inertia=1))
+    model.add("rail", Prismatic(i="cart", j="ground"))
+    model.add_input("push", 0.0)
+    model.add("force", AppliedForce(i="cart", force=("push - 30*cart.x - 4*cart.x^3", 0)))
+    solution = model.run(duration=1.0, points=21, rtol=1e-10, solver="projected", inputs={"push": push})
+    exact = np.zeros(2)
+    for piece in ((0, 0.6543210), (0.6543210, 1.0)):
+        inside = (piece[0] + 1e-12, piece[1] - 1e-12)
+        exact = solve_ivp(
+            lambda t, y, inside=inside: [y[1], (push(np.clip(t, *inside)) - 30 * y[0] - 4 * y[0] ** 3) / 2],
+            piece, exact, rtol=1e-12, atol=1e-13, method="DOP853",
+        ).y[:, -1]  # fmt: skip
+    assert solution["cart.x"][-1] == pytest.approx(exact[0], abs=1e-9)
