@@ -133,7 +133,9 @@ class Drawing:
     dimensions : int
         2: drawn as seen along z.
     size : float
-        Of the mechanism, m, to which symbols and arrows are scaled.
+        Of the mechanism, m, to which arrows are scaled.
+    unit : float
+        To which symbols are scaled, m.
     bodies : mapping of str to str
         Bodies with their colors.
     parts, links, names : tuples
@@ -149,6 +151,7 @@ class Drawing:
     name: str
     dimensions: int
     size: float
+    unit: float
     bodies: Mapping[str, str]
     parts: tuple[Part, ...]
     links: tuple[Link, ...]
