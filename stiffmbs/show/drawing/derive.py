@@ -61,6 +61,7 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
     gravity = np.zeros(3)
     gravity[: data.dimensions] = data.gravity
     weight = sum(body.mass for body in data.bodies.values()) * (float(np.linalg.norm(gravity)) or 1.0)
+    heaviest = max(data.bodies, key=lambda name: data.bodies[name].mass, default="")
     loads = {
         draft.owner: draft.i.anchor
         for draft in drafts
@@ -68,7 +69,7 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
     }
     return Drawing(
         data.name, data.dimensions, size, unit, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
-        tuple(_names(data, drafts)), loads, gravity, weight, marks or {},
+        tuple(_names(data, drafts)), loads, heaviest, gravity, weight, marks or {},
     )  # fmt: skip
 
 

@@ -141,6 +141,8 @@ class Drawing:
     parts, links, names : tuples
     loads : mapping of str to Anchor
         Where the force of each joint and force acts on its first body.
+    heaviest : str
+        The body with the largest mass; empty without bodies.
     gravity : ndarray, shape (3,)
     weight : float
         Of all bodies, N (at 1 m/s^2 without gravity).
@@ -157,6 +159,7 @@ class Drawing:
     links: tuple[Link, ...]
     names: tuple[Name, ...]
     loads: Mapping[str, Anchor]
+    heaviest: str
     gravity: np.ndarray
     weight: float
     marks: Mapping[str, Mark] = field(default_factory=dict)
