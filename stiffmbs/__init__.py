@@ -45,7 +45,7 @@ _LATER = {
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
-    "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
+    "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
     "listed_statements": ".adams.listing", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip

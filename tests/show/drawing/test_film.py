@@ -167,6 +167,7 @@ def test_plots_are_written_of_scenes_and_of_results(tmp_path):
     [
         (("hinge.fq", "-o", "x.svg"), "found no channel 'hinge.fq', expected one such as hinge.fx"),
         (("-o", "x.gif"), "found the ending '.gif'"),
+        (("--live", "-o", "x.svg"), "--live: found -o, expected a scene alone"),
         ((), "found no screen for a window, expected -o FILE"),
     ],
 )
