@@ -25,6 +25,7 @@ from stiffmbs.describe.roads.road import Road
 from stiffmbs.describe.spatial.orientation import OrientationField
 from stiffmbs.describe.table import Table
 from stiffmbs.describe.tyres.coefficients import TyreProperties
+from stiffmbs.loaded_later import elements_of
 
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
@@ -104,7 +105,7 @@ MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "",
 def stub(file: str) -> str:
     """The content of a stub, before it is formatted."""
     exports, others, module = MODULES[file]
-    elements = sorted(module._ELEMENTS.items())
+    elements = sorted(elements_of(*module._KINDS).items())
     imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"
