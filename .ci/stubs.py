@@ -25,6 +25,7 @@ from stiffmbs.describe.roads.road import Road
 from stiffmbs.describe.spatial.orientation import OrientationField
 from stiffmbs.describe.table import Table
 from stiffmbs.describe.tyres.coefficients import TyreProperties
+from stiffmbs.loaded_later import elements_of
 
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
@@ -80,6 +81,7 @@ from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
 from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
 from .studies.sensitivities.sensitivities import sensitivities as sensitivities
+from .studies.follow import follow as follow
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
 from .studies.suspension.kinematics_and_compliance import KinematicsAndCompliance as KinematicsAndCompliance
@@ -106,7 +108,7 @@ MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "",
 def stub(file: str) -> str:
     """The content of a stub, before it is formatted."""
     exports, others, module = MODULES[file]
-    elements = sorted(module._ELEMENTS.items())
+    elements = sorted(elements_of(*module._KINDS).items())
     imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"

@@ -69,6 +69,7 @@ from .show.drawing.animate import animate as animate
 from .show.drawing.draw import draw as draw
 from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
+from .studies.follow import follow as follow
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
 from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
@@ -169,7 +170,7 @@ class Distance(_Distance):
     ) -> None: ...
 
 class Drive(_Drive):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes."""
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes."""
     def __init__(
         self,
         *,

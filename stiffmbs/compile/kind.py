@@ -30,6 +30,8 @@ from .table_values import spline_data
 Shape = tuple[Any, ...]
 REACTION = "reaction"
 """Before the number of a joint's reaction in a formula's shape."""
+STATE_RATES = "state_rates"
+"""The field of a joint's kind with the rates of the states in its equations."""
 STATE = "state"
 """Before the slot of a state in a formula's shape."""
 OWN = "own_"
@@ -173,6 +175,8 @@ def sorted_out(element: Element, model: Compilable, places: PlacedMarkers | None
     data = ElementData(places=PlacedMarkers(model) if places is None else places)
     fields = _fields(element, model, data)
     values = model.state_values() if data.states else {}
+    if isinstance(element, Joint) and data.states:
+        fields = (*fields, (STATE_RATES, ("several", tuple(_rates_of_states(values, model, data)))))
     algebraic = tuple(slot for slot, name in enumerate(data.states) if values[name].algebraic)
     counts = len(data.bodies), len(data.joints), len(data.states)
     return Kind(type(element), model.dimensions, *counts, fields, _spins(element, model, data), algebraic), data
@@ -186,6 +190,20 @@ def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str,
     if axes.keys().isdisjoint(data.bodies):
         return ()
     return tuple(axes.get(body, "") for body in data.bodies)
+
+
+def _rates_of_states(values: Mapping[str, StateValue], model: Compilable, data: ElementData) -> Iterator[Shape]:
+    """The shapes of the rates of all states that are read, also by these rates themselves."""
+    slot = 0
+    while slot < len(data.states):
+        name = data.states[slot]
+        if values[name].algebraic:
+            raise InputError(
+                f"found the algebraic state '{name}' in a constraint, or in the rate of a state there, expected states with rates: "
+                "the constraint has to be differentiated"
+            )
+        yield _shape(values[name].rate, model, data)
+        slot += 1
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:

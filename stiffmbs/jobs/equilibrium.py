@@ -38,6 +38,8 @@ class EquilibriumFound:
     free : tuple of str
         Bodies that take part in motions that nothing holds; the first one each, with its coordinate.
     notes : tuple of str
+    eigenvalues : tuple of complex
+        Of motions beside a steady one, 1/s, in the frame that moves with it; none at rest.
     solution : Solution
         The same as results of one instant: ``stiffmbs.run(model, start_from=found.solution)`` starts there.
     """
@@ -50,6 +52,7 @@ class EquilibriumFound:
     moved: dict[str, tuple[float, float]]
     free: tuple[str, ...]
     notes: tuple[str, ...]
+    eigenvalues: tuple[complex, ...]
     solution: Solution
 
     def as_dict(self, scene: str) -> dict[str, Any]:
@@ -64,6 +67,7 @@ class EquilibriumFound:
             "scene": scene, "status": "done", "message": self.solution.message,
             "imbalance": self.imbalance, "moved": self.moved, "channels": self.channels,
             "t": self.t, "free": list(self.free), "notes": list(self.notes),
+            "eigenvalues": [[value.real, value.imag] for value in self.eigenvalues],
         }  # fmt: skip
 
 
@@ -116,7 +120,16 @@ def equilibrium(
     moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))
     kept = {name: float(values[0]) for name, values in solution.items()}
     return EquilibriumFound(
-        job.data.name, job.grid.start, kept, found.moves, found.imbalance, moved, found.free, found.notes, solution
+        job.data.name,
+        job.grid.start,
+        kept,
+        found.moves,
+        found.imbalance,
+        moved,
+        found.free,
+        found.notes,
+        found.eigenvalues,
+        solution,
     )
 
 

@@ -42,6 +42,8 @@ class Settled:
     free : tuple of str
         For each motion that nothing holds the velocity that is largest in it.
     notes : tuple of str
+    eigenvalues : tuple of complex
+        Of motions beside a steady one, 1/s, in the frame that moves with it; none at rest.
     """
 
     start: InitialValues
@@ -49,6 +51,7 @@ class Settled:
     imbalance: float
     free: tuple[str, ...]
     notes: tuple[str, ...]
+    eigenvalues: tuple[complex, ...] = ()
 
 
 def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:

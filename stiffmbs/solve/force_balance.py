@@ -119,13 +119,16 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     system, q = dynamics.system, dynamics.state.q
     own, active = slice(system.first_state, None), np.flatnonzero(system.active)
     by_velocity = _position_rates(dynamics)
-    of_rates, of_states = sparse_term(dynamics, "rate_q")[own], sparse_term(dynamics, "f_q")[:, own]
+    of_rates, of_states = (
+        sparse_term(dynamics, "rate_q")[own],
+        (sparse_term(dynamics, "f_q") - sparse_term(dynamics, "G_lam"))[:, own],
+    )
     by_pose = -of_rates @ by_velocity
     if not motion.is_rest:
         velocity, _ = motion.derivatives(dynamics, t, by_velocity)
         by_pose = by_pose - sparse_term(dynamics, "rate_u")[own] @ velocity
     stiffness = [[known.stiffness, -of_states], [by_pose, -of_rates[:, own]]]
-    no_state = csc_array((len(active), len(system.states)))
+    by_states = sparse_term(dynamics, "C_x")[active][:, own]
     reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
     sizes = system.per_coordinate(system.size, 1.0)
     sizes[own] = system.state_scales
@@ -133,7 +136,7 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     rounding = ROUNDING * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
     return Balance(
         np.append(known.left, rates), known.lam, known.largest, np.append(np.maximum(known.allowed, rounding), allowed),
-        block_array(stiffness, format="csc"), block_array([[known.jacobian, no_state]], format="csc"),
+        block_array(stiffness, format="csc"), block_array([[known.jacobian, by_states]], format="csc"),
         block_array(reactions, format="csc"), len(system.states),
     )  # fmt: skip
 

@@ -21,12 +21,15 @@ class Routine:
     module, name, signature : str
     others : tuple of (name, signature)
         Functions of the module that are compiled with it, as what they share is the most of each of them.
+    unrolled : bool
+        Whether its loops are unrolled, which is worth its time where they run over dense blocks.
     """
 
     module: str
     name: str
     signature: str
     others: Signatures = ()
+    unrolled: bool = False
 
     @cached_property
     def call(self) -> Callable[..., Any]:
@@ -40,7 +43,7 @@ class Routine:
 
     def _compiled(self) -> Compiled:
         together = tuple(sorted(((self.name, self.signature), *self.others)))
-        return compiled_routines(self.module, together)[self.name]
+        return compiled_routines(self.module, together, self.unrolled)[self.name]
 
 
 def together(module: str, **signatures: str) -> tuple[Routine, ...]:

@@ -24,6 +24,7 @@ OF_ELEMENTS = (
     "frames",
     "angles",
     "states",
+    "state_rates",
     "breakpoints",
     "derivatives",
     "_rotations",
@@ -49,6 +50,8 @@ class SymbolicElement:
         The bodies, in the order of `Element.bodies`.
     states : list of Symbol
         States of the user's own, by slot.
+    state_rates : tuple of Expr
+        Their rates, in the equations of joints.
     angles : list of expressions
         Those that count whole turns, in the order of their counters.
     breakpoints : list of expressions
@@ -64,6 +67,7 @@ class SymbolicElement:
     ) -> None:
         self.frames = frames
         self.states = states
+        self.state_rates: tuple[sp.Expr, ...] = ()
         self.angles: list[sp.Expr] = []
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
@@ -104,15 +108,16 @@ class SymbolicElement:
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
         x = self.read(x)
-        if self.depends(x, self.states):
+        if self.depends(x, self.states) and not self.state_rates:
             raise InputError("found a state in an expression whose rate is needed, expected coordinates and time alone")
         partial = self.derivatives.partial
+        own = (rate * partial(x, symbol) for symbol, rate in zip(self.states, self.state_rates, strict=False))
         moving = (
             rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
             for frame in self.frames
             for symbol, rate in frame.motion
         )
-        return sp.Add(*moving) + partial(x, self.t)
+        return sp.Add(*moving, *own) + partial(x, self.t)
 
     def named(self, x: Any) -> Any:
         """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""

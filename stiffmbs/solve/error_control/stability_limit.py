@@ -179,7 +179,7 @@ class StabilityLimitDetection:
         held = self._held_steps + (steps - self._held[-1][1] if self.held else 0)
         first, before = self._held[0]
         return (
-            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: with orders 3 to 5, "
-            f"{before} steps up to there, it crept along a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, "
-            "which is now damped away, also in forces; a smaller rtol, or max_order: 5, keeps it"
+            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: orders 3 to 5 had crept along "
+            f"a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, {before} steps up to there; it is now damped "
+            "away, also in forces; a smaller rtol, or max_order: 5, keeps it"
         )
