@@ -11,9 +11,15 @@ from typing import Any
 
 from ...describe.element import Element, Force, Joint
 from ...describe.formula.field import Formula
+from ...describe.joints.constraint_equation import ConstraintEquation
 from ...describe.joints.drive import Drive
 from ...describe.marker import GROUND, MarkerReference
 from ...describe.model_data import ModelData
+from ...describe.spatial.forces.applied import AppliedForce, AppliedTorque
+from ...describe.spatial.joints.fixed import Fixed
+from ...describe.spatial.marker import Marker
+from ...describe.spatial.model import Model
+from ...describe.spatial.tyre import Tyre
 from ...describe.table import Table
 from ...errors import InputError
 
@@ -92,10 +98,9 @@ def _steering(model: ModelData, given: str | None) -> str | None:
 
 def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
     """A model of an axle on its rig, whose inputs are tables of time."""
-    from ... import spatial
 
     bodies = _bodies_of(scene, axle)
-    model = spatial.Model(f"{scene.name}, {axle.left} and {axle.right} on a rig", scene.gravity)
+    model = Model(f"{scene.name}, {axle.left} and {axle.right} on a rig", scene.gravity)
     model.markers.update(scene.markers)
     model.bodies.update({name: _at_rest(body) for name, body in scene.bodies.items() if name in bodies})
     for section, elements in ((model.joints, scene.joints), (model.forces, scene.forces)):
@@ -104,10 +109,10 @@ def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
         model.add_input(name, table)
     if axle.body != GROUND:
         place = scene.bodies[axle.body]
-        held = spatial.Marker(body=GROUND, point=place.position, orientation=place.orientation)
-        model.add("kc.clamp", spatial.Fixed(i=axle.body, j=held))
+        held = Marker(body=GROUND, point=place.position, orientation=place.orientation)
+        model.add("kc.clamp", Fixed(i=axle.body, j=held))
     if axle.steering in model.joints:
-        model.add("kc.steer", spatial.Drive(joint=axle.steering, position=tables["kc_rack"]))
+        model.add("kc.steer", Drive(joint=axle.steering, position=tables["kc_rack"]))
     for side in SIDES:
         _hold_wheel(model, axle, side)
     data: ModelData = model.data()
@@ -116,15 +121,14 @@ def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
 
 def _hold_wheel(model: Any, axle: Axle, side: str) -> None:
     """A pad under a wheel, and the forces and the torque on it; mirrored on the right."""
-    from ... import spatial
 
     upright, sign = axle.upright(side), "" if side == "left" else "-"
     patch, spindle = f"{upright}.patch", f"{upright}.spindle"
     parts: dict[str, Joint | Force] = {
-        "pad": spatial.ConstraintEquation(i=patch, zero=f"dz({patch}) - kc_{side}"),
-        "ground_force": spatial.AppliedForce(i=patch, force=("-kc_brake", f"{sign}(kc_lateral)", 0)),
-        "axle_force": spatial.AppliedForce(i=spindle, force=("kc_traction", 0, 0)),
-        "torque": spatial.AppliedTorque(i=patch, torque=(0, 0, f"{'-' if side == 'left' else ''}(kc_torque)")),
+        "pad": ConstraintEquation(i=patch, zero=f"dz({patch}) - kc_{side}"),
+        "ground_force": AppliedForce(i=patch, force=("-kc_brake", f"{sign}(kc_lateral)", 0)),
+        "axle_force": AppliedForce(i=spindle, force=("kc_traction", 0, 0)),
+        "torque": AppliedTorque(i=patch, torque=(0, 0, f"{'-' if side == 'left' else ''}(kc_torque)")),
     }
     for name, part in parts.items():
         model.add(f"kc.{side}.{name}", part)
@@ -161,8 +165,6 @@ def _depends_on_more(element: Element) -> bool:
 
 
 def _stays(element: Element, bodies: set[str]) -> bool:
-    from ...describe.spatial.tyre import Tyre
-
     if isinstance(element, Tyre) or _depends_on_more(element):
         return False
     return set(_bodies_at(element)) <= bodies | {GROUND}
@@ -170,6 +172,4 @@ def _stays(element: Element, bodies: set[str]) -> bool:
 
 def design_height(scene: ModelData, axle: Axle, side: str) -> float:
     """The height of a patch as described, m."""
-    from ...describe.spatial.marker import Marker
-
     return scene.point(Marker(body=axle.upright(side), marker="patch"))[2]
