@@ -12,6 +12,7 @@ from .compare import compare
 from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
+from .exchange.diff import diff
 from .fit import fit, optimise
 from .modes import modes
 from .plot import plot
@@ -47,6 +48,6 @@ def main() -> None:
 
 
 for command in (
-    run, check, equilibrium, modes, response, study, sensitivities, compare, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
+    run, check, equilibrium, modes, response, study, sensitivities, compare, fit, optimise, convert, diff, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
 ):  # fmt: skip
     main.add_command(with_logging_options(command))

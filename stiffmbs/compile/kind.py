@@ -18,7 +18,7 @@ from ..describe.element import Component, Element, Joint, JointName
 from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
-from ..describe.marker import MarkerReference
+from ..describe.marker import MarkerReference, PlacedMarkers
 from ..describe.python_function import PythonFunction
 from ..describe.states.name import StateName
 from ..describe.states.state import StateValue
@@ -104,6 +104,14 @@ class Kind:
     spins: tuple[str, ...] = ()
     algebraic: tuple[int, ...] = ()
 
+    def holds(self, *forms: str) -> bool:
+        """Whether a field, or one of several values of a field, has one of some forms."""
+        return any(_holds(shape, forms) for _, shape in self.fields)
+
+
+def _holds(shape: Shape, forms: tuple[str, ...]) -> bool:
+    return shape[0] in forms or (shape[0] == "several" and any(_holds(part, forms) for part in shape[1]))
+
 
 def with_place(kind: Kind, place: str) -> str:
     """A kind by its name, and its place among others in brackets where it is known."""
@@ -117,6 +125,8 @@ class ElementData:
 
     Attributes
     ----------
+    places : PlacedMarkers
+        Where markers sit.
     bodies : list of str
         By slot; the first is the one on which the reaction is reported.
     numbers : list of float
@@ -129,6 +139,7 @@ class ElementData:
         By slot.
     """
 
+    places: PlacedMarkers
     bodies: list[str] = field(default_factory=list)
     numbers: list[float] = field(default_factory=list)
     tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
@@ -159,9 +170,9 @@ class ElementData:
         return np.concatenate(parts)
 
 
-def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
-    """An element's kind, and what is its own."""
-    data = ElementData()
+def sorted_out(element: Element, model: Compilable, places: PlacedMarkers | None = None) -> tuple[Kind, ElementData]:
+    """An element's kind, and what is its own; markers whose places are known are not looked for again."""
+    data = ElementData(places=PlacedMarkers(model) if places is None else places)
     fields = _fields(element, model, data)
     values = model.state_values() if data.states else {}
     if isinstance(element, Joint) and data.states:
@@ -173,8 +184,10 @@ def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
 
 def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str, ...]:
     """`Kind.spins`: constraints are differentiated by time, and kinematics are derivatives; other forces see no difference."""
+    if model.dimensions == 2 or not (isinstance(element, Joint) or getattr(element, "turns", False)):
+        return ()
     axes = model.spin_axes()
-    if not (isinstance(element, Joint) or getattr(element, "turns", False)) or axes.keys().isdisjoint(data.bodies):
+    if axes.keys().isdisjoint(data.bodies):
         return ()
     return tuple(axes.get(body, "") for body in data.bodies)
 
@@ -205,7 +218,7 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
     """The shape of a field's value; its data are appended to `data`."""
     match value:
         case MarkerReference():
-            return _marker_shape(value, model, data)
+            return _marker_shape(value, data)
         case JointName():
             joint: Joint = model.joints[value.joint]
             fields = _fields(joint, model, data)
@@ -238,11 +251,10 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             )
 
 
-def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:
-    body, placed = model.carried(marker)
-    slot = data.slot(body)
-    data.numbers += placed.numbers()
-    return ("marker", slot)
+def _marker_shape(marker: MarkerReference, data: ElementData) -> Shape:
+    body, numbers = data.places[marker]
+    data.numbers += numbers
+    return ("marker", data.slot(body))
 
 
 class _FormulaShape(ast.NodeTransformer):
@@ -266,8 +278,7 @@ class _FormulaShape(ast.NodeTransformer):
         tree = self.visit(copy.deepcopy(self.formula.tree))
         self.data.numbers += self.numbers
         measures = tuple(
-            (name, tuple(_marker_shape(marker, self.model, self.data) for marker in markers))
-            for name, markers in self.measures
+            (name, tuple(_marker_shape(marker, self.data) for marker in markers)) for name, markers in self.measures
         )
         first = len(self.data.numbers)
         self.data.tables += [(first + k, spline_data(table)) for k, table in enumerate(self.tables)]

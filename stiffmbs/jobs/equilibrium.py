@@ -148,12 +148,11 @@ def _solution(job: Job, found: Settled) -> Solution:
     if not len(rows.t):
         raise SolverError(f"no reactions were found in the equilibrium: {failure(job.dynamics, rows.status, t[0])}")
     channels = channels_of(job.data, system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=_message(found),
         notes=found.notes, solver={"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance},
         history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, rows.t, *energies, rows.values, np.empty(0)), not_unique=job.redundancy.not_unique,
+        balance=energy_balance(system, rows, np.empty(0)), not_unique=job.redundancy.not_unique,
         requested=units(job.data.outputs()), turns=turns_of(system, rows.q),
     )  # fmt: skip
 

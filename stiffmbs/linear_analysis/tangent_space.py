@@ -99,7 +99,7 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
         return state.matrix("all_levels_tangent", name)
 
     rates = term("Z")
-    q, u = system.of_body.straight(len(system.bodies))
+    q, u = system.straight
     rates[q, u] += 1.0
     axes, spin = _axes(system, state.q), _spin(system, state.q, state.u)
     back = axes.T

@@ -87,7 +87,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
         np.max(np.abs(part), initial=0.0) for part in (state.vector("motion", "f"), entries, system.mass * steady)
     )
     stiffness, jacobian = _derivatives(dynamics, t, motion, lam)
-    farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
+    farthest = np.max(np.abs(state.q[system.straight[0]]), initial=system.size)
     rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
     roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which passes on no more than there is
     passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), PASSED_ON * largest)
@@ -144,7 +144,7 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
 def _position_rates(dynamics: Dynamics) -> csc_array:
     """Z of q' = Z u, of all coordinates."""
     system = dynamics.system
-    q, u = system.of_body.straight(len(system.bodies))
+    q, u = system.straight
     return sparse_term(dynamics, "Z") + csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
 
 

@@ -141,7 +141,7 @@ class Direction:
     def evaluate(self, t: float, t_d: float = 0.0) -> None:
         """Compute the derivatives at the present state, with the terms themselves."""
         self.state.evaluate(self.term_set, t)
-        ALONG.load()(t, t_d, self.state.table.ctypes.data, self.table.ctypes.data)
+        ALONG.call(t, t_d, self.state.table.ctypes.data, self.table.ctypes.data)
 
     def vector(self, name: str) -> np.ndarray:
         """The derivative of a vector term, assembled."""

@@ -50,9 +50,9 @@ class NativeEngine:
     def __init__(
         self, equations: Equations, state: State, matrix: Matrix, settings: RunSettings, control: ErrorControl
     ) -> None:
-        reported = equations.independent
+        tolerances, reported = control.tolerances(equations, settings), equations.independent
         self._ida = NativeIda(
-            equations, state, matrix, *control.tolerances(equations, settings), max_step=settings.max_step,
+            equations, state, matrix, *tolerances, max_step=settings.max_step,
             suppressed=control.untested(equations), reported=reported, growth=control.growth,
             predicted_residual=control.predicted_residual,
             renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,

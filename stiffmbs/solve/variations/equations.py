@@ -9,7 +9,7 @@ import numpy as np
 from ...compile.directional.direction import Direction, Numbers
 from ...compile.directional.source import NUMBER, TIME
 from ...compile.equations import Equations
-from ...compile.machine.layout import DEPTH, PART, VARIATIONS, cells, packed
+from ...compile.machine.layout import DEPTH, PART, VARIATIONS, packed
 from ...compile.machine.routines import together
 from ...compile.state import State
 from ...compile.terms import TERM_SETS
@@ -78,7 +78,7 @@ class VariationalEquations:
         }  # fmt: skip
         self._table = packed(VARIATIONS, values)
         self._kept = values, slots, calls, assembled, handles
-        self._cells, self._at = cells(self._table, VARIATIONS), self._table.ctypes.data
+        self._cells, self._at = self._table.view(VARIATIONS.cells)[0], self._table.ctypes.data
 
     def close(self) -> None:
         """Free what SUNDIALS holds."""
@@ -110,7 +110,7 @@ class VariationalEquations:
         """
         rows = np.ascontiguousarray(rows)
         with self._session.libraries.on_one_thread():
-            done = ADVANCE.load()(len(rows), rows.ctypes.data, self._at)
+            done = ADVANCE.call(len(rows), rows.ctypes.data, self._at)
         if done < len(rows):
             raise _singular(rows[done, 0])
 
@@ -118,7 +118,7 @@ class VariationalEquations:
         """s at a time behind the last step, shape (directions, n); `row` is as for `advance`."""
         out, row = np.empty((self._count, self.equations.n)), np.ascontiguousarray(row)
         with self._session.libraries.on_one_thread():
-            flag = WITHIN.load()(row.ctypes.data, out.ctypes.data, self._at)
+            flag = WITHIN.call(row.ctypes.data, out.ctypes.data, self._at)
         if flag:
             raise _singular(row[0])
         return out
@@ -127,7 +127,7 @@ class VariationalEquations:
         """r_y s + r_p at a state, shape (directions, n)."""
         out, row, given = np.empty_like(s), np.ascontiguousarray(row), np.ascontiguousarray(s)
         with self._session.libraries.on_one_thread():
-            DEFECTS.load()(row.ctypes.data, given.ctypes.data, out.ctypes.data, self._at)
+            DEFECTS.call(row.ctypes.data, given.ctypes.data, out.ctypes.data, self._at)
         return out
 
     @property
@@ -153,7 +153,7 @@ class _Part:
             group = system.groups[g]
             for k, term in enumerate(TERM_SETS[term_set]):
                 first = system.places[term_set][g, 1 + k]
-                written[first : first + group.count * group.entries(term)] = True
+                written[first : first + group.count * group.entries[term]] = True
         masses = system.constants(term_set)["M"] + np.flatnonzero(numbers.mass)
         written[masses] = True
         kept = written[equations._r_source]

@@ -12,7 +12,6 @@ from ...compile.system import System
 from ...jobs.run import Job
 from ...results.body_axes import in_own_axes
 from ...results.channels import counters
-from ...results.energy import potential_energy
 from ...results.requests import requested
 from ...results.states import state_channels
 from ...solve.dynamics import OutputRows
@@ -45,7 +44,7 @@ def changed_channels(
     channels |= reactions(system, values)
     masses = np.array([each.mass for each in numbers])
     kinetic = change.u @ (system.mass * u) + 0.5 * masses @ u**2
-    potential = potential_energy(system, values)
+    potential = values[:, system.term("output", "potential").source].sum(axis=1)
     channels |= {"energy.kinetic": kinetic, "energy.potential": potential, "energy.total": kinetic + potential}
     return channels
 

@@ -13,9 +13,9 @@ from ...describe.settings import RunSettings
 from ...errors import InputError, SolverError
 from ...jobs.run import Runnable, prepare
 from ...results.channels import channels_of
-from ...results.missing_rows import reported
 from ...solve.bdf import integrated
 from ...solve.dynamics import OutputRows
+from ...solve.missing_rows import reported
 from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome
 from ...solve.variations.along_run import AlongRun
