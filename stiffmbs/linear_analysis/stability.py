@@ -72,13 +72,15 @@ def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: n
     """
     if len(mass) <= MOST_DENSE:
         squares, shapes = _all(stiffness, jacobian, mass, scale)
+        of_eigenvalues = ROUNDING * len(mass) * float(np.max(np.abs(squares), initial=0.0))
     else:
         squares, shapes = _near(stiffness, jacobian, mass, scale)
+        of_eigenvalues = 0.0
     inertia = np.sum(shapes * (mass[:, None] * shapes), axis=0)
     sizes = np.abs(shapes)
     rounding = ROUNDING * np.sum(sizes * (abs(stiffness) @ sizes), axis=0)
     beside = BESIDE_IMBALANCE * (np.abs(left) / scale) @ sizes**2
-    none = (rounding + beside) / np.where(inertia > 0, inertia, np.inf)
+    none = (rounding + beside) / np.where(inertia > 0, inertia, np.inf) + of_eigenvalues
     real = np.abs(squares.imag) < 1e-6 * np.abs(squares) + none
     return Lowest(squares[real].real, shapes[:, real], none[real])
 

@@ -128,3 +128,10 @@ def test_the_body_with_the_largest_imbalance_is_named():
     scene = "gravity: [0, -9.81]\nbodies: {light: {mass: 1, inertia: 1}, heavy: {mass: 5, inertia: 1}}"
     with pytest.raises(SolverError, match=r"the largest imbalance is left in heavy\.fy"):
         stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+
+
+@pytest.mark.long
+def test_wheels_that_spin_freely_are_free_and_not_unstable(examples):
+    found = stiffmbs.equilibrium(examples / "leaf_sprung_car.yaml")
+    assert not any("unstable" in note for note in found.notes)
+    assert set(found.free) == {"front.left_wheel.wy", "front.right_wheel.wy"}
