@@ -9,7 +9,7 @@ from ..scene.number_format import plain, vector
 from ..statements.outputs import Array
 from ..statements.systems import Differential, LinearSystem, Matrix, TransferFunction
 from .function import Function
-from .trees import name_of
+from .trees import name_of, times
 
 if TYPE_CHECKING:
     from ..statements.constraints import Numbered
@@ -32,13 +32,29 @@ def states(translation: Translation) -> dict[str, Any]:
         for one in statements.values():
             match one:
                 case Differential():
-                    rate = translation.formula(one.function, 1 / translation.units.time)
-                    found[one.name] = {"rate": rate, "start": plain(one.start)}
+                    found |= _differential(one, translation)
                 case LinearSystem():
                     found[one.name] = _linear(one, translation)
                 case TransferFunction():
                     found[one.name] = _transfer(one, translation)
     return found
+
+
+def _differential(one: Differential, translation: Translation) -> dict[str, Any]:
+    """A state with its rate; that of an implicit equation is an algebraic state of its own."""
+    per_second = 1 / translation.units.time
+    if not one.implicit:
+        return {one.name: {"rate": translation.formula(one.function, per_second), "start": plain(one.start)}}
+    rate = rate_name(one)
+    return {
+        one.name: {"rate": ast.unparse(times(name_of(rate), per_second)), "start": plain(one.start)},
+        rate: {"zero": translation.formula(one.function), "start": plain(one.start_of_rate)},
+    }
+
+
+def rate_name(one: Differential) -> str:
+    """What the rate of an implicit equation is called."""
+    return f"{one.name}_rate"
 
 
 def differential(dataset: Dataset, ident: int, function: Function) -> Differential:

@@ -19,7 +19,7 @@ from .adams_functions import ADAMS_FUNCTIONS
 from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED
 from .function import Function
-from .states import differential, value_of_system
+from .states import differential, rate_name, value_of_system
 from .trees import measured, name_of, over, power, product, times, total
 
 POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
@@ -136,9 +136,8 @@ class Translation:
         if name == "DIF":
             return name_of(differential(self.mechanism.dataset, identifier(arguments, 0, function), function).name)
         if name == "DIF1":
-            return translate(
-                differential(self.mechanism.dataset, identifier(arguments, 0, function), function).function.tree
-            )
+            equation = differential(self.mechanism.dataset, identifier(arguments, 0, function), function)
+            return name_of(rate_name(equation)) if equation.implicit else translate(equation.function.tree)
         if name in ANGLES_OF_AXES:
             return self._angle(name, arguments, function)
         if name == "INCANG":
