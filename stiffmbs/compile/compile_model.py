@@ -80,7 +80,7 @@ def _sorted_elements(model: Compilable) -> dict[Kind, list[_Member]]:
     sorted_elements: dict[Kind, list[_Member]] = {}
     for name, element in model.elements():
         try:
-            kind, data = sorted_out(element, model)
+            kind, data = sorted_out(name, element, model)
         except (FormulaError, InputError) as error:
             raise InputError(f"{name}: {error}") from None
         sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
