@@ -25,6 +25,7 @@ from stiffmbs.describe.roads.road import Road
 from stiffmbs.describe.spatial.orientation import OrientationField
 from stiffmbs.describe.table import Table
 from stiffmbs.describe.tyres.coefficients import TyreProperties
+from stiffmbs.loaded_later import elements_of
 
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
@@ -32,6 +33,7 @@ PLANE = """
 from typing import Literal
 
 from . import spatial as spatial
+from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
@@ -66,6 +68,7 @@ from .jobs.load_scene import load_scene as load_scene
 from .jobs.modes import modes as modes
 from .jobs.run import run as run
 from .jobs.transfer import transfer as transfer
+from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
@@ -75,6 +78,9 @@ from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
+from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
+from .studies.sensitivities.sensitivities import sensitivities as sensitivities
+from .studies.follow import follow as follow
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
 from .studies.sweep import sweep as sweep
@@ -99,7 +105,7 @@ MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "",
 def stub(file: str) -> str:
     """The content of a stub, before it is formatted."""
     exports, others, module = MODULES[file]
-    elements = sorted(module._ELEMENTS.items())
+    elements = sorted(elements_of(*module._KINDS).items())
     imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"

@@ -22,6 +22,7 @@ extensions = [
     "matplotlib.sphinxext.plot_directive",
     "kinds",
     "scenes",
+    "measured",
     "shipped_parts",
 ]
 exclude_patterns = ["extensions"]

@@ -8,7 +8,7 @@ Examples
 the rail carries 108.8 N at most
 """
 
-# ruff: noqa: E402 Ctrl-C is to end the command without a traceback while all of this is imported
+# ruff: noqa: E402, F401 Ctrl-C is to end the command without a traceback while all of this is imported and offered
 from .interrupts import quiet_while_loading
 
 quiet_while_loading()
@@ -32,11 +32,11 @@ from .describe.table import Table
 from .describe.units import si
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
 from .jobs.load_scene import load_scene
-from .loaded_later import loaded
+from .loaded_later import elements_of, loaded
 
 __version__ = "0.1.0"
 
-_ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
+_KINDS = JOINTS, FORCES
 _LATER = {
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
@@ -44,25 +44,29 @@ _LATER = {
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
-    "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
+    "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
+    "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
+    "listed_statements": ".adams.listing", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
 
-__all__ = [
+_OFFERED = (
     "AlgebraicState", "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
     "SolverError", "State", "SteadyMotion", "StiffmbsError", "Table", "TransferFunction", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
-    *_LATER, *_ELEMENTS,
-]  # fmt: skip
+    *_LATER,
+)  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__all__":
+        return [*_OFFERED, *elements_of(*_KINDS)]
     if name == "spatial":
         from importlib import import_module
 
         return import_module(".spatial", __name__)
-    return loaded(name, __name__, _ELEMENTS, _LATER)
+    return loaded(name, __name__, _KINDS, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, "spatial"})
+    return sorted({*globals(), *_OFFERED, *elements_of(*_KINDS), "spatial"})

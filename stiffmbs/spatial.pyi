@@ -161,7 +161,7 @@ class Distance(_Distance):
     ) -> None: ...
 
 class Drive(_Drive):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes."""
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes."""
     def __init__(
         self,
         *,

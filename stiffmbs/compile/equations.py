@@ -123,7 +123,7 @@ class Equations:
             return constants[base] + diagonal, diagonal, diagonal
         term = system.term(term_set, base)
         if base == "Z":
-            q, u = system.of_body.straight(len(system.bodies))
+            q, u = system.straight
             straight = np.full(len(q), constants["I"])
             parts = ((term.source, straight), (term.row, q), (term.column, u))
             source, row, column = (np.concatenate(part) for part in parts)
@@ -189,7 +189,7 @@ class Equations:
         writes = np.zeros(len(self.system.groups), dtype=bool)
         for g, group in enumerate(self.system.groups):
             first = self.system.places[term_set][g, 1:]
-            width = np.array([group.count * group.entries(term) for term in terms])
+            width = np.array([group.count * group.entries[term] for term in terms])
             writes[g] = np.any(before[first + width] > before[first])
         return writes
 

@@ -9,9 +9,10 @@ import inspect
 import json
 import logging
 import sys
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,6 +72,11 @@ class KindRecord:
     variation: list[list[tuple[list[list[int]], list[int], bool]]]
     removable: list[bool]
     timed: list[bool]
+
+    @cached_property
+    def entries(self) -> defaultdict[str, int]:
+        """Number of entries that one element has in each term."""
+        return defaultdict(int, {term: len(pattern) for term, pattern in self.patterns.items()})
 
 
 def record_of(kind: Kind, place: str = "") -> KindRecord:

@@ -53,7 +53,7 @@ class State:
         self._followed = np.ascontiguousarray(system.followed)
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
         self.table = self._packed(self._n_calls, self._calls_at)
-        self._evaluate = TERMS.load()
+        self._evaluate = TERMS.call
 
     def _packed(self, n_calls: np.ndarray, calls_at: np.ndarray) -> np.ndarray:
         system = self.system

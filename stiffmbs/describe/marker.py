@@ -6,7 +6,8 @@ What a marker of the plane and one of space have in common is that they name a b
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validator
 
@@ -19,6 +20,7 @@ from .units import si
 
 if TYPE_CHECKING:
     from . import given
+    from .element import Element
 
 _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
 
@@ -137,4 +139,36 @@ class Marker(MarkerReference):
 
     def placement(self) -> Placement:
         """Where it sits on its body, as given on the spot."""
-        return Placement(point=self.point, angle=self.angle)
+        return Placement.model_construct(point=self.point, angle=self.angle)  # checked already
+
+
+class Carries(Protocol):
+    """What knows where markers sit: a model, or one whose bodies are merged."""
+
+    def carried(self, marker: Any) -> tuple[str, Any]:
+        """The body that carries a marker, and where it sits on it."""
+
+
+class PlacedMarkers(dict[MarkerReference, tuple[str, tuple[float, ...]]]):
+    """For each marker the body that carries it, and the numbers that kernels take for its place.
+
+    A marker that was not listed, such as a body's own axes in a formula, is added when it is asked for.
+
+    Parameters
+    ----------
+    model : Carries
+    elements : iterable of Element
+        Whose markers are listed from the start.
+    """
+
+    def __init__(self, model: Carries, elements: Iterable[Element] = ()) -> None:
+        super().__init__()
+        self._model = model
+        for element in elements:
+            for _, marker in element.markers():
+                self[marker]
+
+    def __missing__(self, marker: MarkerReference) -> tuple[str, tuple[float, ...]]:
+        body, placed = self._model.carried(marker)
+        self[marker] = found = body, placed.numbers()
+        return found

@@ -150,7 +150,7 @@ class ModelData(Described):
 
     def outputs(self) -> dict[str, Output]:
         """The requests by channel: a name, or ``name.component``."""
-        return dict(by_channel(self.requests))
+        return dict(by_channel(self.requests)) if self.requests else {}
 
     def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
         """What counts the turns of angles in requests where positions tell them up to whole turns, by the angles' text."""
@@ -186,7 +186,7 @@ class ModelData(Described):
     def state_outputs(self) -> dict[str, Formula]:
         """Formulas that others use by a name, as the output of a transfer function, by full name."""
         of_states = {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
-        return of_states | dict(formulas_of_inputs(self.inputs))
+        return of_states | dict(formulas_of_inputs(self.inputs)) if self.inputs else of_states
 
     def names_in_formulas(self) -> set[str]:
         """The names of states, outputs and inputs that formulas may use."""

@@ -43,6 +43,8 @@ class EquilibriumFound:
     free : tuple of str
         Bodies that take part in motions that nothing holds; the first one each, with its coordinate.
     notes : tuple of str
+    eigenvalues : tuple of complex
+        Of motions beside a steady one, 1/s, in the frame that moves with it; none at rest.
     solution : Solution
         The same as results of one instant: ``stiffmbs.run(model, start_from=found.solution)`` starts there.
     """
@@ -55,6 +57,7 @@ class EquilibriumFound:
     moved: dict[str, tuple[float, float]]
     free: tuple[str, ...]
     notes: tuple[str, ...]
+    eigenvalues: tuple[complex, ...]
     solution: Solution
 
     def as_dict(self, scene: str) -> dict[str, Any]:
@@ -69,6 +72,7 @@ class EquilibriumFound:
             "scene": scene, "status": "done", "message": self.solution.message,
             "imbalance": self.imbalance, "moved": self.moved, "channels": self.channels,
             "t": self.t, "free": list(self.free), "notes": list(self.notes),
+            "eigenvalues": [[value.real, value.imag] for value in self.eigenvalues],
         }  # fmt: skip
 
 
@@ -118,7 +122,16 @@ def equilibrium(
     moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))
     kept = {name: float(values[0]) for name, values in solution.items()}
     return EquilibriumFound(
-        job.data.name, job.grid.start, kept, found.moves, found.imbalance, moved, found.free, found.notes, solution
+        job.data.name,
+        job.grid.start,
+        kept,
+        found.moves,
+        found.imbalance,
+        moved,
+        found.free,
+        found.notes,
+        found.eigenvalues,
+        solution,
     )
 
 
@@ -135,12 +148,11 @@ def _solution(job: Job, found: Settled) -> Solution:
     if not len(rows.t):
         raise SolverError(f"no reactions were found in the equilibrium: {failure(job.dynamics, rows.status, t[0])}")
     channels = channels_of(job.data, system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=_message(found),
         notes=found.notes, solver={"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance},
         history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, rows.t, *energies, rows.values, np.empty(0)), not_unique=job.redundancy.not_unique,
+        balance=energy_balance(system, rows, np.empty(0)), not_unique=job.redundancy.not_unique,
         requested=units(job.data.outputs()), turns=turns_of(system, rows.q),
     )  # fmt: skip
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -58,11 +60,10 @@ def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amp
             f"{failure(dynamics, rows.status, found.t)}; expected a smaller amplitude"
         )
     channels = channels_of(found.data, system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(
         name=f"{found.data.name or 'model'}, mode {number}", time=time, channels=channels, outcome=Outcome.DONE,
         message=f"one period of mode {number}, {mode.natural_frequency:.6g} Hz" if oscillates else f"mode {number}, to and fro",
         notes=(), solver={"name": "modes", "steps": 0}, history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, time, *energies, rows.values, np.empty(0)), not_unique=found.redundancy.not_unique,
+        balance=energy_balance(system, replace(rows, t=time), np.empty(0)), not_unique=found.redundancy.not_unique,
         requested=units(found.data.outputs()), turns=turns_of(system, rows.q),
     )  # fmt: skip

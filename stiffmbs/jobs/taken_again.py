@@ -61,4 +61,5 @@ def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
-    return overlooked(job.dynamics.system, computed.rows, computed.trajectory.step_times, job.settings)
+    system = job.dynamics.system
+    return overlooked(system, computed.rows, computed.trajectory, job.settings) if system.has_laws else None

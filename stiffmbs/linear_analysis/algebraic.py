@@ -89,6 +89,9 @@ def without_algebraic(linear: Linearised) -> Linearised:
         damping=linear.damping + of.on_forces @ v,
         reactions=linear.reactions - of.on_forces @ lam,
         by_states=linear.by_states[:, others] + of.on_forces @ s,
+        position_by_states=linear.position_by_states[:, others],  # algebraic states are in no constraint
+        velocity_by_states=linear.velocity_by_states[:, others],
+        acceleration_by_states=linear.acceleration_by_states[:, others],
         rate_by_pose=linear.rate_by_pose[others] + of.on_rates @ x,
         rate_by_velocity=linear.rate_by_velocity[others] + of.on_rates @ v,
         rate_by_states=linear.rate_by_states[np.ix_(others, others)] + of.on_rates @ s,

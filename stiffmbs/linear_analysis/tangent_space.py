@@ -20,8 +20,8 @@ from .algebraic import Algebraic, algebraic_of, without_algebraic
 
 @dataclass(frozen=True)
 class Linearised:
-    """M v' = K x + D v + F s - B dlam, s' = R_x x + R_v v + R_s s + R_lam dlam, with G x = 0, H x + J v = 0 and
-    J v' + H_x x + H_v v = 0; s are variations of the user's own states with rates;
+    """M v' = K x + D v + F s - B dlam, s' = R_x x + R_v v + R_s s + R_lam dlam, with G x + G_s s = 0, H x + J v + H_s s = 0
+    and J v' + H_x x + H_v v + A_s s = 0; s are variations of the user's own states with rates;
     algebraic states are put out.
 
     Attributes
@@ -40,6 +40,8 @@ class Linearised:
         H_x and H_v, of the constraints of accelerations.
     by_states : ndarray, shape (n_u, states)
         F.
+    position_by_states, velocity_by_states, acceleration_by_states : ndarrays, shapes (holonomic, states), (n_c, states), (n_c, states)
+        G_s, H_s and A_s.
     rate_by_pose, rate_by_velocity, rate_by_states, rate_by_reactions : ndarrays, shapes (states, n_u), (states, n_u), (states,
             states), (states, n_c)
         R_x, R_v, R_s and R_lam.
@@ -60,6 +62,9 @@ class Linearised:
     acceleration_at_position: np.ndarray
     acceleration_at_velocity: np.ndarray
     by_states: np.ndarray
+    position_by_states: np.ndarray
+    velocity_by_states: np.ndarray
+    acceleration_by_states: np.ndarray
     rate_by_pose: np.ndarray
     rate_by_velocity: np.ndarray
     rate_by_states: np.ndarray
@@ -94,7 +99,7 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
         return state.matrix("all_levels_tangent", name)
 
     rates = term("Z")
-    q, u = system.of_body.straight(len(system.bodies))
+    q, u = system.straight
     rates[q, u] += 1.0
     axes, spin = _axes(system, state.q), _spin(system, state.q, state.u)
     back = axes.T
@@ -102,7 +107,7 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
     to_coordinates = rates @ back
     mass = axes @ diags_array(system.mass) @ back
     own = slice(system.first_state, None)
-    by_states, rate_by_states = axes @ term("f_q")[:, own], term("rate_q")[own, own]
+    by_states, rate_by_states = axes @ (term("f_q") - term("G_lam"))[:, own], term("rate_q")[own, own]
     linear = Linearised(
         mass=mass,
         stiffness=axes @ (term("f_q") - term("G_lam")) @ to_coordinates,
@@ -114,6 +119,9 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
         acceleration_at_position=(term("A_q") @ to_coordinates)[rows],
         acceleration_at_velocity=-(term("gamma_u") @ back + term("J") @ back @ spin)[rows],
         by_states=by_states,
+        position_by_states=term("C_x")[rows & system.holonomic][:, own],
+        velocity_by_states=term("V_q")[rows][:, own],
+        acceleration_by_states=term("A_q")[rows][:, own],
         rate_by_pose=term("rate_q")[own] @ to_coordinates,
         rate_by_velocity=term("rate_u")[own] @ back,
         rate_by_states=rate_by_states,

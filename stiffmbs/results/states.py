@@ -31,6 +31,6 @@ def _signals(system: System, values: np.ndarray) -> list[tuple[str, np.ndarray]]
     return [
         (name, values[:, system.places["output"][g, 1 + place] + k])
         for g, group in enumerate(system.groups)
-        if group.entries("signal")
+        if group.entries["signal"]
         for k, name in enumerate(group.names)
     ]

@@ -239,13 +239,14 @@ class Integrator:
         state, coordinates = self.dynamics.state, equations.coordinates
         state.q[:], state.u[:], state.a[:] = start.q, start.u, start.acceleration
         state.lam[:], state.mu[:] = start.lam, 0.0
+        rates = self.dynamics.position_rates(start.q, start.u)
         equations.start_from(start.q)
         y, yp = np.zeros(equations.n), np.zeros(equations.n)
         y[equations.independent] = coordinates.state(start.q, start.u)
-        rates = self.dynamics.position_rates(start.q, start.u)
-        rates[self.dynamics.system.algebraic_coordinates] = rates_of_algebraic(
-            self.dynamics, t, start.q, start.u, start.acceleration
-        )
+        if len(self.dynamics.system.algebraic_coordinates):
+            rates[self.dynamics.system.algebraic_coordinates] = rates_of_algebraic(
+                self.dynamics, t, start.q, start.u, start.acceleration
+            )
         yp[equations.independent] = coordinates.state(rates, start.acceleration)
         solved = at["lam"] != ABSENT
         multipliers = yp if equations.formulation.integrated else y

@@ -83,7 +83,8 @@ def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
         When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
         friction and reactions find no balance.
     """
-    take_nearest_turns(dynamics, t)
+    if dynamics.system.n_counters:
+        take_nearest_turns(dynamics, t)
     return consistent_values(dynamics, t)
 
 
@@ -98,7 +99,8 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
     status = dynamics.correct_velocities(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))
-    state.count_anew(t)
+    if system.n_counters:
+        state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))

@@ -126,25 +126,44 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     InputError
         When a statement cannot be read, or holds mass, force or constraint of a kind that is not.
     """
-    title, found, ended = statements(text)
-    without_title = _is_statement(title)
-    if without_title:
-        title, (found, ended) = "", untitled(text)
+    title, found, ended = all_statements(text)
     named = changes.applied([(keyword(statement.word), statement) for statement in found])
     unread = _unread(named)
+    units, gravity = _single(named)
+    data, faults = _data(named, units)
+    if unread:
+        raise InputError("; ".join([unread, *map(str, faults[:MOST_LISTED])]))
+    raise_all(faults)
+    graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
+    notes = tuple(_notes(named, ended, title is None))
+    return Dataset(title or "", units, gravity, data, notes, frozenset(changes.inactive), graphics)
+
+
+def all_statements(text: str) -> tuple[str | None, tuple[Statement, ...], bool]:
+    """The title, None where the first line reads as a statement; the statements, and whether END was found."""
+    title, found, ended = statements(text)
+    return (None, *untitled(text)) if _is_statement(title) else (title, found, ended)
+
+
+def faults_of(text: str) -> list[DatasetFault]:
+    """What is wrong with single statements of a dataset, those aside that are not read."""
+    named = [(keyword(statement.word), statement) for statement in all_statements(text)[1]]
+    try:
+        units, _ = _single(named)
+    except DatasetFault as fault:
+        return [fault]
+    return _data(named, units)[1]
+
+
+def _single(named: list[tuple[str | None, Statement]]) -> tuple[Units, tuple[float, float, float]]:
+    """Units and gravity."""
     units = Units()
     for statement in _once("UNITS", named):
         units = read_units(statement)
     gravity = (0.0, 0.0, 0.0)
     for statement in _once("ACCGRAV", named):
         gravity = read_gravity(statement, units)
-    data, faults = _data(named, units)
-    if unread:
-        raise InputError("; ".join([unread, *map(str, faults[:MOST_LISTED])]))
-    raise_all(faults)
-    graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
-    notes = tuple(_notes(named, ended, without_title))
-    return Dataset(title, units, gravity, data, notes, frozenset(changes.inactive), graphics)
+    return units, gravity
 
 
 def _data(

@@ -19,6 +19,10 @@ class DatasetFault(InputError):
         self.line, self.label, self.reason = line, label, reason
 
 
+class CommandFault(DatasetFault):
+    """The same of a command, with its line in the command file."""
+
+
 def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, Any]]) -> dict[str, Any]:
     """What is made of each thing, all in one; the faults of all of them are raised as one."""
     found: dict[str, Any] = {}

@@ -56,7 +56,7 @@ LEFT_OUT = {
     "KINEMATICS": "analysis settings",
     "LSOLVER": "analysis settings",
     "PREFERENCES": "analysis settings",
-    "SENSOR": "analysis settings",
+    "SENSOR": "where it would end or change a run in Adams, a run goes on here",
     "PINPUT": "analysis settings",
     "POUTPUT": "analysis settings",
     "PSTATE": "analysis settings",
@@ -66,12 +66,36 @@ LEFT_OUT = {
     "TITLE": "text",
 }
 """Statements without mass, force or constraint, and what they hold."""
-REFUSED = (
-    "FLEX_BODY", "FE_PART", "FE_NODE", "FE_LOAD", "EXTERNAL_SYSTEM", "CLEARANCE", "FRICTION", "NFORCE",
-    "MFORCE", "MODAL", "PTCV", "CVCV", "PTSF", "CVSF", "SFSF", "UCON", "GSE", "TIRE", "PFORCE",
-    "DEACTIVATE", "ACTIVATE", "NONLINEAR_BEAM",
-)  # fmt: skip
-"""Statements with mass, force, constraint or states of their own that are not read."""
+FLEXIBLE, ROUTINE, CURVED = (
+    "flexible bodies are not solved for",
+    "it needs a user's own subroutine",
+    "curves and surfaces in space are not read",
+)
+REFUSED = {
+    "FLEX_BODY": FLEXIBLE,
+    "FE_PART": FLEXIBLE,
+    "FE_NODE": FLEXIBLE,
+    "FE_LOAD": FLEXIBLE,
+    "NONLINEAR_BEAM": FLEXIBLE,
+    "MFORCE": FLEXIBLE,
+    "MODAL": FLEXIBLE,
+    "EXTERNAL_SYSTEM": FLEXIBLE,
+    "PTCV": CURVED,
+    "CVCV": CURVED,
+    "PTSF": CURVED,
+    "CVSF": CURVED,
+    "SFSF": CURVED,
+    "CLEARANCE": "distances between surfaces are not computed",
+    "FRICTION": "Adams' friction with stiction has no counterpart; joint_friction of a scene is smooth",
+    "NFORCE": "fields between more than two markers are not read",
+    "UCON": ROUTINE,
+    "GSE": ROUTINE,
+    "TIRE": "tyres belong to Adams' own libraries; a scene has tyres of its own",
+    "PFORCE": "it is none of the forces that are read",
+    "DEACTIVATE": "it is a command, which belongs into a command file",
+    "ACTIVATE": "it is a command, which belongs into a command file",
+}
+"""Statements with mass, force, constraint or states of their own that are not read, and why."""
 
 _ALL = (*SINGLE, *READERS, *LEFT_OUT, *REFUSED)
 

@@ -113,9 +113,9 @@ def derive(kind: Kind) -> Derived:
 def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     e, stated = symbols.element, stated_by_joint(kind, symbols)
     C, rates = sp.Matrix(stated.position), sp.Matrix(stated.velocity)
-    C_q = e.by_coordinates(C)
     V = sp.Matrix([*(e.rate(equation) for equation in C), *rates])
     J = e.by_velocities(V)
+    _refuse_rates_by_velocities(e, C)
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
             raise InputError(
@@ -136,7 +136,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     turning = e.rate(V)
     power = power_of_joint(e, V, lam)
     terms = {
-        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
+        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": e.by_coordinates(C), "V": V, "J": J, "V_q": e.by_coordinates(V),
         "gamma": -turning,
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_velocities(turning),
@@ -145,6 +145,10 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "argument": _arguments(symbols),
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    first_state = e.n_coordinates - len(e.states)  # states are given: reactions and projections do not act on them
+    entries["C_x"] = [entry for entry in entries["C_q"] if entry.column >= first_state]
+    entries["C_q"] = [entry for entry in entries["C_q"] if entry.column < first_state]
+    entries["G_mu"] = [entry for entry in entries["G_mu"] if entry.row < first_state]
     entries["A_q"] = [
         LateEntry(partial(e.by_coordinate, row, column), r, column)
         for r, row in enumerate(J * e.a + turning)
@@ -157,8 +161,18 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         V.rows, C.rows, symbols, entries, [] if power == 0 else None,
         [variation.summands(entry.expression) for entry in entries["C_q"]],
         [variation.removable(C[r], [entry.column for entry in entries["C_q"] if entry.row == r]) for r in range(C.rows)],
-        [e.depends(equation, [e.t]) for equation in (*C, *rates)],
+        [e.depends(equation, [e.t, *e.states]) for equation in (*C, *rates)],
     )  # fmt: skip
+
+
+def _refuse_rates_by_velocities(e: SymbolicElement, C: sp.Matrix) -> None:
+    """Refuse constraints of positions with states whose rates follow velocities: J u' would not be what the reactions act on."""
+    for state, rate in zip(e.states, e.state_rates, strict=False):
+        if any(e.depends(equation, [state]) for equation in C) and e.depends(rate, e.velocities):
+            raise InputError(
+                "found a state whose rate follows velocities in a constraint of positions, expected one whose rate follows "
+                "positions, time and other states"
+            )
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:

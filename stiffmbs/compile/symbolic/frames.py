@@ -25,6 +25,7 @@ OF_ELEMENTS = (
     "angles",
     "states",
     "own",
+    "state_rates",
     "breakpoints",
     "derivatives",
     "_rotations",
@@ -52,6 +53,8 @@ class SymbolicElement:
         States that it reads or determines, by slot.
     own : list of Symbol
         Those of the element's own, the first of them.
+    state_rates : tuple of Expr
+        Their rates, in the equations of joints.
     angles : list of expressions
         Those that count whole turns, in the order of their counters.
     breakpoints : list of expressions
@@ -72,6 +75,7 @@ class SymbolicElement:
     ) -> None:
         self.frames = frames
         self.states, self.own = states, states[:n_own]
+        self.state_rates: tuple[sp.Expr, ...] = ()
         self.angles: list[sp.Expr] = []
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
@@ -112,15 +116,16 @@ class SymbolicElement:
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
         x = self.read(x)
-        if self.depends(x, self.states):
+        if self.depends(x, self.states) and not self.state_rates:
             raise InputError("found a state in an expression whose rate is needed, expected coordinates and time alone")
         partial = self.derivatives.partial
+        own = (rate * partial(x, symbol) for symbol, rate in zip(self.states, self.state_rates, strict=False))
         moving = (
             rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
             for frame in self.frames
             for symbol, rate in frame.motion
         )
-        return sp.Add(*moving) + partial(x, self.t)
+        return sp.Add(*moving, *own) + partial(x, self.t)
 
     def named(self, x: Any) -> Any:
         """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""

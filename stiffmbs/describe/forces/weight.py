@@ -37,4 +37,5 @@ class Weight(Force):
 def weights(bodies: Mapping[str, Any], gravity: tuple[float, ...]) -> Iterator[tuple[str, Weight]]:
     """The weights of bodies, of the plane or of space, by the bodies' names, if there is gravity."""
     for name, body in bodies.items() if any(gravity) else ():
-        yield name, Weight(i=MarkerReference(body=name), mass=body.mass, gravity=gravity)
+        marker = MarkerReference.model_construct(body=name)
+        yield name, Weight.model_construct(i=marker, mass=body.mass, gravity=gravity)  # checked already

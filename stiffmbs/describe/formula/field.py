@@ -226,8 +226,9 @@ class FormulaOf:
         Their dimensions, of `stiffmbs.describe.units.units.DIMENSIONS`.
     dimension : str
         That of the value; `ANY` where every one will do.
-    time, coordinates, velocities, table : bool
-        Whether t, body coordinates and measures, and their rates may occur, and a table may stand in its place.
+    time, coordinates, velocities, table, states : bool
+        Whether t, body coordinates and measures, and their rates may occur, a table may stand in its place, and states may
+        occur where coordinates may not.
     """
 
     variables: tuple[str, ...] = ()
@@ -237,6 +238,7 @@ class FormulaOf:
     coordinates: bool = False
     velocities: bool = False
     table: bool = False
+    states: bool = False
 
     def read(self, found: Any, info: ValidationInfo) -> Formula | Table:
         """The checked formula or table of what stands in the scene."""
@@ -250,8 +252,8 @@ class FormulaOf:
         context = info.context or {}
         parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
         names = names_of(info)
-        if (
-            info.context is None and self.coordinates
+        if info.context is None and (
+            self.coordinates or self.states
         ):  # built in Python, where the model that it will belong to is not known
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
         formula = self._made(found, parameters, tables, variables, names)
@@ -319,7 +321,7 @@ class FormulaOf:
         meanings = [*self.variables, *(["t"] if self.time else [])]
         meanings += ["a body's coordinate such as cart.x"] if self.coordinates else []
         meanings += ["a parameter of the scene"]
-        meanings += [f"a state or input ({', '.join(states)})"] if states and self.coordinates else []
+        meanings += [f"a state or input ({', '.join(states)})"] if states and (self.coordinates or self.states) else []
         expected = ", ".join(meanings)
         raise FormulaError(f"found the unknown name '{name}' in '{quoted(text)}', expected {expected}")
 
@@ -352,7 +354,7 @@ class FormulaOf:
             raise FormulaError(
                 f"found {reactions[0]} in '{formula.text}', expected a formula without reactions of joints"
             )
-        used += [name for name in formula.states if name not in inputs]
+        used += [name for name in formula.states if name not in inputs and not self.states]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
         check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)
@@ -369,6 +371,8 @@ class FormulaOf:
 
 OfTime = Annotated[Formula | Table, FormulaOf(table=True)]
 """A formula or a table of time."""
+OfTimeAndStates = Annotated[Formula | Table, FormulaOf(table=True, states=True)]
+"""The same with states in it."""
 OfPosition = Annotated[Formula, FormulaOf(coordinates=True)]
 """A formula of coordinates and time."""
 OfMotion = Annotated[Formula, FormulaOf(coordinates=True, velocities=True)]

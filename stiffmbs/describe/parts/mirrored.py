@@ -71,6 +71,22 @@ class Mirror:
                 raise InputError(f"{where}.{alias}: {error} (in {self.name})") from None
         return element.model_copy(update=changed)
 
+    def mirrored_state(self, state: Any, where: str) -> Any:
+        """A state, or a system of such, that has the same value in the mirror image: its formulas see mirrored coordinates.
+
+        Raises
+        ------
+        InputError
+            For a formula whose mirror image is not known.
+        """
+        changed = {}
+        for name in type(state).model_fields:
+            try:
+                changed[name] = self._image(getattr(state, name), 1.0, law=False)
+            except FormulaError as error:
+                raise InputError(f"{where}.{name}: {error} (in {self.name})") from None
+        return state.model_copy(update=changed)
+
     def _field(self, element: Element, name: str, where: str) -> Any:
         value, way = getattr(element, name), (element.reflected or {}).get(name, "same")
         match value:
@@ -146,8 +162,10 @@ class Mirror:
                 return tuple(self._image(x, sign, law) for x, sign in zip(value, each, strict=True))
             case Formula() | Table():
                 return mirrored_law(value, MirroredNames(self.frame, self._own), signs, signs if law else 1.0)
+            case bool():
+                return value
             case int() | float():
-                return signs * value or 0.0
+                return value if signs == 1.0 else signs * value or 0.0
         return value
 
     def _marker(self, marker: MarkerReference, way: str) -> Any:

@@ -147,10 +147,9 @@ class _Placed:
                 where = f"{instance.where}.{section}.{name}"
                 moved = mirror.mirrored(element, where) if mirror else element
                 self._put(section, instance, name, _on_mounts(moved, instance.name, mounts))
-        if mirror and found.states:
-            raise InputError(f"{instance.where}.states: found states in a mirrored part, expected a part without")
         for name, state in found.states.items():
-            self._put("states", instance, name, state)
+            where = f"{instance.where}.states.{name}"
+            self._put("states", instance, name, mirror.mirrored_state(state, where) if mirror else state)
         for name, request in found.requests.items():
             self._put("requests", instance, name, request)
 

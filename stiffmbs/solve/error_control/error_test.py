@@ -47,9 +47,9 @@ class ErrorControl:
 
     def tolerances(self, equations: Equations, settings: RunSettings) -> tuple[float, np.ndarray]:
         """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts those in the error test."""
-        tested = self._tested(equations)
+        tested, of_independent = self._tested(equations), independent_tolerances(equations, settings)
         atol = np.full(equations.n, self.multipliers)
-        atol[equations.independent[tested]] = independent_tolerances(equations, settings)[tested]
+        atol[equations.independent[tested]] = of_independent[tested]
         correction = self.margin * np.sqrt(equations.n / max(int(tested.sum()), 1))
         return settings.rtol * correction, atol * correction
 

@@ -13,6 +13,7 @@ order is free again then, before the errors of order 2 count.
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -71,8 +72,12 @@ class StabilityLimitDetection:
     def __init__(self, equations: Equations, settings: RunSettings) -> None:
         self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
         self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST
-        self._atol = independent_tolerances(equations, settings)
+        self._equations, self._settings = equations, settings
         self.forget()
+
+    @cached_property
+    def _atol(self) -> np.ndarray:
+        return independent_tolerances(self._equations, self._settings)
 
     def forget(self) -> None:
         """Begin a new run."""
@@ -174,7 +179,7 @@ class StabilityLimitDetection:
         held = self._held_steps + (steps - self._held[-1][1] if self.held else 0)
         first, before = self._held[0]
         return (
-            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: with orders 3 to 5, "
-            f"{before} steps up to there, it crept along a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, "
-            "which is now damped away, also in forces; a smaller rtol, or max_order: 5, keeps it"
+            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: orders 3 to 5 had crept along "
+            f"a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, {before} steps up to there; it is now damped "
+            "away, also in forces; a smaller rtol, or max_order: 5, keeps it"
         )

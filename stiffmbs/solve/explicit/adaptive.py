@@ -108,7 +108,7 @@ class AdaptiveRun:
 
     def _segment(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
-        work, advance, status = self.work, ADVANCE.load(), PAUSED
+        work, advance, status = self.work, ADVANCE.call, PAUSED
         most = min(leaving.first, work.capacity) if leaving else work.capacity
         work.h = first_step(self._scheme, self._dynamics, self._start, work.t, self._grid.end, self._tolerances)
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
@@ -156,7 +156,7 @@ class AdaptiveRun:
         """Store what is asked for up to the time reached."""
         work, status = self.work, PAUSED
         while status == PAUSED:
-            status = ADVANCE.load()(work.t, 1, 1, self._grid.times is None, work.at)
+            status = ADVANCE.call(work.t, 1, 1, self._grid.times is None, work.at)
             work.collect(self._rows)
 
     def _statistics(self) -> dict[str, int | float | str]:

@@ -19,7 +19,7 @@ I3 = Formulation(
         Block("q", "q", "rate_q", -1), Block("q", "u", "rate_u", -1), Block("q", "lam", "rate_lam", -1),
         Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
         Block("u", "q", "G_lam"), Block("u", "lam", "J.T"), Block("u", "lam", "f_lam", -1),
-        Block("lam", "q", "C_q"), Block("lam", "q", "V_q:rates"), Block("lam", "u", "J:rates"),
+        Block("lam", "q", "C_q"), Block("lam", "q", "C_x"), Block("lam", "q", "V_q:rates"), Block("lam", "u", "J:rates"),
     ),
     tested=("q",),
 )  # fmt: skip

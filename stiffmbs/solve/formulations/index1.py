@@ -34,6 +34,6 @@ def index1(stabilisation: float) -> Formulation:
             Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
             Block("u", "q", "G_lam"), Block("u", "lam", "J.T"), Block("u", "lam", "f_lam", -1),
             Block("lam", "q", "A_q"), Block("lam", "u", "gamma_u", -1), Block("lam", "u", "J", constant=2 * b, cj=1),
-            Block("lam", "q", "V_q", 2 * b), Block("lam", "q", "C_q", b * b),
+            Block("lam", "q", "V_q", 2 * b), Block("lam", "q", "C_q", b * b), Block("lam", "q", "C_x", b * b),
         ),
     )  # fmt: skip

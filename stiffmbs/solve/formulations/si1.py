@@ -22,7 +22,7 @@ SI1 = Formulation(
         Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
         Block("u", "q", "G_lam"), Block("u", "lam", "J.T", constant=0, cj=1),
         Block("u", "lam", "f_lam", constant=0, cj=-1),
-        Block("mu", "q", "C_q"),
+        Block("mu", "q", "C_q"), Block("mu", "q", "C_x"),
         Block("lam", "q", "V_q"), Block("lam", "u", "J"),
     ),
     integrated=True,

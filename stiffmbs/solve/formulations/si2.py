@@ -19,7 +19,7 @@ _MATRIX = (
     Block("q", "q", "rate_q", -1), Block("q", "u", "rate_u", -1), Block("q", "lam", "rate_lam", -1), Block("q", "mu", "C_q.T"),
     Block("u", "u", "M", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
     Block("u", "q", "G_lam"), Block("u", "lam", "J.T"), Block("u", "lam", "f_lam", -1),
-    Block("mu", "q", "C_q"),
+    Block("mu", "q", "C_q"), Block("mu", "q", "C_x"),
     Block("lam", "q", "V_q"), Block("lam", "u", "J"),
 )  # fmt: skip
 

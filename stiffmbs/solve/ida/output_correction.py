@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import OUTPUT_CORRECTION, cells, fill
+from ...compile.machine.layout import OUTPUT_CORRECTION, fill
 from .matrices import Assembled, Matrix
 from .session import Session
 
@@ -28,7 +28,7 @@ class OutputCorrection:
     def __init__(self, equations: Equations) -> None:
         self._equations = equations
         self.table = np.zeros(len(OUTPUT_CORRECTION), dtype=np.int64)
-        self._cells = cells(self.table, OUTPUT_CORRECTION)
+        self._cells = self.table.view(OUTPUT_CORRECTION.cells)[0]
         self._cells["long"] = np.inf
         self._assembled: Assembled | None = None
         self._vectors: dict[str, np.ndarray] = {}

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import DTYPES, ELIMINATED, cells, fill
+from ...compile.machine.layout import DTYPES, ELIMINATED, fill
 from ...compile.state import State
 from .saddle_point import ACCELERATIONS
 
@@ -56,7 +56,7 @@ class Eliminated:
         resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
         self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))
         self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
-        self._cells = cells(self.table, ELIMINATED)
+        self._cells = self.table.view(ELIMINATED.cells)[0]
         if self.serves:
             self._arrays = self._packable(state, products, columns)
             fill(self.table, ELIMINATED, self._arrays)

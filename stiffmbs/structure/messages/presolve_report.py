@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..compile.coordinates import FIXED, Coordinates
-from ..compile.system import System
-from ..solve.dynamics import Dynamics
-from ..solve.subsystems import Subsystem
-from ..structure.overconstraint import listed
+from ...compile.coordinates import FIXED, Coordinates
+from ...compile.system import System
+from ...solve.dynamics import Dynamics
+from ...solve.subsystems import Subsystem
+from ..overconstraint import listed
 
 
 def unknowns(whole: System, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> tuple[int, int]:

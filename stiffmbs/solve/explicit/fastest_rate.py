@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.machine.routines import Routine
-from .algebraic_states import rates_by_states
-from .dynamics import Dynamics
+from ...compile.machine.routines import Routine
+from ..algebraic_states import rates_by_states
+from ..dynamics import Dynamics
 
 FASTEST_RATE = Routine(
     "stiffmbs.solve.native.fastest_rate",
@@ -24,7 +24,7 @@ def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> 
     state.q[:], state.u[:] = q, u
     work = np.empty(3 * dynamics.system.n_u + dynamics.system.n_q)
     addresses = (dynamics.system.mass, work, eliminated.table, dynamics.table)
-    rate = FASTEST_RATE.load()(t, eliminated.serves, *(array.ctypes.data for array in addresses))
+    rate = FASTEST_RATE.call(t, eliminated.serves, *(array.ctypes.data for array in addresses))
     dynamics.forget_pivots()
     return max(float(rate), _of_states(dynamics, t, q, u))
 
