@@ -64,6 +64,7 @@ from .errors import StiffmbsError as StiffmbsError
 from .jobs.check import Report as Report
 from .jobs.check import check as check
 from .jobs.equilibrium import equilibrium as equilibrium
+from .jobs.quasi_static import quasi_static as quasi_static
 from .jobs.load_scene import load_scene as load_scene
 from .jobs.modes import modes as modes
 from .jobs.run import run as run
@@ -83,6 +84,10 @@ from .studies.sensitivities.sensitivities import sensitivities as sensitivities
 from .studies.follow import follow as follow
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
+from .studies.suspension.kinematics_and_compliance import KinematicsAndCompliance as KinematicsAndCompliance
+from .studies.suspension.kinematics_and_compliance import kinematics_and_compliance as kinematics_and_compliance
+from .studies.suspension.road_loads import RoadLoads as RoadLoads
+from .studies.suspension.road_loads import road_loads as road_loads
 from .studies.sweep import sweep as sweep
 from .studies.variation import Range as Range
 from .verification.verify import verify as verify

@@ -21,6 +21,7 @@ from .files.expand import (
     repeat_entries,
     replaced_parameters,
     set_value,
+    unshared,
 )
 from .files.include import read_including
 from .files.quoted import written
@@ -195,7 +196,7 @@ def made_scene(
         When it is no valid scene.
     """
     scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
-    found, changes = placed_in_use(found, changes)
+    found, changes = placed_in_use(unshared(found), changes)
     found, chosen, changes = _chosen(found, changes, source)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)

@@ -7,17 +7,12 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from ..describe.requests.order import units
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
-from ..errors import SolverError
-from ..results.channels import channels_of, turns_of
-from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.algebraic_states import failure
-from ..solve.trajectory import History, Outcome
 from .run import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
+from .solution_at_rest import solution_at_rest
 from .start_from import StartFrom
 from .steady import settled_in_motion
 
@@ -116,7 +111,10 @@ def equilibrium(
         data = data.model_copy(update={"start": "described"})
     job = prepare(data, settings, start_from, **changes)
     found = _settled(job, motion)
-    system, solution = job.dynamics.system, _solution(job, found)
+    system, start = job.dynamics.system, found.start
+    how = {"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance}
+    times = np.array([job.grid.start])
+    solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), found.notes, how)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
     moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))
@@ -139,22 +137,6 @@ def _settled(job: Job, motion: SteadyMotion | None) -> Settled:
     if motion is None:
         return settled(job.dynamics, job.start, job.grid.start)
     return settled_in_motion(job.data, job.dynamics, job.start, job.grid.start, motion)
-
-
-def _solution(job: Job, found: Settled) -> Solution:
-    """The equilibrium as results of one instant."""
-    t, system = np.array([job.grid.start]), job.dynamics.system
-    rows = job.dynamics.report(t, found.start.q[None], found.start.u[None], project=False)
-    if not len(rows.t):
-        raise SolverError(f"no reactions were found in the equilibrium: {failure(job.dynamics, rows.status, t[0])}")
-    channels = channels_of(job.data, system, rows)
-    return Solution(
-        name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=_message(found),
-        notes=found.notes, solver={"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance},
-        history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, rows, np.empty(0)), not_unique=job.redundancy.not_unique,
-        requested=units(job.data.outputs()), turns=turns_of(system, rows.q),
-    )  # fmt: skip
 
 
 def _message(found: Settled) -> str:

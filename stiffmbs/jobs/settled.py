@@ -11,9 +11,9 @@ from ..errors import SolverError
 from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
+from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
 from ..solve.equilibrium import Equilibrium, find_equilibrium
-from ..solve.failures import FAILURES
 from ..solve.force_balance import balance_at
 from ..solve.initial import InitialValues
 from ..solve.steady_motion import at_rest
@@ -112,7 +112,7 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     if status == 0:
         status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(f"the described velocities do not go on in the equilibrium: {FAILURES[status]}")
+        raise SolverError(f"the described velocities do not go on in the equilibrium: {failure(dynamics, status, t)}")
     lam = state.lam[: dynamics.system.n_c].copy()
     return replace(found, u=state.u.copy(), acceleration=acceleration, lam=lam)
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..scene.number_format import plain, vector
-from ..statements.outputs import Array
+from ..statements.outputs import Array, Variable
 from ..statements.systems import Differential, LinearSystem, Matrix, TransferFunction
 from .function import Function
-from .trees import name_of
+from .trees import name_of, times
 
 if TYPE_CHECKING:
     from ..statements.constraints import Numbered
@@ -29,16 +30,62 @@ def states(translation: Translation) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for statements in translation.mechanism.dataset.statements.values():
-        for one in statements.values():
+        for ident, one in statements.items():
             match one:
+                case Variable() if ident in translation.implicit_variables:
+                    value = translation.translated(one.function)
+                    zero = ast.BinOp(value, ast.Sub(), name_of(value_name(one)))
+                    found[value_name(one)] = {"zero": ast.unparse(zero), "start": plain(one.start)}
                 case Differential():
-                    rate = translation.formula(one.function, 1 / translation.units.time)
-                    found[one.name] = {"rate": rate, "start": plain(one.start)}
+                    found |= _differential(one, translation)
                 case LinearSystem():
                     found[one.name] = _linear(one, translation)
                 case TransferFunction():
                     found[one.name] = _transfer(one, translation)
     return found
+
+
+def _differential(one: Differential, translation: Translation) -> dict[str, Any]:
+    """A state with its rate; that of an implicit equation is an algebraic state of its own."""
+    per_second = 1 / translation.units.time
+    if not one.implicit:
+        return {one.name: {"rate": translation.formula(one.function, per_second), "start": plain(one.start)}}
+    rate = rate_name(one)
+    return {
+        one.name: {"rate": ast.unparse(times(name_of(rate), per_second)), "start": plain(one.start)},
+        rate: {"zero": translation.formula(one.function), "start": plain(one.start_of_rate)},
+    }
+
+
+def rate_name(one: Differential) -> str:
+    """What the rate of an implicit equation is called."""
+    return f"{one.name}_rate"
+
+
+def value_name(one: Variable) -> str:
+    """What the state of a variable that depends on itself is called."""
+    return f"{one.name}_value"
+
+
+def depending_on_themselves(variables: Mapping[int, Variable]) -> frozenset[int]:
+    """The variables whose expressions lead back to them, directly or through others."""
+    uses = {
+        ident: _variables_in(one.function) for ident, one in variables.items() if isinstance(one.function, Function)
+    }
+    reached = {ident: set(own) for ident, own in uses.items()}
+    for _ in uses:
+        reached = {ident: own.union(*(uses.get(other, ()) for other in own)) for ident, own in reached.items()}
+    return frozenset(ident for ident, own in reached.items() if ident in own)
+
+
+def _variables_in(function: Function) -> set[int]:
+    calls = (node for node in ast.walk(function.tree) if isinstance(node, ast.Call) and node.args)
+    return {
+        node.args[0].value
+        for node in calls
+        if isinstance(node.func, ast.Name) and node.func.id == "VARVAL"
+        and isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, int)
+    }  # fmt: skip
 
 
 def differential(dataset: Dataset, ident: int, function: Function) -> Differential:

@@ -13,10 +13,22 @@ from .units import Units
 
 @dataclass(frozen=True)
 class Differential(Numbered):
-    """A state whose rate, per unit of time of the dataset, is a function; its value at the start."""
+    """A state whose rate, per unit of time of the dataset, is a function, or makes a function zero; its value at the start.
+
+    Attributes
+    ----------
+    function : Function
+    start : float
+    implicit : bool
+        Whether the function is zero, and the rate stands in it as DIF1.
+    start_of_rate : float
+        Where the rate of an implicit one is sought from.
+    """
 
     function: Function
     start: float
+    implicit: bool = False
+    start_of_rate: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -52,14 +64,13 @@ class TransferFunction(Numbered):
 
 
 def read_differential(statement: Statement, units: Units) -> Differential:
-    """A first-order differential equation that says the rate."""
+    """A first-order differential equation that says the rate, or is zero with it."""
     found = Arguments(statement, "DIFF", ("IC", "FUNCTION", "ROUTINE", "IMPLICIT", "STATIC_HOLD"), ("FUNCTION",))
-    if "IMPLICIT" in found:
-        raise found.fault("found IMPLICIT, expected the rate as an expression", found.line("IMPLICIT"))
-    start = found.numbers("IC", 1, 2) or (0.0,)
+    start = (*(found.numbers("IC", 1, 2) or (0.0,)), 0.0)
     return Differential(
-        found.ident(), statement.line, statement.alias, "DIFF", required_function(found, "FUNCTION"), start[0]
-    )
+        found.ident(), statement.line, statement.alias, "DIFF", required_function(found, "FUNCTION"), start[0],
+        "IMPLICIT" in found, start[1],
+    )  # fmt: skip
 
 
 def read_matrix(statement: Statement, units: Units) -> Matrix:

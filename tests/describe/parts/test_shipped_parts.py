@@ -92,6 +92,13 @@ def test_words_are_chosen_by_a_use_by_the_scene_and_from_outside():
         lever({"a": {"part": "lever"}}, choose={"hald": "hard"})
 
 
+def test_a_change_of_what_an_alias_stands_for_changes_it_in_one_place():
+    text = "dimensions: 3\nbodies:\n  a: &body {mass: 1, inertia: &i [1, 1, 1]}\n  b: {<<: *body}\n  c: *body\n"
+    found = stiffmbs.read_scene(text, [("bodies.b.inertia.0", "1.5"), ("bodies.a.mass", "2")])
+    assert [body.mass for body in found.bodies.values()] == [2, 1, 1]
+    assert [body.inertia[0][0] for body in found.bodies.values()] == [1, 1.5, 1]
+
+
 def test_options_of_a_scene_are_chosen_by_words():
     options = {"push": {"weak": {"forces": {"f": {"type": "force", "i": "base", "force": [1, 0, 0]}}}, "none": None}}
     assert "f" in lever({}, options=options).forces
