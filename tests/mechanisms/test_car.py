@@ -47,3 +47,11 @@ def test_bushing_loads_add_up_at_rest(examples):
     table = stiffmbs.road_loads(scene, {"rest": stiffmbs.run(scene, duration=0.1, points=3)})
     left, right = (table.peaks[f"front.{side}.lower.front_bush"] for side in ("left", "right"))
     assert [abs(a.value) for a in left] == pytest.approx([abs(b.value) for b in right], rel=1e-6, abs=1e-6)
+
+
+def test_a_leaf_sprung_car_on_bumps_is_the_same_by_both_integrators(examples):
+    scene = examples / "leaf_sprung_car.yaml"
+    found = stiffmbs.run(scene, rtol=1e-8, solver="bdf", points=301)
+    exact = stiffmbs.run(scene, rtol=1e-10, solver="projected", scheme="dop853", points=301)
+    for channel, bound in (("chassis.z", 1e-8), ("front.axle.z", 1e-8), ("front.left.front_bush.fz", 1e-2)):
+        assert found[channel] == pytest.approx(exact[channel], abs=bound)
