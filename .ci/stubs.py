@@ -86,6 +86,8 @@ from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
 from .studies.suspension.kinematics_and_compliance import KinematicsAndCompliance as KinematicsAndCompliance
 from .studies.suspension.kinematics_and_compliance import kinematics_and_compliance as kinematics_and_compliance
+from .studies.suspension.road_loads import RoadLoads as RoadLoads
+from .studies.suspension.road_loads import road_loads as road_loads
 from .studies.sweep import sweep as sweep
 from .studies.variation import Range as Range
 from .verification.verify import verify as verify

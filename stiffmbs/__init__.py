@@ -45,6 +45,7 @@ _LATER = {
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
+    "RoadLoads": ".studies.suspension.road_loads", "road_loads": ".studies.suspension.road_loads",
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",

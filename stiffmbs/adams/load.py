@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -64,7 +65,7 @@ def convert_file(path: str | Path) -> str:
 def command_file(path: str | Path) -> Path | None:
     """The command file beside a dataset's file; None where there is none."""
     beside = Path(path).with_suffix(COMMANDS)
-    return None if beside.stem == STANDARD_INPUT or not beside.is_file() else beside
+    return None if beside.stem == STANDARD_INPUT or not os.path.isfile(beside) else beside
 
 
 def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:

@@ -29,6 +29,7 @@ from .starting.version import show_version
 from .stress import stress
 from .study import study
 from .suspension.kc import kc
+from .suspension.loads import loads
 from .terminal.logging_options import with_logging_options
 
 COMPLETION = """\b
@@ -49,6 +50,6 @@ def main() -> None:
 
 
 for command in (
-    run, check, equilibrium, modes, response, kc, study, sensitivities, compare, fit, optimise, convert, diff, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
+    run, check, equilibrium, modes, response, kc, loads, study, sensitivities, compare, fit, optimise, convert, diff, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
 ):  # fmt: skip
     main.add_command(with_logging_options(command))

@@ -83,7 +83,7 @@ def _sorted_elements(model: Compilable) -> dict[Kind, list[_Member]]:
     places = PlacedMarkers(model, [element for _, element in elements])
     for name, element in elements:
         try:
-            kind, data = sorted_out(element, model, places)
+            kind, data = sorted_out(name, element, model, places)
         except (FormulaError, InputError) as error:
             raise InputError(f"{name}: {error}") from None
         sorted_elements.setdefault(kind, []).append(_Member(name, element, data))

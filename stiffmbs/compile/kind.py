@@ -14,13 +14,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..describe.element import Component, Element, Joint, JointName
+from ..describe.element import Component, Element, Force, Joint, JointName
 from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference, PlacedMarkers
 from ..describe.python_function import PythonFunction
-from ..describe.states.name import StateName
+from ..describe.states.name import StateName, own_state
 from ..describe.states.state import StateValue
 from ..describe.table import Table
 from ..errors import InputError
@@ -93,6 +93,8 @@ class Kind:
         all quaternions do, or the equations ask for no derivative of the pose that would tell.
     algebraic : tuple of int
         Slots of the states that have no rate.
+    n_own : int
+        How many of its states, the first, are the element's own.
     """
 
     element: type[Element]
@@ -103,6 +105,7 @@ class Kind:
     fields: tuple[tuple[str, Shape], ...]
     spins: tuple[str, ...] = ()
     algebraic: tuple[int, ...] = ()
+    n_own: int = 0
 
     def holds(self, *forms: str) -> bool:
         """Whether a field, or one of several values of a field, has one of some forms."""
@@ -170,16 +173,23 @@ class ElementData:
         return np.concatenate(parts)
 
 
-def sorted_out(element: Element, model: Compilable, places: PlacedMarkers | None = None) -> tuple[Kind, ElementData]:
-    """An element's kind, and what is its own; markers whose places are known are not looked for again."""
+def sorted_out(
+    name: str, element: Element, model: Compilable, places: PlacedMarkers | None = None
+) -> tuple[Kind, ElementData]:
+    """An element's kind, and what is its own: by its name its states are known, and markers whose places are known are not looked
+    for again."""
     data = ElementData(places=PlacedMarkers(model) if places is None else places)
+    own = element.own_states() if isinstance(element, Force) else ()
+    data.states += [own_state(name, state) for state in own]
     fields = _fields(element, model, data)
     values = model.state_values() if data.states else {}
     if isinstance(element, Joint) and data.states:
         fields = (*fields, (STATE_RATES, ("several", tuple(_rates_of_states(values, model, data)))))
     algebraic = tuple(slot for slot, name in enumerate(data.states) if values[name].algebraic)
     counts = len(data.bodies), len(data.joints), len(data.states)
-    return Kind(type(element), model.dimensions, *counts, fields, _spins(element, model, data), algebraic), data
+    return Kind(
+        type(element), model.dimensions, *counts, fields, _spins(element, model, data), algebraic, len(own)
+    ), data
 
 
 def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str, ...]:

@@ -175,7 +175,18 @@ def _entry(kind: Kind, *part: str) -> str | None:
         _compile_text(),
         *texts,
         kind.element.__qualname__,
-        repr((kind.dimensions, kind.n_bodies, kind.n_joints, kind.n_states, kind.fields, kind.spins, kind.algebraic)),
+        repr(
+            (
+                kind.dimensions,
+                kind.n_bodies,
+                kind.n_joints,
+                kind.n_states,
+                kind.fields,
+                kind.spins,
+                kind.algebraic,
+                kind.n_own,
+            )
+        ),
         *part,
     )
 

@@ -24,7 +24,7 @@ from .requests.order import dimensions
 from .requests.output import Output
 from .states.equation import FormulaOfRate, Reported
 from .states.inputs import InputValue, formulas_of_inputs
-from .states.name import StateName
+from .states.name import StateName, own_state
 from .states.section import (
     AnyState,
     check_reactions,
@@ -194,7 +194,9 @@ class ModelData(Described):
 
     def state_values(self) -> dict[str, StateValue]:
         """What is solved for beside the bodies, by full name."""
-        return {full: value for name, state in self.states.items() for full, value in state.values(name)}
+        of_model = {full: value for name, state in self.states.items() for full, value in state.values(name)}
+        of_forces = (own_state(name, own) for name, force in self.forces.items() for own in force.own_states())
+        return of_model | dict.fromkeys(of_forces, StateValue(None, 0.0, 1.0))
 
     def elements_at_initial_pose(self) -> Iterator[tuple[str, Element]]:
         """Joints and forces with their names; what they leave open is taken from the described poses."""

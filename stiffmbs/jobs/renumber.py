@@ -171,7 +171,7 @@ class Change:
 
 def _change(system: System, name: str, force: Element, data: ModelData) -> Change | None:
     """A force with its new numbers; None where it has other equations, bodies or tables of another length."""
-    kind, found = sorted_out(force, data)
+    kind, found = sorted_out(name, force, data)
     group = next((group for group in system.groups if name in group.names), None)
     if group is None or kind != group.kind:
         return None

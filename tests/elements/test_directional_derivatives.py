@@ -19,8 +19,8 @@ def random_numbers(state, rng, model):
     changes = []
     for group in state.system.groups:
         change = np.where(np.abs(group.numbers) < 1e6, rng.uniform(-1, 1, len(group.numbers)), 0.0)
-        for e, element in enumerate(group.elements):
-            _, data = sorted_out(element, model)
+        for e, (name, element) in enumerate(zip(group.names, group.elements, strict=True)):
+            _, data = sorted_out(name, element, model)
             first, flat = int(group.index[e, 2 * group.kind.n_bodies]), data.flat()
             for at, table in data.tables:
                 begin = first + int(flat[at])
@@ -35,8 +35,8 @@ def with_points(state, changes, model):
     found = []
     for group, change in zip(state.system.groups, changes, strict=True):
         numbers = change.copy()
-        for e, element in enumerate(group.elements):
-            _, data = sorted_out(element, model)
+        for e, (name, element) in enumerate(zip(group.names, group.elements, strict=True)):
+            _, data = sorted_out(name, element, model)
             first, flat = int(group.index[e, 2 * group.kind.n_bodies]), data.flat()
             for at, table in data.tables:
                 begin = first + int(flat[at])

@@ -126,6 +126,7 @@ def test_a_kinematic_run_says_that_it_is_exact():
     assert not any("certain" in note for note in found.notes)
 
 
+@pytest.mark.long
 def test_a_stiff_force_at_a_loose_tolerance_is_told(tmp_path):
     """The cushioned parallelogram of the guide, stiffer still: motion right to 2e-4 m, force 1.7 times too large."""
     text = (EXAMPLES.parent / "docs" / "guide" / "bushings.md").read_text(encoding="utf-8")
@@ -187,7 +188,7 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
         assert part in told
 
 
-LONG = ("bricard", "car", "governor", "leaf_sprung_car", "spatial_chain")
+LONG = ("bricard", "car", "governor", "leaf_sprung_car", "quarter_car", "spatial_chain")
 
 
 @pytest.mark.parametrize(

@@ -190,8 +190,20 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
-    entries["f_alg"] = _of_algebraic(kind, e, entries["f_q"])
+    entries |= _rates(e, sp.Matrix(stated.rates), e.own, joint_lam)
+    for name, of in (("f_alg", "f_q"), ("rate_alg", "rate_q")):
+        entries[name] = _of_algebraic(kind, e, entries[of])
     return Derived(0, 0, symbols, entries, losses)
+
+
+def _rates(
+    e: SymbolicElement, rates: sp.Matrix, states: Sequence[sp.Symbol], joint_lam: Sequence[sp.Symbol]
+) -> dict[str, Sequence[Entry | LateEntry]]:
+    """The rates of states and their derivatives, in the rows of the states."""
+    rows = [e.n_coordinates - len(e.states) + e.states.index(state) for state in states]
+    terms = {"rate": rates, "rate_q": e.by_coordinates(rates), "rate_u": e.by_velocities(rates)}
+    terms["rate_lam"] = e.by(rates, joint_lam) if joint_lam else sp.zeros(0, 0)
+    return {name: [replace(entry, row=rows[entry.row]) for entry in _entries(matrix)] for name, matrix in terms.items()}
 
 
 def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
@@ -204,10 +216,7 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
     entries["signal"] = [Entry(formula, 0)]
     if issubclass(element, StateEquation):
-        row = e.n_coordinates - len(e.states) + e.states.index(e.state)
-        rates = {"rate": value, "rate_q": e.by_coordinates(value), "rate_u": e.by_velocities(value)}
-        rates["rate_lam"] = e.by(value, joint_lam) if joint_lam else sp.zeros(0, 0)
-        entries |= {name: [replace(entry, row=row) for entry in _entries(matrix)] for name, matrix in rates.items()}
+        entries |= _rates(e, value, [e.state], joint_lam)
         entries["rate_alg"] = _of_algebraic(kind, e, entries["rate_q"])
     return Derived(0, 0, symbols, entries, [])
 

@@ -24,6 +24,7 @@ OF_ELEMENTS = (
     "frames",
     "angles",
     "states",
+    "own",
     "state_rates",
     "breakpoints",
     "derivatives",
@@ -49,7 +50,9 @@ class SymbolicElement:
     frames : list of BodyFrame or of SpatialBodyFrame
         The bodies, in the order of `Element.bodies`.
     states : list of Symbol
-        States of the user's own, by slot.
+        States that it reads or determines, by slot.
+    own : list of Symbol
+        Those of the element's own, the first of them.
     state_rates : tuple of Expr
         Their rates, in the equations of joints.
     angles : list of expressions
@@ -63,10 +66,15 @@ class SymbolicElement:
     t = sp.Symbol("t", real=True)
 
     def __init__(
-        self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives, states: list[sp.Symbol]
+        self,
+        frames: list[Any],
+        fields: dict[str, object],
+        derivatives: Derivatives,
+        states: list[sp.Symbol],
+        n_own: int = 0,
     ) -> None:
         self.frames = frames
-        self.states = states
+        self.states, self.own = states, states[:n_own]
         self.state_rates: tuple[sp.Expr, ...] = ()
         self.angles: list[sp.Expr] = []
         self.breakpoints: list[sp.Expr] = []
@@ -139,7 +147,7 @@ class SymbolicElement:
 
     @property
     def _state(self) -> list[sp.Symbol]:
-        return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, self.t]
+        return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, *self.states, self.t]
 
     def relative_rotation(self, i: Any, j: Any) -> RelativeRotation:
         """How a marker is turned against another one, of another body in space."""

@@ -114,7 +114,7 @@ def symbols_of(kind: Kind) -> Symbols:
         ]
     )
     states = [sp.Symbol(f"{STATE}{slot}", real=True) for slot in range(kind.n_states)]
-    symbols = Symbols(SymbolicElement(frames, {}, derivatives, states))
+    symbols = Symbols(SymbolicElement(frames, {}, derivatives, states, kind.n_own))
     builder = _Builder(kind.dimensions, symbols)
     symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
     return symbols

@@ -104,7 +104,9 @@ def channels_of_states(model: Any) -> set[str]:
     """What is reported of states: their values and rates."""
     values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
-    return set(values) | outputs | {f"{name}.rate" for name, value in values.items() if not value.algebraic}
+    return (
+        set(model.state_values()) | outputs | {f"{name}.rate" for name, value in values.items() if not value.algebraic}
+    )
 
 
 def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:

@@ -91,6 +91,7 @@ class _Sites:
         self.used: dict[str, list[np.ndarray]] = {name: [] for name in (*data.bodies, GROUND)}
 
     def of(self, marker: MarkerReference) -> Site:
+        """Where a marker is on its body and in ground axes."""
         point, axes = placed(self.data, marker)
         origin, turned = self.poses.pose(marker.body, 0)
         self.used[marker.body].append(point)

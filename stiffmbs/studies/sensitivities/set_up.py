@@ -118,7 +118,7 @@ class SetUp:
 
     def _place(self, name: str, scene: Any, element: Any) -> tuple[int, int, np.ndarray]:
         """The group of an element, where its numbers begin there, and the numbers."""
-        kind, data = sorted_out(element.at_initial_pose(scene), scene)
+        kind, data = sorted_out(name, element.at_initial_pose(scene), scene)
         for g, group in enumerate(self._job.dynamics.system.groups):
             if name in group.names and group.kind == kind:
                 return g, int(group.index[group.names.index(name), 2 * kind.n_bodies]), data.flat()
@@ -132,7 +132,7 @@ class SetUp:
         if not any(_has_table(shape) for _, shape in group.kind.fields):
             return
         for e, name in enumerate(group.names):
-            _, data = sorted_out(group.elements[e], self._job.data)
+            _, data = sorted_out(name, group.elements[e], self._job.data)
             first, flat = int(group.index[e, 2 * group.kind.n_bodies]), data.flat()
             for at, table in data.tables:
                 points = slice(first + int(flat[at]), first + int(flat[at]) + 2 + int(table[0]))
