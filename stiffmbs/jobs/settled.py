@@ -103,8 +103,9 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     SolverError
         Where no equilibrium is found, or the velocities have no accelerations there.
     """
-    found = settled(dynamics, start, t).start
     state = dynamics.state
+    state.q[:] = start.q
+    found = find_equilibrium(dynamics, t)
     state.q[:], state.u[:] = found.q, start.u
     status = min(dynamics.correct_velocities(t), 0)
     state.count_anew(t)
@@ -114,7 +115,8 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     if status < 0:
         raise SolverError(f"the described velocities do not go on in the equilibrium: {failure(dynamics, status, t)}")
     lam = state.lam[: dynamics.system.n_c].copy()
-    return replace(found, u=state.u.copy(), acceleration=acceleration, lam=lam)
+    notes = ("whether the equilibrium that the run starts in is stable was not looked at",)
+    return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
 
 
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:

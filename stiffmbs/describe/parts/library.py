@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import functools
 from pathlib import Path
 from typing import Any
@@ -13,14 +12,15 @@ from ..files.yaml_text import read_yaml
 FOLDER = Path(__file__).with_name("shipped")
 
 
+@functools.cache
 def shipped_parts() -> tuple[str, ...]:
     """The names of all parts that come with the package."""
     return tuple(sorted(file.stem for file in FOLDER.glob("*.yaml")))
 
 
 def shipped_part(name: str) -> dict[str, Any] | None:
-    """The definition of a part that comes with the package; None for any other name."""
-    return copy.deepcopy(_read(name)) if name in shipped_parts() else None
+    """The definition of a part that comes with the package, not to be changed; None for any other name."""
+    return _read(name) if name in shipped_parts() else None
 
 
 def shipped_text(name: str) -> str:

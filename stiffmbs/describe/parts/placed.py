@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -23,7 +24,7 @@ from ..formula.variables import meant_within
 from ..marker import MarkerReference
 from ..states.inputs import dimension_of_input
 from ..states.section import dimensions_of_entry, refuse_other_meanings
-from ..units.units import in_text
+from ..units.units import Quantity, in_text
 from .definitions import NAMED, Definitions
 from .instances import Instance, Instances
 from .mirrored import Mirror
@@ -114,6 +115,22 @@ def _sections(scene: Any) -> Any:
     return create_model("Part", __base__=Described, **fields)
 
 
+class _Values(Mapping[str, ast.expr]):
+    """Parameters as the numbers with units that stand in their places, each read when a formula has it."""
+
+    def __init__(self, found: Mapping[str, Quantity]) -> None:
+        self._found = found
+
+    def __getitem__(self, name: str) -> ast.expr:
+        return parse(str(in_text(self._found[name])))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+
 @dataclass
 class _Placed:
     raw: dict[str, Any]
@@ -131,11 +148,8 @@ class _Placed:
         for body, own_frame in mounts.values():
             self._add_markers(body, {instance.name: own_frame.placed(self.scene.origin)})
         local = instance.local() | {name: f"{body}.{instance.name}" for name, (body, _) in mounts.items()}
-        own = {
-            name: parse(str(in_text(value)))
-            for name, value in instance.parameters.items()
-            if self.context["parameters"].get(name) != value
-        }
+        outside = self.context["parameters"]
+        own = _Values({name: value for name, value in instance.parameters.items() if outside.get(name) != value})
         names = replace(self.context["names"], local=local, values=own, mounts=frozenset(mounts))
         found = self._read(instance, names)
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
