@@ -16,7 +16,7 @@ from .scene import CHANGES, STOPPED_EARLY, in_file, refuse, refuse_own_input
 
 if TYPE_CHECKING:
     from ..comparison.compare import Comparison
-    from ..comparison.over import ComparisonOver
+    from ..comparison.comparison_over import ComparisonOver
 
     Found = Comparison | ComparisonOver
 

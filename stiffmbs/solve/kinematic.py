@@ -51,6 +51,7 @@ def solve(
         When the drives leave a freedom or prescribe one twice.
     """
     _refuse_freedoms(dynamics)
+    _refuse_followed_states(dynamics)
     times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, 1001)
     system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
@@ -72,6 +73,18 @@ def solve(
     narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
     note = narrow or hidden_peak(inputs_of(system), features, times)
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
+
+
+def _refuse_followed_states(dynamics: Dynamics) -> None:
+    """Refuse drives and constraints that follow states: the motion then is not prescribed beforehand."""
+    system = dynamics.system
+    of_velocities = system.term("tangent", "V_q")
+    rows = [*system.term("tangent", "C_x").row, *of_velocities.row[of_velocities.column >= system.first_state]]
+    if rows:
+        raise InputError(
+            f"'{system.equations[rows[0]][0]}': found a state in a drive or constraint, expected functions of time for the solver "
+            "kinematic; take bdf or auto"
+        )
 
 
 def _refuse_freedoms(dynamics: Dynamics) -> None:

@@ -107,6 +107,14 @@ def test_what_a_constraint_cannot_follow_is_refused(state, told):
         model.run(duration=0.1)
 
 
+def test_kinematic_analysis_of_what_follows_a_state_is_refused():
+    model = crane()
+    model.add("motor", Drive(joint="rail", position="0.5*z"))
+    model.add("turn", Drive(joint="pin", position="t"))
+    with pytest.raises(stiffmbs.InputError, match="'motor': found a state in a drive"):
+        model.run(duration=0.1, solver="kinematic")
+
+
 MIRRORED = """
 dimensions: 3
 gravity: [0, 0, -9.81]
