@@ -10,6 +10,7 @@ from ..check_marker import check_marker
 from ..element import JointName
 from ..files.quoted import quoted
 from ..formula.text import UNIT
+from ..states.name import own_state
 from ..units.units import CONSTANTS, UNITS
 from .names import OF_RUN, OutputNames
 from .output import Output, channel
@@ -104,9 +105,9 @@ def channels_of_states(model: Any) -> set[str]:
     """What is reported of states: their values and rates."""
     values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
-    return (
-        set(model.state_values()) | outputs | {f"{name}.rate" for name, value in values.items() if not value.algebraic}
-    )
+    of_forces = {own_state(name, own) for name, force in model.forces.items() for own in force.own_states()}
+    rates = {f"{name}.rate" for name, value in values.items() if not value.algebraic}
+    return set(values) | of_forces | outputs | rates
 
 
 def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
