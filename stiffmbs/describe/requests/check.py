@@ -10,7 +10,6 @@ from ..check_marker import check_marker
 from ..element import JointName
 from ..files.quoted import quoted
 from ..formula.text import UNIT
-from ..states.name import own_state
 from ..units.units import CONSTANTS, UNITS
 from .names import OF_RUN, OutputNames
 from .output import Output, channel
@@ -84,6 +83,8 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
                 f"expected {term.element}, whose first body is known"
             )
     for owner, name in output.channels():
+        if owner in model.forces and name in model.forces[owner].own_states():
+            continue
         if channel(owner, name) in channels_of_states(model):
             continue
         if not name:
@@ -102,12 +103,11 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
 
 
 def channels_of_states(model: Any) -> set[str]:
-    """What is reported of states: their values and rates."""
+    """What is reported of the model's states: their values and rates."""
     values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
-    of_forces = {own_state(name, own) for name, force in model.forces.items() for own in force.own_states()}
     rates = {f"{name}.rate" for name, value in values.items() if not value.algebraic}
-    return set(values) | of_forces | outputs | rates
+    return set(values) | outputs | rates
 
 
 def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
