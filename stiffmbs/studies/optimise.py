@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError, SolverError
+from ..errors import InputError, SolverError, StiffmbsError
 from ..jobs.run import Runnable
+from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .outputs import Output, outputs_of
 from .parameters import Sought, sought
+from .sensitivities.formulas import of_whole_time
+from .sensitivities.gradients import Gradients
 
 STEP = 1e-3
 """Of central differences, as a part of each range."""
@@ -132,7 +135,11 @@ class _Model:
                     f"output '{output.text}': found a channel over time, expected a number such as peak(...)"
                 )
         self._outputs: tuple[Output, ...] = outputs
-        self._solver = CaseSolver(Task(written_scene(scene), ranges.names, dict(settings), outputs))
+        written = written_scene(scene)
+        self._solver = CaseSolver(Task(written, ranges.names, dict(settings), outputs))
+        known = self._solver.scene(ranges.values(ranges.point({})))
+        self._gradients = Gradients(written, ranges, self._texts, changed(known.run, dict(settings)))
+        self._sloped, self._slopes = b"", np.empty(0)
         self._ranges, self._limits = ranges, limits
         self._known: dict[bytes, np.ndarray] = {}
         self.runs = 0
@@ -160,7 +167,27 @@ class _Model:
         return self._known[key]
 
     def slopes(self, point: np.ndarray) -> np.ndarray:
-        """Derivatives of all outputs, shape (outputs, parameters), by central differences, one-sided at the bounds."""
+        """Derivatives of all outputs, shape (outputs, parameters): by sensitivities where they are outputs at single instants.
+
+        Those of means over time are by differences, as the runs that these take cost less; so are those of models without sensitivities.
+        """
+        key = np.ascontiguousarray(point).tobytes()
+        if self._sloped != key:
+            self._slopes, self._sloped = self._slopes_at(point), key
+        return self._slopes
+
+    def _slopes_at(self, point: np.ndarray) -> np.ndarray:
+        if any(of_whole_time(text) for text in self._texts):
+            return self._by_differences(point)
+        try:
+            slopes = np.array(self._gradients.at(np.clip(point, 0, 1)))
+        except StiffmbsError:
+            return self._by_differences(point)
+        self.runs += 1
+        return slopes
+
+    def _by_differences(self, point: np.ndarray) -> np.ndarray:
+        """By central differences, one-sided at the bounds."""
         columns = []
         for k in range(len(point)):
             ends = [point.copy(), point.copy()]

@@ -148,3 +148,16 @@ def test_what_cannot_be_optimised_is_refused():
             "peak(sled.x)",
             {"c": (1, 2)},
         )
+
+
+def test_the_gradient_of_a_final_value_leads_to_the_closed_form():
+    """A stone is to be at 1 m after 0.5 s: v t - g t^2/2 = 1."""
+    text = """
+parameters: {v: 3}
+gravity: [0, -10]
+bodies: {stone: {mass: 2, inertia: 1, velocity: [0, v]}}
+run: {duration: 0.5, rtol: 1e-8}
+"""
+    found = optimise(stiffmbs.read_scene(text), "(final(stone.y) - 1)^2", {"v": (1, 8)})
+    assert found.values["v"] == pytest.approx((1 + 1.25) / 0.5, rel=1e-4)
+    assert found.runs < 25

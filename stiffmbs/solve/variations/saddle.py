@@ -8,6 +8,9 @@ import numpy as np
 
 from ...compile.state import State
 
+DENSE_UP_TO = 200
+"""Unknowns up to which a full matrix is solved sooner than a sparse one is put together."""
+
 
 def saddle_solution(state: State, term_set: str, right: np.ndarray, friction: bool = False) -> np.ndarray:
     """The solution at the state whose terms have just been computed; multipliers of redundant equations are zero.
@@ -21,20 +24,41 @@ def saddle_solution(state: State, term_set: str, right: np.ndarray, friction: bo
     friction : bool
         Whether forces that depend on multipliers are taken to the left side: J^T - f_lam in place of J^T.
     """
+    system = state.system
+    active = np.flatnonzero(system.active)
+    kept = np.concatenate([np.arange(system.n_u), system.n_u + active])
+    found = np.zeros_like(right)
+    solved = _dense if len(kept) <= DENSE_UP_TO else _by_sparse_factors
+    found[kept] = solved(state, term_set, active, friction, np.ascontiguousarray(right[kept]))
+    return found
+
+
+def _dense(state: State, term_set: str, active: np.ndarray, friction: bool, right: np.ndarray) -> np.ndarray:
+    system = state.system
+    n_u, n = system.n_u, len(right)
+    matrix = np.zeros((n, n))
+    np.fill_diagonal(matrix[:n_u, :n_u], system.mass)
+    if len(active):
+        J = state.matrix(term_set, "J")[active]
+        matrix[n_u:, :n_u], matrix[:n_u, n_u:] = J, J.T
+        if friction:
+            matrix[:n_u, n_u:] -= state.matrix(term_set, "f_lam")[:, active]
+    return np.asarray(np.linalg.solve(matrix, right))
+
+
+def _by_sparse_factors(
+    state: State, term_set: str, active: np.ndarray, friction: bool, right: np.ndarray
+) -> np.ndarray:
     from scipy.sparse import block_array, csc_array, diags_array
     from scipy.sparse.linalg import splu
 
     system = state.system
-    active = np.flatnonzero(system.active)
     mass, J = diags_array(system.mass), _sparse(state, term_set, "J", (system.n_c, system.n_u))[active]
     by_lam = J.T
     if friction:
         by_lam = by_lam - _sparse(state, term_set, "f_lam", (system.n_u, system.n_c))[:, active]
     matrix = block_array([[mass, by_lam], [J, None]]) if len(active) else mass
-    kept = np.concatenate([np.arange(system.n_u), system.n_u + active])
-    found = np.zeros_like(right)
-    found[kept] = splu(csc_array(matrix)).solve(np.ascontiguousarray(right[kept]))
-    return found
+    return np.asarray(splu(csc_array(matrix)).solve(right))
 
 
 def _sparse(state: State, term_set: str, name: str, shape: tuple[int, int]) -> Any:

@@ -20,33 +20,39 @@ from .set_up import SetUp
 
 
 def changed_channels(
-    system: System, u: np.ndarray, numbers: Sequence[Numbers], change: Change, values: np.ndarray
+    system: System, u: np.ndarray, numbers: Sequence[Numbers], changes: Sequence[Change], values: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """How the channels of bodies, elements and energies change at one instant, each of shape (directions,).
+    """How the channels of bodies, elements and energies change at some instants, each of shape (instants, directions).
 
     Parameters
     ----------
     system : System
-    u : ndarray, shape (n_u,)
+    u : ndarray, shape (instants, n_u)
     numbers : sequence of Numbers
-    change : Change
-    values : ndarray, shape (directions, values)
+        Of the directions.
+    changes : sequence of Change
+    values : ndarray, shape (instants, directions, values)
         How the output terms change.
     """
     of_body, channels = system.of_body, dict[str, np.ndarray]()
-    states = in_own_axes(system, change.q, change.u, change.acceleration)
+    shape = len(changes), len(numbers)
+    moved_q, moved_u, moved_a = (
+        np.concatenate([getattr(change, name) for change in changes]) for name in ("q", "u", "acceleration")
+    )
+    states = in_own_axes(system, moved_q, moved_u, moved_a)
     labels = of_body.positions, of_body.velocities, of_body.accelerations
     for k, body in enumerate(system.bodies):
         for state, names in zip(states, labels, strict=True):
             for offset, name in enumerate(names):
                 channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
-    channels |= state_channels(system, change.q, values)
-    channels |= reactions(system, values)
+    flat = values.reshape(-1, values.shape[-1])
+    channels |= state_channels(system, moved_q, flat)
+    channels |= reactions(system, flat)
+    channels["energy.potential"] = flat[:, system.term("output", "potential").source].sum(axis=1)
+    channels = {name: slope.reshape(shape) for name, slope in channels.items()}
     masses = np.array([each.mass for each in numbers])
-    kinetic = change.u @ (system.mass * u) + 0.5 * masses @ u**2
-    potential = values[:, system.term("output", "potential").source].sum(axis=1)
-    channels |= {"energy.kinetic": kinetic, "energy.potential": potential, "energy.total": kinetic + potential}
-    return channels
+    kinetic = np.einsum("iu,idu->id", system.mass * u, moved_u.reshape(*shape, -1)) + 0.5 * u**2 @ masses.T
+    return channels | {"energy.kinetic": kinetic, "energy.total": kinetic + channels["energy.potential"]}
 
 
 def changed_requests(

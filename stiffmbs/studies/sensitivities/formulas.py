@@ -22,6 +22,11 @@ WHOLE = ("rms", "mean", "integral")
 """Reductions of all instants."""
 
 
+def of_whole_time(text: str) -> bool:
+    """Whether an output needs channels at all instants."""
+    return any(isinstance(node, ast.Name) and node.id in WHOLE for node in ast.walk(parsed(text)))
+
+
 @dataclass(frozen=True)
 class Dual:
     """A value with its derivatives; of a series only those at the instants that count.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ...describe.files.unchanged import Unchanged
@@ -22,6 +23,8 @@ class Scenes:
     Parameters
     ----------
     written : WrittenScene
+    unchanged : Unchanged, optional
+        What has been validated before.
 
     Attributes
     ----------
@@ -29,9 +32,13 @@ class Scenes:
         As it is written.
     """
 
-    def __init__(self, written: WrittenScene) -> None:
-        self._written, self._unchanged = written, Unchanged()
+    def __init__(self, written: WrittenScene, unchanged: Unchanged | None = None) -> None:
+        self._written, self._unchanged = written, unchanged or Unchanged()
         self.known = self.changed(())
+
+    def at(self, changes: Sequence[tuple[str, Any]]) -> Scenes:
+        """Scenes that differ by one value from one with other values; errors as for `changed`."""
+        return Scenes(replace(self._written, changes=(*self._written.changes, *changes)), self._unchanged)
 
     def changed(self, changes: Sequence[tuple[str, Any]]) -> Scene:
         """The scene with other values.

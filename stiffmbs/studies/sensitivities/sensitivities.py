@@ -11,7 +11,7 @@ import numpy as np
 
 from ...describe.settings import RunSettings
 from ...errors import InputError, SolverError
-from ...jobs.run import Runnable, prepare
+from ...jobs.run import Job, Runnable, prepare
 from ...results.channels import channels_of
 from ...solve.bdf import integrated
 from ...solve.dynamics import OutputRows
@@ -107,10 +107,17 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     scenes = Scenes(written_scene(scene))
     asked = changed(scenes.known.run, settings)
     for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
-        run = DifferentiatedRun(scenes, names, changed(asked, {"rtol": rtol}))
+        job = prepare(scenes.known, differentiable(changed(asked, {"rtol": rtol})))
+        run = DifferentiatedRun(scenes, names, job)
         if run.success:
             break
-    return run.sensitivity(output.text)
+    (found,) = run.sensitivities([output.text])
+    return found
+
+
+def differentiable(settings: RunSettings) -> RunSettings:
+    """Settings of a run along which sensitivities can be integrated."""
+    return changed(settings, HELD)
 
 
 class DifferentiatedRun:
@@ -121,8 +128,8 @@ class DifferentiatedRun:
     scenes : Scenes
     names : sequence of str
         Of the parameters.
-    settings : RunSettings
-        Solver and formulation are `bdf` and SI2 in any case, without presolve.
+    job : Job
+        Of the scene as it is, with settings that are `differentiable`.
     times : ndarray, optional
         Output instants in place of those of the settings.
 
@@ -132,11 +139,9 @@ class DifferentiatedRun:
         Whether the whole time was solved.
     """
 
-    def __init__(
-        self, scenes: Scenes, names: Sequence[str], settings: RunSettings, times: np.ndarray | None = None
-    ) -> None:
+    def __init__(self, scenes: Scenes, names: Sequence[str], job: Job, times: np.ndarray | None = None) -> None:
         parameters = [Parameter(scenes, name) for name in names]
-        self._job = job = prepare(scenes.known, changed(settings, HELD))
+        self._job = job
         self._set_ups = [SetUp(job, parameter) for parameter in parameters]
         self._numbers = [set_up.numbers for set_up in self._set_ups]
         self._recorder = Recorder(job.dynamics, job.settings)
@@ -147,21 +152,26 @@ class DifferentiatedRun:
             raise KeyboardInterrupt
         self.success = self._trajectory.outcome is Outcome.DONE
 
-    def sensitivity(self, text: str) -> Sensitivity:
-        """Of a formula of channels; errors as for `sensitivities`."""
+    def sensitivities(self, texts: Sequence[str]) -> list[Sensitivity]:
+        """Of formulas of channels; errors as for `stiffmbs.sensitivities`."""
         rows = self._rows
         channels = channels_of(self._job.data, self._job.dynamics.system, rows)
-        (output,) = outputs_of(text)
-        output.refuse_unknown(channels)
-        formula = Formula(output.text, rows.t, channels)
-        dual = formula.dual(self._slopes(channels, formula.instants()))
+        outputs = outputs_of(tuple(texts))
+        for output in outputs:
+            output.refuse_unknown(channels)
+        formulas = [Formula(output.text, rows.t, channels) for output in outputs]
+        slopes = self._slopes(channels, np.unique(np.concatenate([formula.instants() for formula in formulas])))
+        return [self._of_formula(formula, slopes) for formula in formulas]
+
+    def _of_formula(self, formula: Formula, slopes: dict[str, np.ndarray]) -> Sensitivity:
+        dual = formula.dual(slopes)
         by = np.broadcast_to(dual.slope, (*np.shape(dual.value), len(self._set_ups)))
         if not np.isfinite(by).all():
             raise SolverError(
                 f"sensitivities: found a derivative of '{formula.text}' that is no number, expected finite ones"
             )
         to = {set_up.parameter.name: _plain(by[..., k]) for k, set_up in enumerate(self._set_ups)}
-        return Sensitivity(formula.text, _plain(dual.value), to, rows.t)
+        return Sensitivity(formula.text, _plain(dual.value), to, self._rows.t)
 
     @cached_property
     def _rows(self) -> OutputRows:
@@ -178,20 +188,24 @@ class DifferentiatedRun:
         """Derivatives of all channels, shape (n, directions); zero at instants that are not asked for."""
         job, rows, count = self._job, self._rows, len(self._set_ups)
         along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
-        shape = len(rows.t), count
-        slopes: dict[str, np.ndarray] = {}
-        moved_q = np.zeros((*shape, job.dynamics.system.n_q))
         start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))
+        changes, values = [], []
         try:
             for k, change in along.at(rows, instants, start_q, start_u):
-                values = along.block.outputs(rows.t[k], change)
-                found = changed_channels(job.dynamics.system, rows.u[k], self._numbers, change, values)
-                moved_q[k] = change.q
-                for name, slope in found.items():
-                    slopes.setdefault(name, np.zeros(shape))[k] = slope
+                changes.append(change)
+                values.append(along.block.outputs(rows.t[k], change))
         finally:
             along.close()
-        if job.data.requests and instants.size:
+        slopes: dict[str, np.ndarray] = {}
+        if not changes:
+            return slopes
+        found = changed_channels(job.dynamics.system, rows.u[instants], self._numbers, changes, np.array(values))
+        for name, slope in found.items():
+            slopes[name] = np.zeros((len(rows.t), count))
+            slopes[name][instants] = slope
+        moved_q = np.zeros((len(rows.t), count, job.dynamics.system.n_q))
+        moved_q[instants] = [change.q for change in changes]
+        if job.data.requests:
             slopes |= changed_requests(job, self._set_ups, rows, channels, slopes, moved_q)
         return slopes
 

@@ -1,0 +1,56 @@
+"""Derivatives of outputs by sought parameters, at points of the unit cube."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...describe.files.written_scene import WrittenScene
+from ...describe.settings import RunSettings
+from ...jobs.renumber import renumbered
+from ...jobs.run import Job, prepare
+from ..parameters import Sought
+from .parameters import Scenes
+from .sensitivities import DifferentiatedRun, differentiable
+
+
+class Gradients:
+    """Derivatives of outputs; what stays the same from point to point is read and compiled once.
+
+    Parameters
+    ----------
+    written : WrittenScene
+    ranges : Sought
+    texts : sequence of str
+        The outputs, formulas of channels.
+    settings : RunSettings
+    times : ndarray, optional
+        Output instants in place of those of the settings.
+    """
+
+    def __init__(
+        self, written: WrittenScene, ranges: Sought, texts: Sequence[str], settings: RunSettings,
+        times: np.ndarray | None = None,
+    ) -> None:  # fmt: skip
+        self._scenes, self._ranges, self._texts = Scenes(written), ranges, texts
+        self._settings, self._times = differentiable(settings), times
+        self._job: Job | None = None
+
+    def at(self, point: np.ndarray) -> list[np.ndarray]:
+        """For each output its derivatives by the point's coordinates, shape (parameters,) or (instants, parameters).
+
+        Raises
+        ------
+        StiffmbsError
+            As for `stiffmbs.sensitivities`.
+        """
+        names, values = self._ranges.names, self._ranges.values(point)
+        scenes = self._scenes.at(list(zip(names, values, strict=True)))
+        known = self._job and renumbered(self._job, scenes.known)
+        self._job = known or prepare(scenes.known, self._settings)
+        run = DifferentiatedRun(scenes, names, self._job, self._times)
+        spans = self._ranges.slopes(point)
+        return [
+            np.stack([found.to[name] for name in names], axis=-1) * spans for found in run.sensitivities(self._texts)
+        ]
