@@ -60,7 +60,7 @@ class Group:
 
     @cached_property
     def has_law(self) -> bool:
-        """Whether the elements have breakpoints, formulas or tables."""
+        """Whether the elements have breakpoints, formulas, tables or Python functions."""
         return bool(self.entries("event_function")) or any(_is_law(shape) for _, shape in self.kind.fields)
 
     @property
@@ -143,4 +143,4 @@ class Group:
 
 
 def _is_law(shape: Shape) -> bool:
-    return shape[0] in ("formula", "table") or (shape[0] == "several" and any(map(_is_law, shape[1])))
+    return shape[0] in ("formula", "table", "python") or (shape[0] == "several" and any(map(_is_law, shape[1])))

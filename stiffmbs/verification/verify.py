@@ -25,8 +25,8 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from ..compile.laws import has_laws
 from ..describe.settings import RunSettings, Settings, takes_settings
-from ..diagnostics.laws import has_laws
 from ..jobs.run import Job, Runnable, prepare, solved
 from ..jobs.start_from import StartFrom
 from ..results.error_bars import UNKNOWN, ErrorBar, error_bar

@@ -98,7 +98,15 @@ class AdaptiveRun:
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": ending.seconds}
         note = "; ".join(filter(None, (self._note, self._jumps.sentence())))
-        return Trajectory(*self._rows.stored, ending.outcome, ending.message, statistics, history, note)
+        return Trajectory(
+            *self._rows.stored,
+            ending.outcome,
+            ending.message,
+            statistics,
+            history,
+            note,
+            long_steps=self.work.long_steps(),
+        )
 
     def _segment(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""

@@ -11,6 +11,7 @@ from ...compile.machine.layout import MOST_STEPS, NATIVE_IDA, SAMPLES, cells, pa
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ..events.event_functions import EventSearch
+from ..events.long_steps import LongStepLog
 from ..events.step_bound import StepBound
 from .error_norm import ErrorNorm
 from .iteration import Iteration
@@ -58,6 +59,7 @@ class Connection:
         As in `stiffmbs.solve.native.event_search.event_signs`.
     watch : EventSearch
     history : StepLog
+    long_steps : LongStepLog
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
         Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
     table : int
@@ -71,7 +73,7 @@ class Connection:
         self._session, self._state, self._equations = session, state, equations
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
         self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
-        self.history = StepLog()
+        self.history, self.long_steps = StepLog(), LongStepLog(equations.system, len(self.reported))
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.iteration, self.step_bound = OutputCorrection(n), Iteration(n), StepBound()
@@ -110,7 +112,7 @@ class Connection:
                 "history": self.history.rows(MOST_STEPS), "samples": self.samples,
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address() if self.watch.n else 0, "look_within": LOOK_WITHIN.address() if self.watch.n else 0,
-                "probe": self._probe,
+                "probe": self._probe, "long_steps": self.long_steps.table,
             },
         )  # fmt: skip
 
@@ -144,6 +146,7 @@ class Connection:
     def forget(self) -> None:
         """Drop the history, and the pivots that the linear solver has found."""
         self.history.forget()
+        self.long_steps.forget()
         self.output_correction.forget()
         self.error_norm.forget()
         if self._assembled.pivots is not None:
