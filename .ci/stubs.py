@@ -25,6 +25,7 @@ from stiffmbs.describe.roads.road import Road
 from stiffmbs.describe.spatial.orientation import OrientationField
 from stiffmbs.describe.table import Table
 from stiffmbs.describe.tyres.coefficients import TyreProperties
+from stiffmbs.loaded_later import elements_of
 
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
@@ -32,6 +33,7 @@ PLANE = """
 from typing import Literal
 
 from . import spatial as spatial
+from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
@@ -49,6 +51,7 @@ from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.settings import SteadyMotion as SteadyMotion
 from .describe.states.linear_system import PID as PID
+from .describe.states.algebraic_state import AlgebraicState as AlgebraicState
 from .describe.states.linear_system import LinearSystem as LinearSystem
 from .describe.states.linear_system import TransferFunction as TransferFunction
 from .describe.states.state import State as State
@@ -61,10 +64,12 @@ from .errors import StiffmbsError as StiffmbsError
 from .jobs.check import Report as Report
 from .jobs.check import check as check
 from .jobs.equilibrium import equilibrium as equilibrium
+from .jobs.quasi_static import quasi_static as quasi_static
 from .jobs.load_scene import load_scene as load_scene
 from .jobs.modes import modes as modes
 from .jobs.run import run as run
 from .jobs.transfer import transfer as transfer
+from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
@@ -74,8 +79,15 @@ from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
+from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
+from .studies.sensitivities.sensitivities import sensitivities as sensitivities
+from .studies.follow import follow as follow
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
+from .studies.suspension.kinematics_and_compliance import KinematicsAndCompliance as KinematicsAndCompliance
+from .studies.suspension.kinematics_and_compliance import kinematics_and_compliance as kinematics_and_compliance
+from .studies.suspension.road_loads import RoadLoads as RoadLoads
+from .studies.suspension.road_loads import road_loads as road_loads
 from .studies.sweep import sweep as sweep
 from .studies.variation import Range as Range
 from .verification.verify import verify as verify
@@ -98,7 +110,7 @@ MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "",
 def stub(file: str) -> str:
     """The content of a stub, before it is formatted."""
     exports, others, module = MODULES[file]
-    elements = sorted(module._ELEMENTS.items())
+    elements = sorted(elements_of(*module._KINDS).items())
     imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"

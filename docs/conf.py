@@ -22,6 +22,8 @@ extensions = [
     "matplotlib.sphinxext.plot_directive",
     "kinds",
     "scenes",
+    "measured",
+    "shipped_parts",
 ]
 exclude_patterns = ["extensions"]
 suppress_warnings = ["toc.empty_glob"]  # a page that a pattern stands for may be missing

@@ -8,7 +8,7 @@ Examples
 the rail carries 108.8 N at most
 """
 
-# ruff: noqa: E402 Ctrl-C is to end the command without a traceback while all of this is imported
+# ruff: noqa: E402, F401 Ctrl-C is to end the command without a traceback while all of this is imported and offered
 from .interrupts import quiet_while_loading
 
 quiet_while_loading()
@@ -25,43 +25,51 @@ from .describe.python_function import PythonFunction
 from .describe.scene import Scene, read_scene
 from .describe.schema import scene_schema
 from .describe.settings import RunSettings, SteadyMotion
+from .describe.states.algebraic_state import AlgebraicState
 from .describe.states.linear_system import PID, LinearSystem, TransferFunction
 from .describe.states.state import State
 from .describe.table import Table
 from .describe.units import si
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
 from .jobs.load_scene import load_scene
-from .loaded_later import loaded
+from .loaded_later import elements_of, loaded
 
 __version__ = "0.1.0"
 
-_ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
+_KINDS = JOINTS, FORCES
 _LATER = {
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
-    "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "modes": ".jobs.modes", "run": ".jobs.run",
+    "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "quasi_static": ".jobs.quasi_static", "modes": ".jobs.modes", "run": ".jobs.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".jobs.transfer",
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
-    "Simulation": ".studies.simulation", "simulation": ".studies.simulation",
+    "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
+    "RoadLoads": ".studies.suspension.road_loads", "road_loads": ".studies.suspension.road_loads",
+    "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
+    "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",
+    "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
+    "listed_statements": ".adams.listing", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""
 
-__all__ = [
-    "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
+_OFFERED = (
+    "AlgebraicState", "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
     "SolverError", "State", "SteadyMotion", "StiffmbsError", "Table", "TransferFunction", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
-    *_LATER, *_ELEMENTS,
-]  # fmt: skip
+    *_LATER,
+)  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__all__":
+        return [*_OFFERED, *elements_of(*_KINDS)]
     if name == "spatial":
         from importlib import import_module
 
         return import_module(".spatial", __name__)
-    return loaded(name, __name__, _ELEMENTS, _LATER)
+    return loaded(name, __name__, _KINDS, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, "spatial"})
+    return sorted({*globals(), *_OFFERED, *elements_of(*_KINDS), "spatial"})

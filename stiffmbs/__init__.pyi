@@ -25,6 +25,7 @@ from stiffmbs.describe.joints.revolute import Revolute as _Revolute
 from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _VelocityEquation
 
 from . import spatial as spatial
+from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
@@ -41,6 +42,7 @@ from .describe.scene import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.settings import SteadyMotion as SteadyMotion
+from .describe.states.algebraic_state import AlgebraicState as AlgebraicState
 from .describe.states.linear_system import PID as PID
 from .describe.states.linear_system import LinearSystem as LinearSystem
 from .describe.states.linear_system import TransferFunction as TransferFunction
@@ -56,8 +58,10 @@ from .jobs.check import check as check
 from .jobs.equilibrium import equilibrium as equilibrium
 from .jobs.load_scene import load_scene as load_scene
 from .jobs.modes import modes as modes
+from .jobs.quasi_static import quasi_static as quasi_static
 from .jobs.run import run as run
 from .jobs.transfer import transfer as transfer
+from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
@@ -65,10 +69,17 @@ from .show.drawing.animate import animate as animate
 from .show.drawing.draw import draw as draw
 from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
+from .studies.follow import follow as follow
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
+from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
+from .studies.sensitivities.sensitivities import sensitivities as sensitivities
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
+from .studies.suspension.kinematics_and_compliance import KinematicsAndCompliance as KinematicsAndCompliance
+from .studies.suspension.kinematics_and_compliance import kinematics_and_compliance as kinematics_and_compliance
+from .studies.suspension.road_loads import RoadLoads as RoadLoads
+from .studies.suspension.road_loads import road_loads as road_loads
 from .studies.sweep import sweep as sweep
 from .studies.variation import Range as Range
 from .verification.verify import verify as verify
@@ -161,7 +172,7 @@ class Distance(_Distance):
     ) -> None: ...
 
 class Drive(_Drive):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes."""
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes."""
     def __init__(
         self,
         *,

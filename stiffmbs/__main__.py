@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 
+from .interrupts import collect_from_now_on
+
 
 def start() -> None:
     """The command ``stiffmbs``; also where there is too little memory to load it."""
@@ -12,6 +14,7 @@ def start() -> None:
     except (MemoryError, ImportError, OSError) as error:
         print(f"stiffmbs: the program cannot be loaded ({type(error).__name__}: {error})", file=sys.stderr)
         sys.exit(1)
+    collect_from_now_on()
     main()
 
 

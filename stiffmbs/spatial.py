@@ -8,23 +8,26 @@ Examples
 >>> model.add("tip", Spherical(i=top.at(0, 0, -0.2), j="ground"))
 """
 
+# ruff: noqa: F401 what is imported is offered
 from typing import Any
 
 from .describe.element import Force, Joint
 from .describe.spatial.body import Body
 from .describe.spatial.marker import Marker
 from .describe.spatial.model import FORCES, JOINTS, Model
-from .loaded_later import loaded
+from .loaded_later import elements_of, loaded
 
-_ELEMENTS = {element.__name__: element for element in (*JOINTS.shipped.values(), *FORCES.shipped.values())}
+_KINDS = JOINTS, FORCES
 _LATER = {"in_space": ".jobs.in_space"}
 
-__all__ = ["Body", "Force", "Joint", "Marker", "Model", *_LATER, *_ELEMENTS]
+_OFFERED = "Body", "Force", "Joint", "Marker", "Model", *_LATER
 
 
 def __getattr__(name: str) -> Any:
-    return loaded(name, __name__, _ELEMENTS, _LATER)
+    if name == "__all__":
+        return [*_OFFERED, *elements_of(*_KINDS)]
+    return loaded(name, __name__, _KINDS, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *_OFFERED, *elements_of(*_KINDS)})

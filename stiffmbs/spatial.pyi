@@ -161,7 +161,7 @@ class Distance(_Distance):
     ) -> None: ...
 
 class Drive(_Drive):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes."""
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes."""
     def __init__(
         self,
         *,
@@ -192,6 +192,7 @@ class FialaTyre(_FialaTyre):
         mu_sliding: given.Number,
         width: given.Number = ...,
         rolling_resistance: given.Number = ...,
+        relaxation: given.Numbers | None = ...,
         type: Literal["fiala_tyre"] = ...,
     ) -> None: ...
 
@@ -259,6 +260,8 @@ class MagicFormulaTyre(_MagicFormulaTyre):
         slow: given.Number = ...,
         properties: given.TyreProperties,
         hand: given.Number = ...,
+        side: Literal["left", "right"] | None = ...,
+        transient: bool | None = ...,
         type: Literal["magic_formula_tyre"] = ...,
     ) -> None: ...
 

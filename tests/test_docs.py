@@ -29,6 +29,7 @@ TESTED = {"yaml", "python", "console"}
 QUICK = r"\$ stiffmbs (run|check|equilibrium|modes|response) "
 """Commands that are run; those that measure take long, and never print the same twice."""
 PLOT = ".. plot::\n"
+OPTION = r"(?m)^ +:[a-z-]+:.*\n"
 NUMBER = r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?"
 FRAME = "[\u2500-\u257f]+"
 """Lines of tables, as long as their numbers."""
@@ -118,7 +119,8 @@ def test_what_a_page_shows_is_true(page, workplace):
             case "python":
                 printed = run_python(text, line, page, names)
             case "{eval-rst}" if text.startswith(PLOT):
-                run_python(dedent(text.removeprefix(PLOT)), line + 2, page, {})
+                code = re.sub(OPTION, "\n", text.removeprefix(PLOT))
+                run_python(dedent(code), line + 2, page, {})
             case "console" if re.match(QUICK, text):
                 found = run_command(text)
                 assert as_expected(text, found), f"{page.name}:{line}: found {found}"

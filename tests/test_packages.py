@@ -94,3 +94,12 @@ def test_a_planar_scene_loads_nothing_of_space():
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not found.stdout.split()
+
+
+def test_a_warm_run_changes_package_rarely(monkeypatch):
+    """Measured: 91 files and 98 changes; before the packages were in the order of a run 93 files and 265 changes."""
+    monkeypatch.syspath_prepend(ROOT.parent / ".ci")
+    from package_calls import warm_run
+
+    calls = warm_run(str(ROOT.parent / "examples" / "cart_pendulum.yaml"))
+    assert len(calls.files) < 93 and len(calls.changes) < 265 / 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +18,7 @@ from .stages import followed
 from .statements.changes import Changes
 from .statements.commands import Segment, read_commands
 from .statements.dataset import NO_CHANGES, Dataset, read_dataset
-from .statements.fault import DatasetFault
+from .statements.fault import CommandFault, DatasetFault
 
 COMMANDS = ".acf"
 """How the name of a command file ends."""
@@ -61,6 +62,12 @@ def convert_file(path: str | Path) -> str:
     return scene_text(_with_aliases(dataset, found))
 
 
+def command_file(path: str | Path) -> Path | None:
+    """The command file beside a dataset's file; None where there is none."""
+    beside = Path(path).with_suffix(COMMANDS)
+    return None if beside.stem == STANDARD_INPUT or not os.path.isfile(beside) else beside
+
+
 def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
     """The scene with a comment beside what is called otherwise in Adams/View."""
     from ruamel.yaml.comments import CommentedMap
@@ -80,6 +87,8 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
     try:
         dataset = read_dataset(text, changes)
         return dataset, scene(dataset)
+    except CommandFault:
+        raise
     except DatasetFault as fault:
         raise InputError(f"{source}, {fault}") from None
     except InputError as error:
@@ -88,16 +97,19 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
 
 def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
     """The scene of a dataset's file as the command file beside it says, if there is one."""
-    beside = Path(path).with_suffix(COMMANDS)
+    beside = command_file(path)
     text, source = file_text(path, ENCODING), source_name(path)
-    if beside.stem == STANDARD_INPUT or not beside.is_file():
+    if beside is None:
         return _scene(text, source)
     try:
         asked = read_commands(file_text(beside, ENCODING))
     except DatasetFault as fault:
         raise InputError(f"{beside}, {fault}") from None
     first = asked.segments[0].changes if asked.segments else asked.changes
-    dataset, found = _scene(text, source, first)
+    try:
+        dataset, found = _scene(text, source, first)
+    except CommandFault as fault:
+        raise InputError(f"{beside}, {fault}") from None
     told = [*first.notes(beside.name), *asked.notes]
     if asked.segments:
 

@@ -36,18 +36,22 @@ def draw(problem: str, rows: Sequence[Row], folder: Path) -> Path:
     """
     from matplotlib.figure import Figure
 
-    measured = [row for row in rows if row.error > 0 and row not in at_target_rows(rows)]
     figure = Figure(figsize=SIZE, layout="constrained")
-    axes = figure.add_subplot()
-    for solver in dict.fromkeys(row.solver for row in measured):
-        own = sorted((r for r in measured if r.solver == solver), key=lambda r: r.seconds)
-        style = "--" if own[0].peer else "-"
-        curve(axes, [r.error for r in own], [r.seconds for r in own], solver, style)
-    axes.invert_xaxis()
-    finished(axes, "largest error, m or rad", problem)
+    draw_rows(figure.add_subplot(), problem, rows)
     found = machine()
     figure.supxlabel(", ".join(f"{name} {value}" for name, value in found.items()), fontsize=5)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{problem}.svg"
     figure.savefig(path)
     return path
+
+
+def draw_rows(axes: Any, problem: str, rows: Sequence[Row]) -> None:
+    """Draw the rows of a problem on empty axes of matplotlib's."""
+    measured = [row for row in rows if row.error > 0 and row not in at_target_rows(rows)]
+    for solver in dict.fromkeys(row.solver for row in measured):
+        own = sorted((r for r in measured if r.solver == solver), key=lambda r: r.seconds)
+        style = "--" if own[0].peer else "-"
+        curve(axes, [r.error for r in own], [r.seconds for r in own], solver, style)
+    axes.invert_xaxis()
+    finished(axes, "largest error, m or rad", problem)

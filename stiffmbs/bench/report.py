@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -17,6 +18,12 @@ REFERENCE, OWN = "yardstick", ("bdf", "dop853")
 def as_json(problem: str, rows: Sequence[Row]) -> dict[str, Any]:
     """The object of ``stiffmbs bench --json`` for one problem."""
     return {"problem": problem, "machine": machine(), "rows": [asdict(row) for row in rows]}
+
+
+def read_json(text: str) -> dict[str, list[Row]]:
+    """The rows of each problem in what ``stiffmbs bench --json`` printed."""
+    objects = (json.loads(line) for line in text.splitlines())
+    return {found["problem"]: [Row(**row) for row in found["rows"]] for found in objects}
 
 
 def machine_sentence() -> str:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from ..errors import StiffmbsError
-from ..jobs.load_scene import load_scene
+from ..jobs.load_scene import DATASET, load_scene
 from .scene import CHANGES, in_file, refuse
+
+if TYPE_CHECKING:
+    from ..adams.listing import ListedStatement
 
 PROBLEMS = 1
 
@@ -20,10 +26,16 @@ PROBLEMS = 1
 def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     """Report SCENE's degrees of freedom, redundant equations, and reactions without a unique value.
 
+    Of an Adams/Solver dataset every statement is listed first: read, left out, or refused, and why.
+
     Exit status: 0 sound, 1 problems, 2 the input is wrong.
     """
     from ..jobs.check import check as examine
 
+    listed = _listed(scene)
+    if not as_json:
+        for statement in listed:
+            click.echo(statement)
     try:
         loaded = load_scene(scene, changes)
         with in_file(scene):
@@ -33,7 +45,19 @@ def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     if as_json:
         from ..show.summary import check_as_json
 
-        click.echo(check_as_json(scene, report))
+        click.echo(check_as_json(scene, report, listed))
     else:
         click.echo(report)
     sys.exit(0 if report.sound else PROBLEMS)
+
+
+def _listed(scene: str) -> Sequence[ListedStatement]:
+    """The statements of a dataset; none of anything else, or of what cannot be read at all."""
+    if Path(scene).suffix.lower() != DATASET:
+        return ()
+    from ..adams.listing import listed_statements
+
+    try:
+        return listed_statements(scene)
+    except StiffmbsError:  # told where the scene is made
+        return ()

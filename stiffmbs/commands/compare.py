@@ -16,7 +16,7 @@ from .scene import CHANGES, STOPPED_EARLY, in_file, refuse, refuse_own_input
 
 if TYPE_CHECKING:
     from ..comparison.compare import Comparison
-    from ..comparison.over import ComparisonOver
+    from ..comparison.comparison_over import ComparisonOver
 
     Found = Comparison | ComparisonOver
 
@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     "--measure", default="positions", show_default=True, help="What errors are of: positions, velocities or forces."
 )
 @click.option(
-    "--over", metavar="P=A..B[:N]", help="Time at an equal error against a parameter; by decades where A..B has any."
+    "--over",
+    metavar="P=A..B[:N]",
+    help="Time at an equal error against a parameter, also with units (k=1..100 N/mm); by decades where A..B has any.",
 )
 @click.option(
     "--error", type=float, help="With --over: at which times are compared; of positions 1e-4 m or rad by default."
@@ -93,9 +95,8 @@ def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
     if over is not None:
         from ..comparison.over import compare_over, with_parameter
 
-        name, values = over
-        made = with_parameter(scene, name, changes)
-        return compare_over(made, name, values, error=options["error"], tell=tell, **asked)
+        made = with_parameter(scene, over.parameter, changes, over.dimension)
+        return compare_over(made, over.parameter, over.numbers, error=options["error"], tell=tell, **asked)
     from ..comparison.compare import compare
 
     loaded = load_scene(scene, changes)

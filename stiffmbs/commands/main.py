@@ -12,6 +12,7 @@ from .compare import compare
 from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
+from .exchange.diff import diff
 from .fit import fit, optimise
 from .modes import modes
 from .plot import plot
@@ -20,11 +21,15 @@ from .report import report
 from .response import response
 from .run import run
 from .schema import schema
+from .sensitivities import sensitivities
 from .starting.examples import examples
 from .starting.init import init
+from .starting.parts import parts
 from .starting.version import show_version
 from .stress import stress
 from .study import study
+from .suspension.kc import kc
+from .suspension.loads import loads
 from .terminal.logging_options import with_logging_options
 
 COMPLETION = """\b
@@ -45,6 +50,6 @@ def main() -> None:
 
 
 for command in (
-    run, check, equilibrium, modes, response, study, compare, fit, optimise, convert, schema, bench, cache, draw, animate, plot, report, stress, init, examples, show_version,
+    run, check, equilibrium, modes, response, kc, loads, study, sensitivities, compare, fit, optimise, convert, diff, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
 ):  # fmt: skip
     main.add_command(with_logging_options(command))

@@ -9,9 +9,11 @@ from typing import Any
 
 import click
 
-from ..errors import StiffmbsError
-from .runs import runs_of
-from .scene import STOPPED_EARLY, refuse, refuse_own_input, solving_options
+from ..describe.figure import Figure
+from ..errors import InputError, StiffmbsError
+from ..jobs.load_scene import load_scene
+from .runs import RESULTS, runs_of
+from .scene import STOPPED_EARLY, changes_of, refuse, refuse_own_input, solving_options
 
 
 @click.command(short_help="Plots of any channels.")
@@ -29,11 +31,12 @@ from .scene import STOPPED_EARLY, refuse, refuse_own_input, solving_options
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), help="Where to draw: .png, .svg or .pdf; a window without it."
 )
+@click.option("--live", is_flag=True, help="A window whose plots grow while SCENE is solved.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was drawn.")
 @solving_options
 def plot(
     source: str, channels: tuple[str, ...], against: str, others: tuple[Path, ...], title: str, output: Path | None,
-    as_json: bool, **options: Any,
+    live: bool, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """Plot CHANNELS of a run: of RESULTS (.npz), or of SCENE, which is solved first.  Each unit has a plot of its own.
 
@@ -43,6 +46,11 @@ def plot(
 
     try:
         check_plot(output)
+        if live:
+            figure = _live(source, channels, against, title, others, output, options)
+            _tell(source, figure, None, as_json)
+            show_window()
+            return
         for path in (source, *(str(other) for other in others)) if output is not None else ():
             refuse_own_input("-o", path, output)  # type: ignore[arg-type]
         runs = runs_of(source, others, options)
@@ -55,7 +63,25 @@ def plot(
     except OSError as error:
         click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
         sys.exit(STOPPED_EARLY)
-    told = {"source": source, "output": str(output or "window"), "channels": list(figure.y), "against": figure.x}
-    click.echo(json.dumps(told) if as_json else f"plot: {told['output']}")
+    _tell(source, figure, output, as_json)
     if output is None:
         show_window()
+
+
+def _live(
+    source: str, channels: tuple[str, ...], against: str, title: str, others: tuple[Path, ...], output: Path | None,
+    options: dict[str, Any],
+) -> Figure:  # fmt: skip
+    """Solve a scene and draw what was solved so far, in a window."""
+    from ..show.live_window import show_live
+    from ..studies.follow import follow
+
+    if source.endswith(RESULTS) or others or output is not None:
+        wrong = "results" if source.endswith(RESULTS) else "--with" if others else "-o"
+        raise InputError(f"--live: found {wrong}, expected a scene alone, which is solved in a window")
+    return show_live(follow(load_scene(source, changes_of(options))), channels, against, title)
+
+
+def _tell(source: str, figure: Figure, output: Path | None, as_json: bool) -> None:
+    told = {"source": source, "output": str(output or "window"), "channels": list(figure.y), "against": figure.x}
+    click.echo(json.dumps(told) if as_json else f"plot: {told['output']}")

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..describe.formula.text import FormulaError
+from ..describe.units.quantity import quantity
+from ..describe.units.units import Dimension, Quantity
 from ..errors import InputError
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 RANGE = re.compile(rf"\s*({NUMBER})\s*(?:\.\.|:)\s*({NUMBER})\s*(?::\s*(\d+)\s*)?")
+WITH_UNIT = re.compile(rf"\s*({NUMBER})\s*([^\W\d_][\w /*^()-]*)?")
 DECADE = 10.0
 LINEAR = 5
 """Numbers of a range of less than a decade, where nobody says how many."""
@@ -54,8 +59,19 @@ def _listed(option: str, text: str) -> tuple[float, ...]:
     return tuple(float(part) for part in parts)
 
 
-def values_in(option: str, text: str) -> tuple[str, tuple[float, ...]]:
-    """A parameter and its values: ``k_b=1e5..1e9``.
+@dataclass(frozen=True)
+class Values:
+    """A parameter and its values, in SI units, with their dimension where units were written."""
+
+    parameter: str
+    numbers: tuple[float, ...]
+    dimension: Dimension | None = None
+
+
+def values_in(option: str, text: str) -> Values:
+    """A parameter and its values: ``k_b=1e5..1e9``, ``k_b=100..1e6 N/mm:9``.
+
+    A number without a unit has that of the last one.
 
     Raises
     ------
@@ -64,4 +80,25 @@ def values_in(option: str, text: str) -> tuple[str, tuple[float, ...]]:
     name, equals, rest = text.partition("=")
     if not equals or not name.strip():
         raise InputError(f"{option}: found '{text}', expected PARAMETER=RANGE such as k_b=1e5..1e9")
-    return name.strip(), numbers_in(option, rest)
+    *parts, last = re.split(r"(\.\.|:|,)", rest)
+    amounts = [WITH_UNIT.fullmatch(part) for part in (*parts[::2], last)]
+    written = [found[2] for found in amounts if found and found[2]]
+    if not written:
+        return Values(name.strip(), numbers_in(option, rest))
+    count = f":{amounts[2][1]}" if len(amounts) == 3 and amounts[2] and "," not in parts else ""
+    found = [_in_si(option, each, written[-1], text) for each in (amounts[:2] if count else amounts)]
+    if len({quantity.dimension for quantity in found}) > 1:
+        raise InputError(f"{option}: found '{text}', expected units of one dimension")
+    between = "," if "," in parts or not parts else ".."
+    numbers = numbers_in(option, between.join(repr(quantity.value) for quantity in found) + count)
+    return Values(name.strip(), numbers, found[0].dimension)
+
+
+def _in_si(option: str, found: re.Match[str] | None, unit: str, text: str) -> Quantity:
+    """A number with its unit, or with the one of the last number."""
+    if not found:
+        raise InputError(f"{option}: found '{text}', {EXPECTED}")
+    try:
+        return quantity(f"{found[1]} {found[2] or unit}")
+    except FormulaError as error:
+        raise InputError(f"{option}: {error}") from None

@@ -60,7 +60,8 @@ def crossings(values: Sequence[float], at: Sequence[AtError | None], entries: Se
     known = [(value, pair) for value, pair in zip(values, best, strict=True) if any(np.isfinite(b[1]) for b in pair)]
     logarithmic = _logarithmic(values)
     for (a, one), (b, other) in itertools.pairwise(known):
-        lead = [float(np.log(pair[0][1] / pair[1][1])) for pair in (one, other)]  # of explicit steps where positive
+        with np.errstate(divide="ignore"):  # infinite where one kind has no time
+            lead = [float(np.log(pair[0][1] / pair[1][1])) for pair in (one, other)]  # of explicit steps where positive
         if lead[0] * lead[1] >= 0:
             continue
         measured = bool(np.all(np.isfinite(lead)))

@@ -13,8 +13,8 @@ from ..errors import InputError
 from ..results.files import refuse_path, written_whole
 from ..show.figure import ENDINGS
 from .compare import Comparison
+from .comparison_over import ComparisonOver
 from .measures import MEASURES
-from .over import ComparisonOver
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet

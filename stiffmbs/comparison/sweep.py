@@ -15,7 +15,7 @@ from ..errors import StiffmbsError
 from ..jobs.python_faults import up_to_a_fault
 from ..jobs.run import Job, prepare
 from ..results.channels import channels_of
-from ..results.missing_rows import reported
+from ..solve.missing_rows import reported
 from ..solve.settings import near_constraints
 from ..solve.trajectory import Grid, Outcome, Trajectory
 from ..verification.solve_again import Deadline

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..show.summary import UNBROKEN
 from .compare import Comparison
+from .comparison_over import ComparisonOver
 from .measures import MEASURES
-from .over import ComparisonOver
 from .row import Row
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from .measures import MEASURES
 
 if TYPE_CHECKING:
     from .compare import Comparison
-    from .over import ComparisonOver
+    from .comparison_over import ComparisonOver
 
 ALIKE = 1.1
 """Times that differ by less than this factor are the same but for noise."""

@@ -106,14 +106,10 @@ def callback_of(function: PythonFunction) -> Callback:
 def callbacks(system: System) -> Iterator[tuple[str, Element, PythonFunction, Callback]]:
     """The Python functions of a system's elements, with the elements and their names."""
     for group in system.groups:
-        if _has_function(group.kind.fields):
+        if group.has_functions:
             for name, element in zip(group.names, group.elements, strict=True):
                 for _, function in element.parts(PythonFunction):
                     yield name, element, function, callback_of(function)
-
-
-def _has_function(shape: object) -> bool:
-    return shape == ("python",) or (isinstance(shape, tuple) and any(map(_has_function, shape)))
 
 
 def has_fault(system: System) -> bool:

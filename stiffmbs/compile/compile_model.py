@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import repeat
 
 import numpy as np
 
+from ..describe.body import body_numbers
 from ..describe.element import Element
 from ..describe.formula.text import FormulaError
-from ..describe.marker import GROUND
+from ..describe.marker import GROUND, PlacedMarkers
 from ..describe.model_builder import ModelBuilder
 from ..errors import InputError
 from .bodies import BODY_KINDS, BodyKind
@@ -40,6 +42,7 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         return compile_model(model.data())
     bodies = tuple(model.bodies)
     of_body = BODY_KINDS[model.dimensions]
+    numbers, states, size = body_numbers(model.bodies.values()), model.state_values(), model.size()
     sorted_elements = _sorted_elements(model)
     records = {
         kind: _record(kind, members[0].name, f"{k} of {len(sorted_elements)} kinds")
@@ -47,25 +50,25 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
     }
     rows, equations, holonomic = _rows(sorted_elements, records)
     n_counters = sum(records[kind].n_counters * len(members) for kind, members in sorted_elements.items())
-    states = model.state_values()
     places = _Places(of_body, bodies, rows, n_counters, tuple(states))
     groups = [_group(kind, records[kind], of_body, members, places) for kind, members in sorted_elements.items()]
-    coordinates = [c for body in model.bodies.values() for c in body.coordinates()]
     return System(
         bodies=bodies,
         states=tuple(states),
         state_scales=np.array([value.scale for value in states.values()]),
+        algebraic=np.array([value.algebraic for value in states.values()], dtype=bool),
         of_body=of_body,
-        q=np.array([*coordinates, *[0.0] * n_counters, *(value.start for value in states.values())]),
-        u=np.array([c for body in model.bodies.values() for c in body.rates()]),
-        open_rates=np.array([way for body in model.bodies.values() for way in body.open_rates()]),
-        mass=np.array([m for body in model.bodies.values() for m in body.masses()]),
+        q=np.array([*numbers.coordinates, *[0.0] * n_counters, *(value.start for value in states.values())]),
+        u=np.array(numbers.rates),
+        open_rates=np.array(numbers.open_rates),
+        mass=np.array(numbers.masses),
+        followed=_followed(model, of_body),
         principal_axes=_principal_axes(model),
         groups=tuple(groups),
         equations=tuple(equations),
         holonomic=np.array(holonomic, dtype=bool),
         active=np.ones(len(equations), dtype=bool),
-        size=model.size(),
+        size=size,
     )
 
 
@@ -76,13 +79,25 @@ def kinds_of(model: Compilable) -> list[Kind]:
 
 def _sorted_elements(model: Compilable) -> dict[Kind, list[_Member]]:
     sorted_elements: dict[Kind, list[_Member]] = {}
-    for name, element in model.elements():
+    elements = list(model.elements())
+    places = PlacedMarkers(model, [element for _, element in elements])
+    for name, element in elements:
         try:
-            kind, data = sorted_out(element, model)
+            kind, data = sorted_out(name, element, model, places)
         except (FormulaError, InputError) as error:
             raise InputError(f"{name}: {error}") from None
         sorted_elements.setdefault(kind, []).append(_Member(name, element, data))
     return sorted_elements
+
+
+def _followed(model: Compilable, of_body: BodyKind) -> np.ndarray:
+    """Which velocities coordinates follow."""
+    followed = np.ones((len(model.bodies), of_body.n_u))
+    axes = model.spin_axes() if model.dimensions == 3 else {}
+    for k, body in enumerate(model.bodies):
+        if body in axes:
+            followed[k, of_body.linear + "xyz".index(axes[body])] = 0.0
+    return followed.ravel()
 
 
 def _principal_axes(model: Compilable) -> np.ndarray:
@@ -113,11 +128,14 @@ def _rows(
     first: dict[str, int] = {}
     equations: list[tuple[str, str]] = []
     holonomic: list[bool] = []
+    labels = {
+        member.name: member.element.equation_names() for members in sorted_elements.values() for member in members
+    }
     for kind, members in sorted_elements.items():
         record = records[kind]
         for member in members if record.n_equations else ():
             first[member.name] = len(equations)
-            equations += [(member.name, label) for label in member.element.equation_names()]
+            equations += zip(repeat(member.name), labels[member.name], strict=False)
             holonomic += [k < record.n_holonomic for k in range(record.n_equations)]
     return first, equations, holonomic
 

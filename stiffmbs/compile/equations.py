@@ -48,6 +48,7 @@ class Equations:
         present = {
             "q": independent, "u": self.coordinates.independent_u,
             "mu": system.holonomic & solved_for, "lam": solved_for,
+            "x": np.isin(np.arange(system.n_q), system.algebraic_coordinates),
         }  # fmt: skip
         self.at: dict[str, np.ndarray] = {}
         self.n = 0
@@ -111,6 +112,9 @@ class Equations:
         system = self.system
         base, _, part = name.removesuffix(".T").partition(":")
         constants = system.constants(term_set)
+        if base == "E":
+            diagonal = np.setdiff1d(np.arange(system.n_q), system.algebraic_coordinates)
+            return np.full(len(diagonal), constants["I"]), diagonal, diagonal
         if base == "I":
             diagonal = system.quaternions if part == "turning" else np.arange(system.extent(rows))
             return np.full(len(diagonal), constants["I"]), diagonal, diagonal
@@ -119,7 +123,7 @@ class Equations:
             return constants[base] + diagonal, diagonal, diagonal
         term = system.term(term_set, base)
         if base == "Z":
-            q, u = system.of_body.straight(len(system.bodies))
+            q, u = system.straight
             straight = np.full(len(q), constants["I"])
             parts = ((term.source, straight), (term.row, q), (term.column, u))
             source, row, column = (np.concatenate(part) for part in parts)
@@ -185,7 +189,7 @@ class Equations:
         writes = np.zeros(len(self.system.groups), dtype=bool)
         for g, group in enumerate(self.system.groups):
             first = self.system.places[term_set][g, 1:]
-            width = np.array([group.count * group.entries(term) for term in terms])
+            width = np.array([group.count * group.entries[term] for term in terms])
             writes[g] = np.any(before[first + width] > before[first])
         return writes
 
@@ -201,7 +205,7 @@ class Equations:
                 f"moving_{name}": moving,
                 f"{name}_from": self._carried(name, moving)[0] if len(moving) else empty,
             }
-        lists |= {f"at_{name}": self.at.get(name, empty) for name in ("mu", "lam")}
+        lists |= {f"at_{name}": self.at.get(name, empty) for name in ("mu", "lam", "x")}
         return {name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}
 
     def table(self, slots: np.ndarray | None = None) -> tuple[np.ndarray, list[np.ndarray]]:

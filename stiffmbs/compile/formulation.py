@@ -14,8 +14,9 @@ from dataclasses import dataclass
 class Product:
     """One line of a residual: in `rows`, factor * block @ operand.
 
-    `rows` and `operand` are names of unknowns (``q u mu lam``); an operand with a prime is a derivative; a vector
-    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``Z`` takes u to q', ``Z_q`` is
+    `rows` and `operand` are names of unknowns (``q u mu lam``, ``x`` for algebraic states by themselves); an operand with a prime is a derivative; a vector
+    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``E`` one
+    without the rows of algebraic states, ``Z`` takes u to q', ``Z_q`` is
     d(Z u)/dq, ``E_mu`` and ``E_lam`` are the relaxations of the rows, ``.T`` transposes, ``:rates`` keeps rows without a
     position form, ``:turning`` those of quaternions.
     """
@@ -46,7 +47,7 @@ class Formulation:
     name : str
         As in the settings of a run.
     unknowns : tuple of str
-        Of ``q u mu lam``.
+        Of ``q u mu lam x``.
     residual_set, matrix_set : str
         The term sets that residual and matrix are made of.
     residual : sequence of Product

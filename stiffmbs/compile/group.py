@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from collections import defaultdict
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..describe.element import Element
 from .bodies import BodyKind
-from .kind import Kind, Shape
+from .kind import Kind
 from .record import KindRecord
 from .terms import TERM_AXES
 
@@ -33,6 +33,18 @@ class Group:
         Kernel parameters and tables, element after element; may be changed in place.
     first_row : int
         Of the first element's equations.
+    count : int
+        Number of elements.
+    entries : mapping of str to int
+        Number of entries that one element has in each term.
+    bodies : ndarray of int, shape (count, bodies)
+        Numbers of the bodies that each element acts on; the ground's is behind the last body's.
+    states, counters : ndarrays of int, shapes (count, states), (count, counters)
+        Numbers of the coordinates that are states of each element, and of those that count turns for it.
+    has_inputs, has_functions : bool
+        Whether the elements have formulas or tables, and whether they have Python functions.
+    has_law : bool
+        Whether they have breakpoints, formulas or tables.
     """
 
     kind: Kind
@@ -43,40 +55,33 @@ class Group:
     index: np.ndarray
     numbers: np.ndarray
     first_row: int
+    count: int = field(init=False)
+    entries: defaultdict[str, int] = field(init=False)
+    bodies: np.ndarray = field(init=False)
+    states: np.ndarray = field(init=False)
+    counters: np.ndarray = field(init=False)
+    has_inputs: bool = field(init=False)
+    has_functions: bool = field(init=False)
+    has_law: bool = field(init=False)
 
-    @cached_property
-    def count(self) -> int:
-        """Number of elements."""
-        return len(self.names)
-
-    def entries(self, term: str) -> int:
-        """Number of entries that one element has in a term."""
-        return len(self.record.patterns.get(term, ()))
-
-    @cached_property
-    def bodies(self) -> np.ndarray:
-        """Numbers of the bodies that each element acts on, shape (count, bodies); the ground's is behind the last body's."""
-        return self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u
-
-    @cached_property
-    def has_law(self) -> bool:
-        """Whether the elements have breakpoints, formulas, tables or Python functions."""
-        return bool(self.entries("event_function")) or any(_is_law(shape) for _, shape in self.kind.fields)
+    def __post_init__(self) -> None:
+        behind, end = self.first_behind, self.index.shape[1]
+        has_inputs = self.kind.holds("formula", "table")
+        vars(self).update(
+            count=len(self.names),
+            entries=self.record.entries,
+            bodies=self.index[:, 1 : 2 * self.kind.n_bodies : 2] // self.of_body.n_u,
+            states=self.index[:, behind : behind + self.kind.n_states],
+            counters=self.index[:, end - self.record.n_counters :],
+            has_inputs=has_inputs,
+            has_functions=self.kind.holds("python"),
+            has_law=bool(self.record.entries["event_function"]) or self.kind.holds("formula", "table", "python"),
+        )
 
     @property
     def first_behind(self) -> int:
         """The first column of `index` that leads to coordinates behind those of the bodies."""
         return 2 * self.kind.n_bodies + 1 + self.kind.n_joints
-
-    @property
-    def states(self) -> np.ndarray:
-        """Numbers of the coordinates that are states of each element, shape (count, states)."""
-        return self.index[:, self.first_behind : self.first_behind + self.kind.n_states]
-
-    @property
-    def counters(self) -> np.ndarray:
-        """Numbers of the coordinates that count turns for each element, shape (count, counters)."""
-        return self.index[:, self.index.shape[1] - self.record.n_counters :]
 
     @property
     def keeps_energy(self) -> bool:
@@ -140,7 +145,3 @@ class Group:
         starts = np.cumsum([0, *self.record.joint_equations])
         joint = np.searchsorted(starts, own, side="right") - 1
         return joint, own - starts[joint]
-
-
-def _is_law(shape: Shape) -> bool:
-    return shape[0] in ("formula", "table", "python") or (shape[0] == "several" and any(map(_is_law, shape[1])))

@@ -14,13 +14,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..describe.element import Component, Element, Joint, JointName
+from ..describe.element import Component, Element, Force, Joint, JointName
 from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
-from ..describe.marker import MarkerReference
+from ..describe.marker import MarkerReference, PlacedMarkers
 from ..describe.python_function import PythonFunction
-from ..describe.states.name import StateName
+from ..describe.states.name import StateName, own_state
 from ..describe.states.state import StateValue
 from ..describe.table import Table
 from ..errors import InputError
@@ -30,6 +30,8 @@ from .table_values import spline_data
 Shape = tuple[Any, ...]
 REACTION = "reaction"
 """Before the number of a joint's reaction in a formula's shape."""
+STATE_RATES = "state_rates"
+"""The field of a joint's kind with the rates of the states in its equations."""
 STATE = "state"
 """Before the slot of a state in a formula's shape."""
 OWN = "own_"
@@ -64,6 +66,9 @@ class Compilable(Protocol):
     def size(self) -> float:
         """Of the mechanism at the start, m."""
 
+    def spin_axes(self) -> Mapping[str, str]:
+        """The bodies whose quaternions don't follow their spin, and the principal axis of each, ``x``, ``y`` or ``z``."""
+
 
 @dataclass(frozen=True)
 class Kind:
@@ -83,6 +88,13 @@ class Kind:
         States of the user's own that it reads or determines.
     fields : tuple of (str, Shape)
         Its fields by name; a shape says of what form a field is, never its numbers.
+    spins : tuple of str
+        For each body the principal axis about which its quaternion doesn't turn with it, ``x``, ``y``, ``z`` or none; () where
+        all quaternions do, or the equations ask for no derivative of the pose that would tell.
+    algebraic : tuple of int
+        Slots of the states that have no rate.
+    n_own : int
+        How many of its states, the first, are the element's own.
     """
 
     element: type[Element]
@@ -91,6 +103,17 @@ class Kind:
     n_joints: int
     n_states: int
     fields: tuple[tuple[str, Shape], ...]
+    spins: tuple[str, ...] = ()
+    algebraic: tuple[int, ...] = ()
+    n_own: int = 0
+
+    def holds(self, *forms: str) -> bool:
+        """Whether a field, or one of several values of a field, has one of some forms."""
+        return any(_holds(shape, forms) for _, shape in self.fields)
+
+
+def _holds(shape: Shape, forms: tuple[str, ...]) -> bool:
+    return shape[0] in forms or (shape[0] == "several" and any(_holds(part, forms) for part in shape[1]))
 
 
 def with_place(kind: Kind, place: str) -> str:
@@ -105,6 +128,8 @@ class ElementData:
 
     Attributes
     ----------
+    places : PlacedMarkers
+        Where markers sit.
     bodies : list of str
         By slot; the first is the one on which the reaction is reported.
     numbers : list of float
@@ -117,6 +142,7 @@ class ElementData:
         By slot.
     """
 
+    places: PlacedMarkers
     bodies: list[str] = field(default_factory=list)
     numbers: list[float] = field(default_factory=list)
     tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
@@ -147,11 +173,47 @@ class ElementData:
         return np.concatenate(parts)
 
 
-def sorted_out(element: Element, model: Compilable) -> tuple[Kind, ElementData]:
-    """An element's kind, and what is its own."""
-    data = ElementData()
+def sorted_out(
+    name: str, element: Element, model: Compilable, places: PlacedMarkers | None = None
+) -> tuple[Kind, ElementData]:
+    """An element's kind, and what is its own: by its name its states are known, and markers whose places are known are not looked
+    for again."""
+    data = ElementData(places=PlacedMarkers(model) if places is None else places)
+    own = element.own_states() if isinstance(element, Force) else ()
+    data.states += [own_state(name, state) for state in own]
     fields = _fields(element, model, data)
-    return Kind(type(element), model.dimensions, len(data.bodies), len(data.joints), len(data.states), fields), data
+    values = model.state_values() if data.states else {}
+    if isinstance(element, Joint) and data.states:
+        fields = (*fields, (STATE_RATES, ("several", tuple(_rates_of_states(values, model, data)))))
+    algebraic = tuple(slot for slot, name in enumerate(data.states) if values[name].algebraic)
+    counts = len(data.bodies), len(data.joints), len(data.states)
+    return Kind(
+        type(element), model.dimensions, *counts, fields, _spins(element, model, data), algebraic, len(own)
+    ), data
+
+
+def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str, ...]:
+    """`Kind.spins`: constraints are differentiated by time, and kinematics are derivatives; other forces see no difference."""
+    if model.dimensions == 2 or not (isinstance(element, Joint) or getattr(element, "turns", False)):
+        return ()
+    axes = model.spin_axes()
+    if axes.keys().isdisjoint(data.bodies):
+        return ()
+    return tuple(axes.get(body, "") for body in data.bodies)
+
+
+def _rates_of_states(values: Mapping[str, StateValue], model: Compilable, data: ElementData) -> Iterator[Shape]:
+    """The shapes of the rates of all states that are read, also by these rates themselves."""
+    slot = 0
+    while slot < len(data.states):
+        name = data.states[slot]
+        if values[name].algebraic:
+            raise InputError(
+                f"found the algebraic state '{name}' in a constraint, or in the rate of a state there, expected states with rates: "
+                "the constraint has to be differentiated"
+            )
+        yield _shape(values[name].rate, model, data)
+        slot += 1
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
@@ -166,7 +228,7 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
     """The shape of a field's value; its data are appended to `data`."""
     match value:
         case MarkerReference():
-            return _marker_shape(value, model, data)
+            return _marker_shape(value, data)
         case JointName():
             joint: Joint = model.joints[value.joint]
             fields = _fields(joint, model, data)
@@ -199,11 +261,10 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             )
 
 
-def _marker_shape(marker: Any, model: Compilable, data: ElementData) -> Shape:
-    body, placed = model.carried(marker)
-    slot = data.slot(body)
-    data.numbers += placed.numbers()
-    return ("marker", slot)
+def _marker_shape(marker: MarkerReference, data: ElementData) -> Shape:
+    body, numbers = data.places[marker]
+    data.numbers += numbers
+    return ("marker", data.slot(body))
 
 
 class _FormulaShape(ast.NodeTransformer):
@@ -227,8 +288,7 @@ class _FormulaShape(ast.NodeTransformer):
         tree = self.visit(copy.deepcopy(self.formula.tree))
         self.data.numbers += self.numbers
         measures = tuple(
-            (name, tuple(_marker_shape(marker, self.model, self.data) for marker in markers))
-            for name, markers in self.measures
+            (name, tuple(_marker_shape(marker, self.data) for marker in markers)) for name, markers in self.measures
         )
         first = len(self.data.numbers)
         self.data.tables += [(first + k, spline_data(table)) for k, table in enumerate(self.tables)]

@@ -9,9 +9,10 @@ import inspect
 import json
 import logging
 import sys
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,6 +72,11 @@ class KindRecord:
     variation: list[list[tuple[list[list[int]], list[int], bool]]]
     removable: list[bool]
     timed: list[bool]
+
+    @cached_property
+    def entries(self) -> defaultdict[str, int]:
+        """Number of entries that one element has in each term."""
+        return defaultdict(int, {term: len(pattern) for term, pattern in self.patterns.items()})
 
 
 def record_of(kind: Kind, place: str = "") -> KindRecord:
@@ -169,7 +175,18 @@ def _entry(kind: Kind, *part: str) -> str | None:
         _compile_text(),
         *texts,
         kind.element.__qualname__,
-        repr((kind.dimensions, kind.n_bodies, kind.n_joints, kind.n_states, kind.fields)),
+        repr(
+            (
+                kind.dimensions,
+                kind.n_bodies,
+                kind.n_joints,
+                kind.n_states,
+                kind.fields,
+                kind.spins,
+                kind.algebraic,
+                kind.n_own,
+            )
+        ),
         *part,
     )
 

@@ -50,9 +50,10 @@ class State:
         self._n_calls, self._calls_at, self._values_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(3))
         self._n_turned, self._turned_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(2))
         self._relaxations = np.zeros(2 * system.n_c)
+        self._followed = np.ascontiguousarray(system.followed)
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
         self.table = self._packed(self._n_calls, self._calls_at)
-        self._evaluate = TERMS.load()
+        self._evaluate = TERMS.call
 
     def _packed(self, n_calls: np.ndarray, calls_at: np.ndarray) -> np.ndarray:
         system = self.system
@@ -63,6 +64,7 @@ class State:
                 "q": self._q, "turn": self._turn, "n_turned": self._n_turned, "turned": self._turned_at, "u": self._u, "a": self._a, "lam": self.lam, "mu": self.mu,
                 "n_calls": n_calls, "calls": calls_at, "values": self._values_at,
                 "n_joints": len(system.joint_start) - 1, "joint_start": system.joint_start, "left_open": self._left_open,
+                "followed": self._followed,
             },
         )  # fmt: skip
 

@@ -6,7 +6,7 @@ write, and which equation and coordinate each belongs to.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -43,6 +43,8 @@ class System:
         Those of the user's own, whose values are the last coordinates.
     state_scales : ndarray, shape (states,)
         Sizes of them that matter.
+    algebraic : ndarray of bool, shape (states,)
+        Which of them have no rate: an equation determines them at every instant.
     of_body : BodyKind
         The coordinates and velocities that each of them has.
     q, u : ndarrays
@@ -52,6 +54,8 @@ class System:
         Which velocities at the start are not given, so that constraints decide about them first.
     mass : ndarray, shape (n_u,)
         The diagonal of the mass matrix: masses, and moments of inertia about principal axes.
+    followed : ndarray, shape (n_u,)
+        0 for angular velocities that their body's quaternion doesn't follow (`stiffmbs.presolve.spinning_bodies`), else 1.
     principal_axes : ndarray, shape (bodies, 4)
         Quaternions of the principal axes in each body's own axes, which results are shown in; (bodies, 0) in the plane.
     groups : tuple of Group
@@ -62,37 +66,53 @@ class System:
         Which rows have a position form, and which are not redundant and so are solved for.
     size : float
         Of the mechanism at the start, m.
+    n_q, n_u, n_c : int
+        Numbers of coordinates, velocities and constraint equations.
+    n_pose, n_counters : int
+        Coordinates of the bodies, the first of all, and of those that count whole turns of angles.
+    first_state : int
+        The number of the first coordinate that is a state.
+    has_inputs, has_functions : bool
+        Whether an element has a formula or a table, and whether one calls a Python function.
+    has_laws : bool
+        Whether forces or joints have breakpoints or laws (formulas, tables), which may change within one step.
     """
 
     bodies: tuple[str, ...]
     states: tuple[str, ...]
     state_scales: np.ndarray
+    algebraic: np.ndarray
     of_body: BodyKind
     q: np.ndarray
     u: np.ndarray
     open_rates: np.ndarray
     mass: np.ndarray
+    followed: np.ndarray
     principal_axes: np.ndarray
     groups: tuple[Group, ...]
     equations: tuple[tuple[str, str], ...]
     holonomic: np.ndarray
     active: np.ndarray
     size: float
+    n_q: int = field(init=False)
+    n_u: int = field(init=False)
+    n_c: int = field(init=False)
+    n_pose: int = field(init=False)
+    first_state: int = field(init=False)
+    n_counters: int = field(init=False)
+    has_inputs: bool = field(init=False)
+    has_laws: bool = field(init=False)
+    has_functions: bool = field(init=False)
 
-    @cached_property
-    def n_q(self) -> int:
-        """The number of coordinates."""
-        return len(self.q)
-
-    @cached_property
-    def n_u(self) -> int:
-        """The number of velocities."""
-        return len(self.u)
-
-    @cached_property
-    def n_c(self) -> int:
-        """The number of constraint equations."""
-        return len(self.equations)
+    def __post_init__(self) -> None:
+        n_q, n_pose = len(self.q), self.of_body.n_q * len(self.bodies)
+        first_state = n_q - len(self.states)
+        vars(self).update(
+            n_q=n_q, n_u=len(self.u), n_c=len(self.equations), n_pose=n_pose, first_state=first_state,
+            n_counters=first_state - n_pose, has_inputs=any(group.has_inputs for group in self.groups),
+            has_functions=any(group.has_functions for group in self.groups),
+            has_laws=any(group.has_law for group in self.groups if group.entries["f"] or group.record.n_equations),
+        )  # fmt: skip
 
     def per_coordinate(self, linear: float, angular: float) -> np.ndarray:
         """One number for the coordinates of every centre of mass, and another for those of orientations and all behind them,
@@ -100,26 +120,32 @@ class System:
         behind = np.full(self.n_q - self.n_pose, angular)
         return np.append(self._per_body(self.of_body.n_q, linear, angular), behind)
 
-    @property
-    def n_pose(self) -> int:
-        """Coordinates of the bodies, the first of all."""
-        return self.of_body.n_q * len(self.bodies)
+    @cached_property
+    def straight(self) -> tuple[np.ndarray, np.ndarray]:
+        """The coordinates whose rate is a velocity, and these velocities, by number."""
+        return self.of_body.straight(len(self.bodies))
 
-    @property
-    def first_state(self) -> int:
-        """The number of the first coordinate that is a state."""
-        return self.n_q - len(self.states)
+    @cached_property
+    def algebraic_coordinates(self) -> np.ndarray:
+        """The numbers of the coordinates that are algebraic states."""
+        return self.first_state + np.flatnonzero(self.algebraic)
 
-    @property
-    def n_counters(self) -> int:
-        """Coordinates that count whole turns of angles."""
-        return self.first_state - self.n_pose
+    @cached_property
+    def following_reactions(self) -> np.ndarray:
+        """The numbers of the algebraic states, among the coordinates, that follow multipliers at once, directly or through others."""
+        found = np.intersect1d(self.term("tangent", "rate_lam").row, self.algebraic_coordinates)
+        among = self.term("tangent", "rate_q")
+        inside = np.isin(among.row, self.algebraic_coordinates)
+        while True:
+            more = np.union1d(found, among.row[inside & np.isin(among.column, found)])
+            if len(more) == len(found):
+                return found
+            found = more
 
     @property
     def quaternions(self) -> np.ndarray:
         """The numbers of the coordinates that are parts of quaternions; none in the plane."""
-        straight, _ = self.of_body.straight(len(self.bodies))
-        return np.setdiff1d(np.arange(self.n_pose), straight)
+        return np.setdiff1d(np.arange(self.n_pose), self.straight[0])
 
     def per_velocity(self, linear: float, angular: float) -> np.ndarray:
         """One number for the velocities of every centre of mass, and another for angular ones, shape (n_u,)."""
@@ -169,7 +195,7 @@ class System:
             for g, group in enumerate(self.groups):
                 places[g, 0] = group.first_row
                 places[g, 1 + k] = end
-                end += group.count * group.entries(term)
+                end += group.count * group.entries[term]
         return places
 
     def n_values(self, term_set: str) -> int:
@@ -179,7 +205,7 @@ class System:
     @cached_property
     def _numbers_of_values(self) -> dict[str, int]:
         return {
-            term_set: sum(group.count * group.entries(term) for group in self.groups for term in terms)
+            term_set: sum(group.count * group.entries[term] for group in self.groups for term in terms)
             for term_set, terms in TERM_SETS.items()
         }
 
@@ -196,7 +222,7 @@ class System:
     def _writer(self, term_set: str, at: int) -> tuple[Group, int]:
         for g, group in enumerate(self.groups):
             for k, term in enumerate(TERM_SETS[term_set]):
-                width = group.entries(term)
+                width = group.entries[term]
                 first = int(self.places[term_set][g, 1 + k])
                 if first <= at < first + group.count * width:
                     return group, (at - first) // width
@@ -214,12 +240,12 @@ class System:
     @cached_property
     def first_limit(self) -> int:
         """Where the limits of all forces begin among the values of the set ``event_function``."""
-        return sum(group.count * group.entries("event_function") for group in self.groups)
+        return sum(group.count * group.entries["event_function"] for group in self.groups)
 
     @cached_property
     def n_event_functions(self) -> int:
         """Number of event functions and limits, which are the first values of the set ``event_function``; arguments of laws follow."""
-        return self.first_limit + sum(group.count * group.entries("limit") for group in self.groups)
+        return self.first_limit + sum(group.count * group.entries["limit"] for group in self.groups)
 
     @cached_property
     def turning(self) -> np.ndarray:
@@ -234,7 +260,7 @@ class System:
             if element in group.names:
                 e = group.names.index(element)
                 for k, term in enumerate(TERM_SETS[term_set]):
-                    width = group.entries(term)
+                    width = group.entries[term]
                     first = self.places[term_set][g, 1 + k] + e * width
                     found[term] = values[first : first + width]
         return found

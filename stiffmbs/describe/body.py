@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field, field_validator
 
@@ -95,6 +96,40 @@ class BodyHandle(Handle):
     def at(self, xi: given.Number, eta: given.Number, angle: given.Number = 0.0) -> Marker:
         """The marker at a point of the body's own axes, m, turned by `angle`, rad."""
         return Marker(body=self.name, point=(xi, eta), angle=angle)
+
+
+@dataclass(frozen=True)
+class BodyNumbers:
+    """What bodies bring into a system, body after body.
+
+    Attributes
+    ----------
+    coordinates, rates : tuples of float
+        At the start, as described.
+    open_rates : tuple of bool
+        Which rates are not given.
+    masses : tuple of float
+        The diagonal of the mass matrix.
+    """
+
+    coordinates: tuple[float, ...]
+    rates: tuple[float, ...]
+    open_rates: tuple[bool, ...]
+    masses: tuple[float, ...]
+
+
+def body_numbers(bodies: Iterable[Any]) -> BodyNumbers:
+    """The numbers of some bodies."""
+    coordinates: list[float] = []
+    rates: list[float] = []
+    open_rates: list[bool] = []
+    masses: list[float] = []
+    for body in bodies:
+        coordinates += body.coordinates()
+        rates += body.rates()
+        open_rates += body.open_rates()
+        masses += body.masses()
+    return BodyNumbers(tuple(coordinates), tuple(rates), tuple(open_rates), tuple(masses))
 
 
 def check_names(names: Iterable[object], what: str) -> None:

@@ -173,6 +173,15 @@ class Element(Described):
 
         return namesake(self, angles)
 
+    def spins_with(self) -> dict[str, str]:
+        """The markers whose bodies may spin without a change of the equations, by field, and what spinning asks of each.
+
+        ``x``, ``y`` or ``z``: the marker's point is on the spin axis, which lies along this axis of the marker.  ``point``: its
+        point is on the spin axis.  ``body``: nothing.  A body with a marker that is not among them keeps its spin in its
+        quaternion (`stiffmbs.presolve.spinning_bodies`).
+        """
+        return {}
+
     def at_initial_pose(self, model: ModelData) -> Self:
         """The element with what it leaves open taken from the bodies' described poses."""
         return self
@@ -249,12 +258,24 @@ class Force(Element):
         Whether it stands for a body's turning in space, and the body's kinematics, p' = Z(p) w, belong to it.
     beyond : str
         What is wrong where one of its `limits` is passed: "found ..., expected ...".
+
+    A force may have states of its own, values with x' = rate, zero at the start: `own_states` names them, `rates` has their rates,
+    and its equations see them as ``e.own``.
     """
 
     channels: ClassVar[tuple[str, ...]] = ()
     may_keep_energy: ClassVar[bool] = True
     turns: ClassVar[bool] = False
     beyond: ClassVar[str] = ""
+
+    def own_states(self) -> tuple[str, ...]:
+        """The names of its own states; channels have them behind the element's name."""
+        return ()
+
+    @classmethod
+    def rates(cls, e: Symbolic) -> Any:
+        """The rates of its own states, per second, in their order."""
+        return ()
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:

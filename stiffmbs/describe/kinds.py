@@ -9,6 +9,7 @@ import importlib
 import pkgutil
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from types import ModuleType
 from typing import Annotated, Any
 
@@ -22,7 +23,7 @@ from .own_elements import REGISTRY, check_class, dimensions_of
 
 
 class Kinds(Mapping[str, type[Any]]):
-    """The joints, or the forces, of the plane or of space, by kind.
+    """The joints, or the forces, of the plane or of space, by kind; the file of a shipped one is loaded when it is asked for.
 
     Parameters
     ----------
@@ -35,15 +36,51 @@ class Kinds(Mapping[str, type[Any]]):
     """
 
     def __init__(self, package: ModuleType, base: type[Element], dimensions: int) -> None:
-        self.base, self.dimensions = base, dimensions
-        self.shipped = _shipped(package, base)
+        self.base, self.dimensions, self._package = base, dimensions, package.__name__
+        self._files = [module.name for module in pkgutil.iter_modules(package.__path__)]
+        self._loaded: dict[str, dict[str, type[Any]]] = {}
+
+    @cached_property
+    def shipped(self) -> dict[str, type[Any]]:
+        """Those of this package.
+
+        Raises
+        ------
+        InputError
+            When two classes have one kind.
+        """
+        found: dict[str, type[Any]] = {}
+        for file in self._files:
+            for kind, element in self._in_file(file).items():
+                if found.setdefault(kind, element) is not element:
+                    raise InputError(f"two classes of elements have the kind '{kind}'")
+        return found
+
+    def _in_file(self, file: str) -> dict[str, type[Any]]:
+        """The element classes that a file defines or holds, by kind."""
+        if file not in self._loaded:
+            members = vars(importlib.import_module(f"{self._package}.{file}")).values()
+            self._loaded[file] = {member.kind: member for member in members if self._is_kind(member)}
+        return self._loaded[file]
+
+    def _is_kind(self, member: object) -> bool:
+        return (
+            isinstance(member, type) and issubclass(member, self.base) and bool(member.kind) and not _is_generic(member)
+        )
+
+    def is_shipped(self, element: type[Element]) -> bool:
+        """Whether a class is defined in this package's own files."""
+        return element.__module__.startswith(f"{self._package}.")
 
     def own(self) -> dict[str, type[Any]]:
         """Those from outside of this package."""
         return REGISTRY.kinds(self.base, self.dimensions)
 
     def __getitem__(self, kind: str) -> type[Any]:
-        return self.shipped[kind] if kind in self.shipped else self.own()[kind]
+        for file in sorted(self._files, key=lambda file: file != kind):  # most files are named as their kinds
+            if kind in self._in_file(file):
+                return self._in_file(file)[kind]
+        return self.own()[kind]
 
     def __iter__(self) -> Iterator[str]:
         yield from {**self.shipped, **self.own()}
@@ -54,18 +91,6 @@ class Kinds(Mapping[str, type[Any]]):
     def fits(self, element: Element) -> bool:
         """Whether an element is one of these, or a user's own that could be registered among them."""
         return isinstance(element, self.base) and self.dimensions in dimensions_of(type(element))
-
-
-def _shipped(package: ModuleType, base: type[Element]) -> dict[str, type[Any]]:
-    """The element classes found in the files of a package, by kind."""
-    found: dict[str, type[Any]] = {}
-    for module in pkgutil.iter_modules(package.__path__):
-        members = vars(importlib.import_module(f"{package.__name__}.{module.name}")).values()
-        for member in members:
-            named = isinstance(member, type) and issubclass(member, base) and member.kind and not _is_generic(member)
-            if named and found.setdefault(member.kind, member) is not member:
-                raise InputError(f"two classes of elements have the kind '{member.kind}'")
-    return found
 
 
 def _is_generic(element: type[Element]) -> bool:
@@ -83,7 +108,7 @@ class _OneOf:
     def read(self, found: object, info: ValidationInfo) -> Any:
         """The element that stands in the scene."""
         if isinstance(found, Element):
-            if type(found) not in self.kinds.shipped.values():
+            if not self.kinds.is_shipped(type(found)):
                 check_class(type(found))
             if self.kinds.fits(found):
                 return found

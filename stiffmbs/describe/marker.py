@@ -6,7 +6,8 @@ What a marker of the plane and one of space have in common is that they name a b
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validator
 
@@ -14,11 +15,12 @@ from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .handle import Handle
 from .parts.names import GROUND as GROUND
-from .parts.names import MOUNT, names_of
+from .parts.names import names_of
 from .units import si
 
 if TYPE_CHECKING:
     from . import given
+    from .element import Element
 
 _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
 
@@ -70,11 +72,12 @@ class MarkerReference(Described):
         if isinstance(found, dict) and isinstance(found.get("body"), Handle):
             found = {**found, "body": found["body"].name}
         if isinstance(found, str):
-            if MOUNT in names.local and (found == MOUNT or found.startswith(f"{MOUNT}.")):
-                return {"body": MOUNT, "marker": found[len(MOUNT) + 1 :] or None}  # placed with the part
+            mount, _, named = found.partition(".")
+            if mount in names.mounts:
+                return {"body": mount, "marker": named or None}  # placed with the part
             body, marker = names.body_and_marker(found)
             return {"body": body, "marker": marker or None}
-        if isinstance(found, dict) and isinstance(found.get("body"), str) and found["body"] != MOUNT:
+        if isinstance(found, dict) and isinstance(found.get("body"), str) and found["body"] not in names.mounts:
             found = {**found, "body": names.full(found["body"])}
         if (
             isinstance(found, dict)
@@ -136,4 +139,36 @@ class Marker(MarkerReference):
 
     def placement(self) -> Placement:
         """Where it sits on its body, as given on the spot."""
-        return Placement(point=self.point, angle=self.angle)
+        return Placement.model_construct(point=self.point, angle=self.angle)  # checked already
+
+
+class Carries(Protocol):
+    """What knows where markers sit: a model, or one whose bodies are merged."""
+
+    def carried(self, marker: Any) -> tuple[str, Any]:
+        """The body that carries a marker, and where it sits on it."""
+
+
+class PlacedMarkers(dict[MarkerReference, tuple[str, tuple[float, ...]]]):
+    """For each marker the body that carries it, and the numbers that kernels take for its place.
+
+    A marker that was not listed, such as a body's own axes in a formula, is added when it is asked for.
+
+    Parameters
+    ----------
+    model : Carries
+    elements : iterable of Element
+        Whose markers are listed from the start.
+    """
+
+    def __init__(self, model: Carries, elements: Iterable[Element] = ()) -> None:
+        super().__init__()
+        self._model = model
+        for element in elements:
+            for _, marker in element.markers():
+                self[marker]
+
+    def __missing__(self, marker: MarkerReference) -> tuple[str, tuple[float, ...]]:
+        body, placed = self._model.carried(marker)
+        self[marker] = found = body, placed.numbers()
+        return found

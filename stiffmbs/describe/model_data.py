@@ -22,9 +22,9 @@ from .requests.check import by_channel, check_output
 from .requests.names import OutputNames
 from .requests.order import dimensions
 from .requests.output import Output
-from .states.equation import Reported, StateEquation
+from .states.equation import FormulaOfRate, Reported
 from .states.inputs import InputValue, formulas_of_inputs
-from .states.name import StateName
+from .states.name import StateName, own_state
 from .states.section import (
     AnyState,
     check_reactions,
@@ -150,7 +150,7 @@ class ModelData(Described):
 
     def outputs(self) -> dict[str, Output]:
         """The requests by channel: a name, or ``name.component``."""
-        return dict(by_channel(self.requests))
+        return dict(by_channel(self.requests)) if self.requests else {}
 
     def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
         """What counts the turns of angles in requests where positions tell them up to whole turns, by the angles' text."""
@@ -179,14 +179,14 @@ class ModelData(Described):
         """The rates of the states, by the names of the states, and the outputs of their equations."""
         for name, state in self.states.items():
             for full, value in state.values(name):
-                yield full, StateEquation.model_construct(state=StateName(full), formula=value.rate)
+                yield full, FormulaOfRate.model_construct(state=StateName(full), formula=value.rate)
         for full, formula in self.state_outputs().items():
             yield full, Reported.model_construct(formula=formula)
 
     def state_outputs(self) -> dict[str, Formula]:
         """Formulas that others use by a name, as the output of a transfer function, by full name."""
         of_states = {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
-        return of_states | dict(formulas_of_inputs(self.inputs))
+        return of_states | dict(formulas_of_inputs(self.inputs)) if self.inputs else of_states
 
     def names_in_formulas(self) -> set[str]:
         """The names of states, outputs and inputs that formulas may use."""
@@ -194,7 +194,9 @@ class ModelData(Described):
 
     def state_values(self) -> dict[str, StateValue]:
         """What is solved for beside the bodies, by full name."""
-        return {full: value for name, state in self.states.items() for full, value in state.values(name)}
+        of_model = {full: value for name, state in self.states.items() for full, value in state.values(name)}
+        of_forces = (own_state(name, own) for name, force in self.forces.items() for own in force.own_states())
+        return of_model | dict.fromkeys(of_forces, StateValue(None, 0.0, 1.0))
 
     def elements_at_initial_pose(self) -> Iterator[tuple[str, Element]]:
         """Joints and forces with their names; what they leave open is taken from the described poses."""
@@ -208,6 +210,10 @@ class ModelData(Described):
             points += [self.point(marker) for _, marker in element.markers()]
         widths = (max(p[k] for p in points) - min(p[k] for p in points) for k in range(self.dimensions))
         return math.hypot(*widths) or 1.0
+
+    def spin_axes(self) -> Mapping[str, str]:
+        """None: as described, every quaternion follows its body's angular velocity."""
+        return {}
 
     def point(self, marker: MarkerReference) -> tuple[float, ...]:
         """Where a marker is in ground axes at the start, m."""

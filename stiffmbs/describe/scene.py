@@ -21,6 +21,7 @@ from .files.expand import (
     repeat_entries,
     replaced_parameters,
     set_value,
+    unshared,
 )
 from .files.include import read_including
 from .files.quoted import written
@@ -32,8 +33,9 @@ from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .model import PlanarData
 from .model_data import ModelData
-from .parts.instances import set_in_instances
+from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
 from .parts.placed import with_parts
+from .parts.placing import placed_in_use, set_in_instances
 from .requests.check import check_output
 from .requests.names import OF_PLANE
 from .requests.order import dimension, dimensions
@@ -55,9 +57,10 @@ class Scene(ModelData):
     roads: dict[str, AnyRoad] = Field(default_factory=dict, description="roads that tyres name")
     variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
-    start: Literal["described", "equilibrium"] | SteadyMotion = Field(
+    start: Literal["described", "equilibrium", "settled"] | SteadyMotion = Field(
         "described",
-        description="where a run starts: as described, at rest in the equilibrium found from there, or in steady motion",
+        description="where a run starts: as described, at rest in the equilibrium found from there, in its pose with the "
+        "described velocities (settled), or in steady motion",
     )
     stages: tuple[Stage, ...] = Field((), description="runs one after the other, each with its own changes")
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
@@ -193,6 +196,8 @@ def made_scene(
         When it is no valid scene.
     """
     scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    found, changes = placed_in_use(unshared(found), changes)
+    found, chosen, changes = _chosen(found, changes, source)
     refuse_unused_parameters(found, changes)
     replaced = replaced_parameters(found, changes)
     in_parts = []
@@ -204,13 +209,29 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        scene = _validated(found, replaced, in_parts, folder, unchanged)
+        scene = _validated(found, replaced, in_parts, chosen, folder, unchanged)
     except _Located as error:
         raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
     scene._written = scene_as_written
     if scene.stages:
         scene._stage_scenes = _stage_scenes(scene, source)
     return scene
+
+
+def _chosen(
+    found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str
+) -> tuple[dict[str, Any], dict[str, Any], Sequence[tuple[str, Any]]]:
+    """A scene with the sections that it chooses among its options, what parts need to know of it, and the other changes."""
+    words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
+    for path, word in words.items():
+        set_value(found, path, word)
+    try:
+        chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
+        merged = with_chosen(found, chosen["words"], OPTIONS)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    merged.pop(CHOOSE, None)
+    return merged, chosen, [change for change in changes if change[0] not in words]
 
 
 def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
@@ -261,6 +282,7 @@ def _validated(
     found: dict[str, Any],
     replaced: Mapping[str, Quantity],
     in_parts: Sequence[tuple[str, Any]],
+    chosen: Mapping[str, Any],
     folder: Path | None,
     unchanged: Unchanged | None,
 ) -> Scene:
@@ -273,6 +295,7 @@ def _validated(
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
         context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
         context["roads"] = read_roads(raw.get("roads"), context)
+        context |= chosen
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None

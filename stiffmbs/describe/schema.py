@@ -6,7 +6,8 @@ from typing import Any
 
 from .body import Body as PlanarBody
 from .model import FORCES, JOINTS
-from .parts.instances import KEYS
+from .parts.definitions import KEYS
+from .parts.options import CHOOSE, OPTIONS
 from .parts.use import PlanarUse
 from .scene import PlanarScene
 
@@ -51,19 +52,47 @@ def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str
         "anyOf": [name, {"type": "array", "items": name}],
         "description": "files whose sections are put with those here, from the folder of this file on",
     }
+    placed = definitions[use["$ref"].rpartition("/")[2]]
+    placed["additionalProperties"] = {"type": "string", "description": "a word that the part offers"}
     used = {"type": "object", "additionalProperties": use, "description": "parts in their places, by name"}
+    words = {"type": "object", "additionalProperties": name}
+    options = {
+        "type": "object",
+        "additionalProperties": {"type": "object", "additionalProperties": {"type": ["object", "null"]}},
+        "description": "sections of which a word chooses one set: choice, word, sections",
+    }
+    own = {key: whole["properties"][key] for key in KEYS if key in whole["properties"]}
+    number = {"anyOf": [{"type": "number"}, name]}
+    vector = {"type": "array", "items": number, "minItems": 2, "maxItems": 3, "description": "a point or a direction"}
+    own["parameters"] = {"type": "object", "additionalProperties": {"anyOf": [*number["anyOf"], vector]}}
     part = {
         "type": "object",
         "additionalProperties": False,
         "properties": {
             "include": include,
             "use": used,
-            **{key: whole["properties"][key] for key in KEYS if key != "use"},
+            "mounts": {
+                **words,
+                "description": "further bodies that the part connects to, and what they are by default",
+            },
+            OPTIONS: options,
+            **own,
         },
     }
-    parts = {"type": "object", "additionalProperties": part, "description": "what `use` places, by name"}
-    whole["properties"] |= {"include": include, "parts": parts, "use": used}
+    placing = {
+        "type": "object",
+        "properties": {"use": name, **{key: found for key, found in placed["properties"].items() if key != "part"}},
+        "required": ["use"],
+        "additionalProperties": placed["additionalProperties"],
+    }
+    parts = {
+        "type": "object",
+        "additionalProperties": {"anyOf": [part, placing]},
+        "description": "what `use` places, by name; or placed at once, with `use` for the name of a part",
+    }
+    chosen = {**words, "description": "a word for each choice of the scene or its parts"}
+    whole["properties"] |= {"include": include, "parts": parts, "use": used, OPTIONS: options, CHOOSE: chosen}
     whole["required"] = [key for key in whole["required"] if key != "bodies"]
     if not whole["required"]:
         del whole["required"]
-    whole["anyOf"] = [{"required": [key]} for key in ("bodies", "include", "use")]
+    whole["anyOf"] = [{"required": [key]} for key in ("bodies", "include", "use", "parts")]

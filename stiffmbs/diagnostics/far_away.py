@@ -4,32 +4,36 @@ from __future__ import annotations
 
 import sys
 
-from ..describe.model_data import ModelData
+import numpy as np
+
+from ..compile.system import System
 from ..errors import InputError
 
 COARSE = 1e-6
 """Part of a mechanism's size up to which its coordinates may be rounded."""
 
 
-def refuse_far_away(model: ModelData) -> None:
+def refuse_far_away(system: System) -> None:
     """Refuse joints whose equations are rounding: no solver can satisfy them, however short its steps.
 
     Parameters
     ----------
-    model : ModelData
+    system : System
+        At its start.
 
     Raises
     ------
     InputError
         Names the body.
     """
-    if not model.joints:
+    if not system.n_c:
         return
-    farthest = {name: max(map(abs, body.coordinates()[: model.dimensions])) for name, body in model.bodies.items()}
-    name = max(farthest, key=lambda body: farthest[body])
-    rounding, size = farthest[name] * sys.float_info.epsilon, model.size()
+    of_body = system.of_body
+    farthest = np.abs(system.q[: system.n_pose].reshape(-1, of_body.n_q)[:, : of_body.linear]).max(axis=1)
+    body = int(np.argmax(farthest))
+    rounding, size = farthest[body] * sys.float_info.epsilon, system.size
     if rounding > COARSE * size:
         raise InputError(
-            f"bodies.{name}.position: found {farthest[name]:.3g} m in a mechanism of {size:.3g} m, where neighbouring "
+            f"bodies.{system.bodies[body]}.position: found {farthest[body]:.3g} m in a mechanism of {size:.3g} m, where neighbouring "
             f"numbers are {rounding:.1g} m apart, expected it nearer to the origin"
         )

@@ -8,10 +8,8 @@ import numpy as np
 
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..describe.settings import RunSettings
 from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.divergence import BEYOND, LIGHT, exponential, reaches
-from ..solve.settings import near_constraints
 from ..solve.storage import blocks, release
 
 RESOLVED = 1e-6
@@ -20,7 +18,7 @@ OPEN, DRIFTED = 1e-6, 1e-2
 """Parts of the mechanism's size by which a joint may be open: on the constraints, and where drift is shown as it is."""
 
 
-def senseless(dynamics: Dynamics, rows: OutputRows, settings: RunSettings) -> Iterator[str]:
+def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Iterator[str]:
     """What no motion of the scene can be, a sentence each.
 
     Parameters
@@ -29,13 +27,14 @@ def senseless(dynamics: Dynamics, rows: OutputRows, settings: RunSettings) -> It
         Of the whole; its state is changed.
     rows : OutputRows
         Of the run.
-    settings : RunSettings
+    on_constraints : bool
+        Whether states are brought back to the constraints; else their drift is shown as it is.
     """
     with np.errstate(all="ignore"):
         grown = _grown(dynamics.system, rows)
         if grown:
             yield grown
-        open_joint = _open_joint(dynamics, rows, settings)
+        open_joint = _open_joint(dynamics, rows, on_constraints)
         if open_joint:
             yield open_joint
 
@@ -105,12 +104,12 @@ def _strongest(system: System, rows: OutputRows, row: int) -> str:
     return f" ('{name.rpartition('.')[0]}' acts with {acting[name]:.3g} {unit} there)"
 
 
-def _open_joint(dynamics: Dynamics, rows: OutputRows, settings: RunSettings) -> str:
+def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> str:
     """A sentence on a joint that is open; empty where none is."""
     system, violation = dynamics.system, rows.position_violation
     if not system.n_c or np.isnan(violation).all():
         return ""
-    allowed = (OPEN if near_constraints(settings) else DRIFTED) * max(system.size, 1e-3)
+    allowed = (OPEN if on_constraints else DRIFTED) * max(system.size, 1e-3)
     worst = int(np.nanargmax(violation))
     if violation[worst] <= allowed:
         return ""

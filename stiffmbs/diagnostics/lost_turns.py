@@ -25,10 +25,10 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
         Of the run.
     """
     system, state = dynamics.system, dynamics.state
-    counted = system.term("position", "continuous_angle")
     solved = np.flatnonzero(~np.isnan(rows.position_violation))
-    if not system.n_counters or not len(solved):
+    if not len(solved):
         return
+    counted = system.term("position", "continuous_angle")
     instants = solved[np.linspace(0, len(solved) - 1, min(len(solved), MOST_INSTANTS)).astype(int)]
     apart = np.empty((len(instants), len(counted.row)))
     for of_row, t, q in zip(apart, rows.t[instants], rows.q[instants], strict=True):
@@ -42,5 +42,5 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     yield (
         f"whole turns of the angle of '{name}' are not certain: at t = {rows.t[instants[k]]:.6g} s the orientations and the integral of "
         f"the angular velocity differ by {apart[k, worst]:.2g} rad; the steps are too long for the speed (tighten rtol, or shorten step), "
-        "or the axis that the angle is measured by comes to lie along the axis that it turns about"
+        "or the angle's reference axis comes to lie along the axis of rotation"
     )

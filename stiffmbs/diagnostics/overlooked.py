@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..compile.laws import has_laws
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.settings import RunSettings
 from ..results.energy_balance_notes import within_steps
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
+from ..solve.trajectory import Trajectory
 
 TOLERANCES = 3e5
 """Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
@@ -70,7 +70,7 @@ def together(found: Sequence[Overlooked]) -> Overlooked | None:
     )
 
 
-def overlooked(system: System, rows: OutputRows, steps: np.ndarray, settings: RunSettings) -> Overlooked | None:
+def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings) -> Overlooked | None:
     """What the steps of a run passed over; None for nothing, and where no law could be.
 
     Parameters
@@ -78,11 +78,12 @@ def overlooked(system: System, rows: OutputRows, steps: np.ndarray, settings: Ru
     system : System
         Of the whole.
     rows : OutputRows
-    steps : ndarray
-        Ends of the solver's own steps, s; empty where it does not tell them.
+    trajectory : Trajectory
+        Whose steps are looked at.
     settings : RunSettings
     """
-    if len(steps) < 2 or not has_laws(system):
+    steps = trajectory.step_times
+    if len(steps) < 2 or not system.has_laws:
         return None
     off, size = _contradictions(rows), rows.acceleration**2 @ system.mass
     pairs = np.flatnonzero(off**2 @ system.mass > PART**2 * np.fmax(size[1:], size[:-1]))  # few: the rest costs nothing

@@ -50,8 +50,6 @@ def singular_passage_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[
 
 def _turned_round(lam: np.ndarray) -> list[int]:
     """The outputs behind which a multiplier that has grown by far comes back with the other sign."""
-    if not lam.size:
-        return []
     usual = np.median(np.abs(lam[:: 1 + len(lam) // SAMPLES]), axis=0)
     usual = np.maximum(usual, NOISE * usual.max())
     found: list[int] = []

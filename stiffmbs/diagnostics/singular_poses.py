@@ -62,7 +62,8 @@ class PosesOnTheWay:
         self._system, self._t, self._q = system, t, q
         self._state = State(system)
         self._state.q[:] = q[0]
-        self._loops = loops(system, self._state, float(t[0]))
+        self._state.evaluate("motion", float(t[0]))
+        self._loops = loops(system, self._state)
         rows = np.concatenate([loop.rows for loop in self._loops]) if self._loops else np.empty(0, dtype=int)
         self._rows = np.sort(rows[system.active[rows]])
         self._known: dict[int, float] = {}

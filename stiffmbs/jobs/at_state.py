@@ -10,8 +10,8 @@ import numpy as np
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
-from ..solve.failures import FAILURES
 from ..structure.redundancy import Redundancy
 from .run import Runnable, prepare
 from .start_from import StartFrom
@@ -81,5 +81,5 @@ def at_state(
         job.dynamics.correct_velocities(t)
     status, acceleration = job.dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(f"no accelerations were found at t = {t:g} s: {FAILURES[status]}")
+        raise SolverError(f"no accelerations were found at t = {t:g} s: {failure(job.dynamics, status, t)}")
     return AtState(job.data, job.redundancy, job.dynamics, t, acceleration)

@@ -12,8 +12,9 @@ from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, SolverError
 from ..solve.initial import InitialValues, initial_values
 from ..solve.moves import Move
-from ..solve.subsystems import Subsystem
+from ..solve.subsystems import Subsystem, presolved
 from ..structure.idle_freedoms import IdleFreedom, idle_freedoms
+from ..structure.messages.presolve_report import presolve_sentences, unknowns
 from ..structure.messages.redundancy import (
     inconsistency_sentences,
     known_near_start,
@@ -23,8 +24,7 @@ from ..structure.messages.redundancy import (
 )
 from ..structure.messages.unconnected import unconnected_sentence
 from ..structure.overconstraint import Overconstraint, listed, overconstraints
-from .presolve_report import presolve_sentences, unknowns
-from .run import Examined, Runnable, data_of, examined, presolved
+from .run import Examined, Runnable, data_of, examined
 
 MOST_MOVES = 50
 """Bodies that are named of those which assembly moves; `Report.moved` has all."""

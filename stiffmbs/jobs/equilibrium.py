@@ -7,17 +7,12 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from ..describe.requests.order import units
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
-from ..errors import SolverError
-from ..results.channels import channels_of, turns_of
-from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.failures import FAILURES
-from ..solve.trajectory import History, Outcome
 from .run import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
+from .solution_at_rest import solution_at_rest
 from .start_from import StartFrom
 from .steady import settled_in_motion
 
@@ -43,6 +38,8 @@ class EquilibriumFound:
     free : tuple of str
         Bodies that take part in motions that nothing holds; the first one each, with its coordinate.
     notes : tuple of str
+    eigenvalues : tuple of complex
+        Of motions beside a steady one, 1/s, in the frame that moves with it; none at rest.
     solution : Solution
         The same as results of one instant: ``stiffmbs.run(model, start_from=found.solution)`` starts there.
     """
@@ -55,6 +52,7 @@ class EquilibriumFound:
     moved: dict[str, tuple[float, float]]
     free: tuple[str, ...]
     notes: tuple[str, ...]
+    eigenvalues: tuple[complex, ...]
     solution: Solution
 
     def as_dict(self, scene: str) -> dict[str, Any]:
@@ -69,6 +67,7 @@ class EquilibriumFound:
             "scene": scene, "status": "done", "message": self.solution.message,
             "imbalance": self.imbalance, "moved": self.moved, "channels": self.channels,
             "t": self.t, "free": list(self.free), "notes": list(self.notes),
+            "eigenvalues": [[value.real, value.imag] for value in self.eigenvalues],
         }  # fmt: skip
 
 
@@ -112,13 +111,25 @@ def equilibrium(
         data = data.model_copy(update={"start": "described"})
     job = prepare(data, settings, start_from, **changes)
     found = _settled(job, motion)
-    system, solution = job.dynamics.system, _solution(job, found)
+    system, start = job.dynamics.system, found.start
+    how = {"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance}
+    times = np.array([job.grid.start])
+    solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), found.notes, how)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
     moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))
     kept = {name: float(values[0]) for name, values in solution.items()}
     return EquilibriumFound(
-        job.data.name, job.grid.start, kept, found.moves, found.imbalance, moved, found.free, found.notes, solution
+        job.data.name,
+        job.grid.start,
+        kept,
+        found.moves,
+        found.imbalance,
+        moved,
+        found.free,
+        found.notes,
+        found.eigenvalues,
+        solution,
     )
 
 
@@ -126,23 +137,6 @@ def _settled(job: Job, motion: SteadyMotion | None) -> Settled:
     if motion is None:
         return settled(job.dynamics, job.start, job.grid.start)
     return settled_in_motion(job.data, job.dynamics, job.start, job.grid.start, motion)
-
-
-def _solution(job: Job, found: Settled) -> Solution:
-    """The equilibrium as results of one instant."""
-    t, system = np.array([job.grid.start]), job.dynamics.system
-    rows = job.dynamics.report(t, found.start.q[None], found.start.u[None], project=False)
-    if not len(rows.t):
-        raise SolverError(f"no reactions were found in the equilibrium: {FAILURES[rows.status]}")
-    channels = channels_of(job.data, system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
-    return Solution(
-        name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=_message(found),
-        notes=found.notes, solver={"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance},
-        history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, rows.t, *energies, rows.values, np.empty(0)), not_unique=job.redundancy.not_unique,
-        requested=units(job.data.outputs()), turns=turns_of(system, rows.q),
-    )  # fmt: skip
 
 
 def _message(found: Settled) -> str:

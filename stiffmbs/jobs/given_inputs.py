@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import itertools
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,6 +18,12 @@ from ..solve.settings import output_grid
 
 Given: TypeAlias = float | Callable[[float], float] | tuple[Any, Any] | Table
 """A constant, a function of t, s, or times and values with straight lines between."""
+FEWEST, MOST = 257, 40_000
+"""Points of a spline that follows a function: at the first try, and above which none is tried."""
+FOLLOWED = 1e-11
+"""Error of such a spline halfway between its points, relative to the largest value; the points between are added afterwards."""
+JUMP, ROUNDINGS = 0.5, 1e-12
+"""Part of the change between two points that has to be left where it jumps; how near its sides are taken, relative to the time."""
 SAMPLES = 1001
 """At which functions are read where a run reports its own steps."""
 
@@ -28,7 +35,8 @@ def with_inputs(data: ModelData, inputs: Mapping[str, Given] | None, settings: R
     ----------
     data : ModelData
     inputs : mapping of str to number, callable, (times, values) or Table
-        A callable is read at the output instants, with straight lines between.
+        A smooth callable is followed by a spline to eleven digits.  One with corners or jumps is read at the output instants and
+        on both sides of jumps, with straight lines between.
     settings : RunSettings
         Of the run.
 
@@ -51,9 +59,7 @@ def _value(name: str, given: Given, settings: RunSettings) -> Amount | Table:
     if isinstance(given, Table):
         return given
     if callable(given):
-        grid = output_grid(settings)
-        times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, SAMPLES)
-        return _table(name, times, [_number(name, given(float(t))) for t in times])
+        return _followed(name, given, settings)
     if isinstance(given, tuple | list):
         if len(given) != 2 or len(given[0]) != len(given[1]):
             raise InputError(
@@ -61,6 +67,52 @@ def _value(name: str, given: Given, settings: RunSettings) -> Amount | Table:
             )
         return _table(name, given[0], [_number(name, value) for value in given[1]])
     return Amount(_number(name, given))
+
+
+def _followed(name: str, given: Callable[[float], float], settings: RunSettings) -> Table:
+    """A function as a spline, of twice as many points until it is followed; else as straight lines between output instants."""
+    from scipy.interpolate import CubicSpline
+
+    grid = output_grid(settings)
+    outputs = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, SAMPLES)
+    times = np.linspace(grid.start, grid.end, max(FEWEST, len(outputs)))
+    values = np.array([_number(name, given(float(t))) for t in times])
+    while len(times) < MOST:
+        between = (times[1:] + times[:-1]) / 2
+        there = np.array([_number(name, given(float(t))) for t in between])
+        spline = CubicSpline(times, values, bc_type="not-a-knot")
+        followed = np.max(np.abs(spline(between) - there)) <= FOLLOWED * np.max(np.abs(values))
+        times, values = (_merged(*both) for both in ((times, between), (values, there)))
+        if followed:
+            return Table(table=list(zip(times.tolist(), values.tolist(), strict=True)), ends="not-a-knot")
+    points = {float(t): _number(name, given(float(t))) for t in outputs}
+    for t, value in _jumps(name, given, list(points.items())):
+        points[t] = value
+    known = sorted(points.items())
+    return _table(name, [t for t, _ in known], [value for _, value in known])
+
+
+def _jumps(
+    name: str, given: Callable[[float], float], points: list[tuple[float, float]]
+) -> Iterator[tuple[float, float]]:
+    """Both sides of each jump between neighbouring points, one in each gap, found by halving the gap."""
+    largest = max(abs(value) for _, value in points)
+    apart = ROUNDINGS * max(abs(points[0][0]), abs(points[-1][0]))
+    for before, after in itertools.pairwise(points):
+        low, high = before, after
+        while high[0] - low[0] > apart:
+            t = (low[0] + high[0]) / 2
+            middle = t, _number(name, given(t))
+            low, high = (low, middle) if abs(middle[1] - low[1]) > abs(high[1] - middle[1]) else (middle, high)
+        if abs(high[1] - low[1]) > max(JUMP * abs(after[1] - before[1]), FOLLOWED * largest):
+            yield from (low, high)
+
+
+def _merged(ends: np.ndarray, between: np.ndarray) -> np.ndarray:
+    """Numbers and those between them, in turn."""
+    found = np.empty(len(ends) + len(between))
+    found[::2], found[1::2] = ends, between
+    return found
 
 
 def _table(name: str, times: Any, values: list[float]) -> Table:

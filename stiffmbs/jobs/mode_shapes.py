@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -11,7 +13,7 @@ from ..linear_analysis.modes import Mode, Motion
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.failures import FAILURES
+from ..solve.algebraic_states import failure
 from ..solve.trajectory import History, Outcome
 from .at_state import AtState
 
@@ -55,14 +57,13 @@ def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amp
     if len(rows.t) < points:
         raise SolverError(
             f"mode {number} cannot be shown with an amplitude of {amplitude:g} of the mechanism's size: "
-            f"{FAILURES[rows.status]}; expected a smaller amplitude"
+            f"{failure(dynamics, rows.status, found.t)}; expected a smaller amplitude"
         )
     channels = channels_of(found.data, system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
     return Solution(
         name=f"{found.data.name or 'model'}, mode {number}", time=time, channels=channels, outcome=Outcome.DONE,
         message=f"one period of mode {number}, {mode.natural_frequency:.6g} Hz" if oscillates else f"mode {number}, to and fro",
         notes=(), solver={"name": "modes", "steps": 0}, history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, time, *energies, rows.values, np.empty(0)), not_unique=found.redundancy.not_unique,
+        balance=energy_balance(system, replace(rows, t=time), np.empty(0)), not_unique=found.redundancy.not_unique,
         requested=units(found.data.outputs()), turns=turns_of(system, rows.q),
     )  # fmt: skip

@@ -27,14 +27,14 @@ def told_faults(system: System) -> Iterator[None]:
         if fault is None:
             raise
         raise AssemblyError(f"the start cannot be computed: {fault.clause}") from error
-    fault = fault_of(system)
+    fault = fault_of(system) if system.has_functions else None
     if fault and not isinstance(fault.raised, Exception):
         raise fault.raised
 
 
 def up_to_a_fault(system: System, trajectory: Trajectory) -> Trajectory:
     """A trajectory with the words of the fault that ended it, if one did."""
-    fault = fault_of(system)
+    fault = fault_of(system) if system.has_functions else None
     if fault is None or trajectory.outcome is Outcome.DONE:
         return trajectory
     if isinstance(fault.raised, KeyboardInterrupt):

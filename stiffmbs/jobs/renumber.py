@@ -66,13 +66,13 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
         return None
     system = job.dynamics.system
     written = []
-    for name, force in _changed(job.data, data):
-        change = _change(system, name, force, data)
+    for name, element in (*_changed(job.data, data), *_changed_by_states(job.data, data)):
+        change = _change(system, name, element, data)
         if change is None:
             return None
         written.append(change)
     if (
-        any(_moved(job.data.forces[change.name], data.forces[change.name]) for change in written)
+        any(_moved(job.data.forces[name], data.forces[name]) for name in {c.name for c in written} & {*data.forces})
         and data.size() != system.size
     ):
         return None  # tolerances follow from the size
@@ -91,6 +91,8 @@ def _same_structure(before: ModelData, after: ModelData) -> bool:
         return False
     if isinstance(before, Scene) and isinstance(after, Scene) and before.start != after.start:
         return False
+    if not _same_states(before, after) and (_beginnings(before) != _beginnings(after) or _held_by_states(after)):
+        return False
     return all(_same(getattr(before, section), getattr(after, section)) for section in HELD)
 
 
@@ -98,6 +100,30 @@ def _same(before: object, after: object) -> bool:
     if isinstance(before, dict) and isinstance(after, dict):
         return list(before) == list(after) and all(_same(before[name], after[name]) for name in before)
     return before is after or bool(before == after)
+
+
+def _same_states(before: ModelData, after: ModelData) -> bool:
+    return _same(before.states, after.states) and _same(before.inputs, after.inputs)
+
+
+def _beginnings(data: ModelData) -> dict[str, tuple[float, float, bool]]:
+    """Where states begin, and what their tolerances follow from."""
+    return {name: (value.start, value.scale, value.algebraic) for name, value in data.state_values().items()}
+
+
+def _held_by_states(data: ModelData) -> bool:
+    """Whether a joint has states or inputs in its equations."""
+    return any(formula.states for joint in data.joints.values() for _, formula in joint.parts(Formula))
+
+
+def _changed_by_states(before: ModelData, after: ModelData) -> Iterator[tuple[str, Element]]:
+    """The equations of states, and unchanged forces in which states, outputs or inputs may stand by formulas of their own."""
+    if _same_states(before, after):
+        return
+    yield from after.state_equations()
+    for name, force in after.forces.items():
+        if force is before.forces[name] and any(formula.states for _, formula in force.parts(Formula)):
+            yield name, force.at_initial_pose(after)
 
 
 def _changed(before: ModelData, after: ModelData) -> Iterator[tuple[str, Element]]:
@@ -145,7 +171,7 @@ class Change:
 
 def _change(system: System, name: str, force: Element, data: ModelData) -> Change | None:
     """A force with its new numbers; None where it has other equations, bodies or tables of another length."""
-    kind, found = sorted_out(force, data)
+    kind, found = sorted_out(name, force, data)
     group = next((group for group in system.groups if name in group.names), None)
     if group is None or kind != group.kind:
         return None
@@ -156,6 +182,12 @@ def _change(system: System, name: str, force: Element, data: ModelData) -> Chang
     bodies = [system.bodies[k] if k < len(system.bodies) else GROUND for k in group.bodies[element]]
     rows = index[2 * kind.n_bodies + 1 :][: kind.n_joints]
     joints = [system.equations[row][0] for row in rows]
-    if len(values) != starts[element + 1] - first or bodies != found.bodies or joints != found.joints:
+    states = [system.states[k - system.first_state] for k in group.states[element]]
+    if (
+        len(values) != starts[element + 1] - first
+        or bodies != found.bodies
+        or joints != found.joints
+        or states != found.states
+    ):
         return None
     return Change(group, element, force, first, values)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
 
@@ -18,36 +19,27 @@ from ..describe.requests.order import units
 from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..diagnostics.far_away import refuse_far_away
-from ..diagnostics.growth import senseless
-from ..diagnostics.lost_turns import lost_turns_sentence
-from ..diagnostics.singular_passage import singular_passage_sentence
+from ..diagnostics.motion import motion_notes
 from ..errors import AssemblyError, InputError
-from ..presolve.presolve import parts_of
-from ..results.channels import channels_of, turns_of
-from ..results.energy_balance import energy_balance
-from ..results.energy_balance_notes import balance_notes
-from ..results.missing_rows import reported
+from ..results.of_run import results_of_run
 from ..results.saved_state import SavedState
 from ..results.solution import Solution
-from ..results.undefined_values import no_number_sentences
-from ..solve import SOLVERS, traits_of
+from ..solve import SOLVERS
+from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
-from ..solve.failures import FAILURES
 from ..solve.initial import InitialValues, consistent_values, initial_values
+from ..solve.missing_rows import reported
 from ..solve.nearest_turns import take_nearest_turns
-from ..solve.settings import changed, may_presolve, near_constraints, output_grid
-from ..solve.storage import with_gaps
-from ..solve.subsystems import Subsystem, leave_out_coordinates, solve_subsystems, subsystem_of
+from ..solve.settings import changed, near_constraints, output_grid, settings_notes
+from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.suspect import suspect
-from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory
-from ..structure.messages.unconnected import unconnected_sentence
+from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
+from ..structure.messages.of_run import StructureNotes, structure_notes
 from ..structure.redundancy import Redundancy, examine
 from .given_inputs import Given, with_inputs
 from .load_scene import load_scene
-from .presolve_report import presolve_sentences
 from .python_faults import told_faults, up_to_a_fault
-from .settings_notes import settings_notes
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
 from .taken_again import Computed, seen_through
 
@@ -67,7 +59,8 @@ class Examined:
     def dynamics(self) -> Dynamics:
         """Of the system without its redundant equations."""
         system = self.redundancy.system
-        return Dynamics(replace(system, active=self.redundancy.active) if self.redundancy.redundant else system)
+        active = self.redundancy.active
+        return Dynamics(system if active.all() else replace(system, active=active))
 
 
 @dataclass(frozen=True)
@@ -83,10 +76,14 @@ class Job:
     subsystems: tuple[Subsystem, ...] = ()
     start_from: SavedState | None = None
 
+    @cached_property
+    def on_constraints(self) -> bool:
+        """Whether states are on the constraints but for the tolerance."""
+        return near_constraints(self.settings)
+
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
-        solve, watch = SOLVERS[self.settings.solver].solve, watch or (lambda t: None)
-
+        solve, watch = SOLVERS[self.settings.solver].solve, watch or unwatched
         LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
 
         def over(grid: Grid) -> Trajectory:
@@ -94,6 +91,8 @@ class Job:
                 return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
             return solve(self.dynamics, self.start, grid, self.settings, watch)
 
+        if not self.dynamics.system.has_inputs:
+            return over(self.grid)
         return solve_up_to_the_inputs_end(self.dynamics, self.grid, over)
 
 
@@ -162,33 +161,11 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         from .settled import settled
 
         return settled(dynamics, start, t).start
+    if asked == "settled":
+        from .settled import moving_in_equilibrium
+
+        return moving_in_equilibrium(dynamics, start, t)
     return start
-
-
-def presolved(
-    model: ModelData, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
-) -> tuple[Subsystem, ...]:
-    """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
-
-    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.
-
-    Parameters
-    ----------
-    model : ModelData
-    dynamics : Dynamics
-        Of the whole, at its start.
-    start : InitialValues
-    grid : Grid
-    settings : RunSettings
-    """
-    if not may_presolve(settings):
-        return ()
-    parts = parts_of(model, dynamics.system, apart=grid.times is not None)
-    subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
-    if traits_of(settings).implicit:
-        for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
-            leave_out_coordinates(solved, grid.start)
-    return subsystems
 
 
 def examined(
@@ -199,15 +176,16 @@ def examined(
     if isinstance(data, Scene) and data.stages:
         raise InputError("found a scene with stages, which only a run follows, expected a scene of one run")
     state = state_to_start_from(start_from)
-    chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), changes)
-    chosen = starting_at(chosen, state, settings, changes)
+    given = settings or (data.run if isinstance(data, Scene) else RunSettings())
+    chosen = changed(given, starting_at(state, settings, changes))
+    grid = output_grid(chosen)
     for name in chosen.drop_first:
         if name not in data.joints:
             raise InputError(f"drop_first: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
-    grid = output_grid(chosen)
-    refuse_far_away(data)
-    system = started_from(compile_model(data), data, state)
+    system = compile_model(data)
+    refuse_far_away(system)
+    system = started_from(system, data, state)
     with told_faults(system):
         return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), state)
 
@@ -269,43 +247,37 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
     trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
-        raise AssemblyError(f"no accelerations could be computed at the start: {FAILURES[rows.status]}")
+        raise AssemblyError(
+            f"no accelerations could be computed at the start: {failure(job.dynamics, rows.status, job.grid.start)}"
+        )
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
-    if near_constraints(job.settings):
+    if job.on_constraints:
         statistics["drift"] = float(np.nanmax(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
-    system, channels = job.dynamics.system, channels_of(job.data, job.dynamics.system, rows)
-    energies = channels["energy.kinetic"], channels["energy.potential"]
-    balance = energy_balance(system, rows.t, *energies, rows.values, trajectory.step_times)
-    wrong = tuple(senseless(job.dynamics, rows, job.settings))
-    wrong = wrong or tuple(balance_notes(system, balance, rows, job.settings, trajectory.step_times))
-    solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
-    known = {name: values[solved_there] for name, values in with_gaps(channels).items()}
-    wrong = (
-        *wrong,
-        *singular_passage_sentence(job.dynamics, rows),
-        *lost_turns_sentence(job.dynamics, rows),
-        *no_number_sentences(rows.t[solved_there], known),
-    )
+    system = job.dynamics.system
+    found = results_of_run(job.data, system, rows, job.settings, trajectory.step_times)
+    of_motion = motion_notes(job.dynamics, rows, job.on_constraints)
+    structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
+    wrong = (*(of_motion.senseless or found.broken_balance), *of_motion.uncertain, *found.undefined)
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels, outcome=outcome,
-        message=message, notes=(*_notes(job, trajectory), *overlooked, *computed.left_out, *wrong), solver=statistics,
-        history=trajectory.history, balance=balance, not_unique=job.redundancy.not_unique,
-        requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
-        presolve=tuple(presolve_sentences(job.dynamics.system, job.subsystems, job.dynamics)), turns=turns_of(system, rows.q),
+        name=job.data.name, time=rows.t, channels=found.channels, outcome=outcome, message=message,
+        notes=(*_notes(job, trajectory, structure), *overlooked, *computed.left_out, *wrong), solver=statistics,
+        history=trajectory.history, balance=found.balance, not_unique=structure.not_unique,
+        requested=units(job.data.outputs()) if job.data.requests else {}, figure=job.data.figure if isinstance(job.data, Scene) else None,
+        presolve=structure.of_presolve, turns=found.turns,
     )  # fmt: skip
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and report it."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
-    return Computed(trajectory, *reported(job.dynamics, trajectory, near_constraints(job.settings)))
+    return Computed(trajectory, *reported(job.dynamics, trajectory, job.on_constraints))
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
     """A trajectory up to where a mechanism locks, for equations that were left out, or for prescribed velocities."""
     system = job.dynamics.system
-    if not job.redundancy.redundant and system.holonomic.all():
+    if job.redundancy.active.all() and system.holonomic.all():
         return trajectory
     from ..diagnostics.locked import locked
 
@@ -324,24 +296,22 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     if len(rows.t) == len(trajectory.t):
         return trajectory.outcome, trajectory.message
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))
-    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {FAILURES[rows.status]}"
+    sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {failure(job.dynamics, rows.status, t)}"
     fault = fault_of(job.dynamics.system)
     if fault:
         return Outcome.STOPPED, f"{sentence}; {fault.clause}"
     return Outcome.STOPPED, sentence + suspect(job.dynamics, t, q, u)
 
 
-def _notes(job: Job, trajectory: Trajectory) -> Iterator[str]:
+def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Iterator[str]:
+    system = job.dynamics.system
     yield from notes_of(job.data)
-    if job.redundancy.rank_results:
-        from ..structure.messages.redundancy import note_sentences
-
-        yield from note_sentences(job.redundancy)
-    yield from unconnected_sentence(job.dynamics.system)
+    yield from structure.of_joints
     yield from job.start.notes
-    yield from notes_on_functions(job.dynamics.system)
+    if system.has_functions:
+        yield from notes_on_functions(system)
     if job.start.moved:
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    yield from settings_notes(job.settings, job.dynamics.system)
+    yield from settings_notes(job.settings, system)

@@ -8,18 +8,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import SolverError
-from ..linear_analysis.state_space import null_space, state_matrix
+from ..linear_analysis.stability import lowest
+from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
+from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
 from ..solve.equilibrium import Equilibrium, find_equilibrium
+from ..solve.force_balance import balance_at
 from ..solve.initial import InitialValues
+from ..solve.steady_motion import at_rest
 
-MOST_FOR_STABILITY = 1500
-"""Velocities up to which the stability of an equilibrium is looked at (dense matrices)."""
+MOST_WITH_STATES = 1500
+"""Velocities up to which the stability of an equilibrium with states of the user's own is looked at (dense matrices)."""
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
-FREE, UNSTABLE = 1e-9, 1e-9
-"""Stiffness over mass, relative to the largest, below which a direction is free, or with the other sign unstable."""
 MOST_BRANCHES = 3
 GROWING = 1e-6
 """Real part of an eigenvalue, relative to the largest of all, from which on a motion grows: double zeros are known to that."""
@@ -40,6 +42,8 @@ class Settled:
     free : tuple of str
         For each motion that nothing holds the velocity that is largest in it.
     notes : tuple of str
+    eigenvalues : tuple of complex
+        Of motions beside a steady one, 1/s, in the frame that moves with it; none at rest.
     """
 
     start: InitialValues
@@ -47,6 +51,7 @@ class Settled:
     imbalance: float
     free: tuple[str, ...]
     notes: tuple[str, ...]
+    eigenvalues: tuple[complex, ...] = ()
 
 
 def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
@@ -63,9 +68,9 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     system, state = dynamics.system, dynamics.state
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
-    if system.n_u > MOST_FOR_STABILITY:
-        return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
     notes: list[str] = []
+    if system.states and system.n_u > MOST_WITH_STATES:
+        return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
     if system.states:
         return _settled(found, start, list(_unstable(dynamics, t)))
     for _ in range(MOST_BRANCHES):
@@ -80,6 +85,38 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
         found = next(pose for pose in poses if pose is not None)
         state.q[:] = found.q
     return _settled(found, start, [*notes, "the pose found is unstable too: no stable equilibrium was found beside it"])
+
+
+def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
+    """The pose of the equilibrium at rest with the described velocities, made consistent: a car that begins to roll.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    start : InitialValues
+        The pose from which it is sought, and the velocities.
+    t : float
+        s.
+
+    Raises
+    ------
+    SolverError
+        Where no equilibrium is found, or the velocities have no accelerations there.
+    """
+    state = dynamics.state
+    state.q[:] = start.q
+    found = find_equilibrium(dynamics, t)
+    state.q[:], state.u[:] = found.q, start.u
+    status = min(dynamics.correct_velocities(t), 0)
+    state.count_anew(t)
+    acceleration = start.acceleration
+    if status == 0:
+        status, acceleration = dynamics.accelerate(t)
+    if status < 0:
+        raise SolverError(f"the described velocities do not go on in the equilibrium: {failure(dynamics, status, t)}")
+    lam = state.lam[: dynamics.system.n_c].copy()
+    notes = ("whether the equilibrium that the run starts in is stable was not looked at",)
+    return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
 
 
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
@@ -103,24 +140,13 @@ def _unstable(dynamics: Dynamics, t: float) -> Iterator[str]:
 
 def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[str]]:
     """The most unstable direction at an equilibrium (as velocities), and the names of what is free."""
-    system, state = dynamics.system, dynamics.state
-    state.u[:] = 0.0
-    _, acceleration = dynamics.accelerate(t)
-    linear = linearised(dynamics, t, acceleration)
+    system = dynamics.system
+    known = balance_at(dynamics, t, at_rest(system.of_body.dimensions))
     scale = system.per_velocity(system.size, 1.0)
-    free = null_space(linear.velocity * scale) * scale[:, None]
-    if not free.shape[1]:
-        return None, []
-    matrix = np.linalg.solve(free.T @ (linear.mass @ free), free.T @ linear.stiffness @ free)
-    values, vectors = np.linalg.eig(matrix)
-    largest = float(np.max(np.abs(values)))
-    worst = int(np.argmax(values.real))
-    shapes = (free @ vectors).real
-    if values[worst].real > UNSTABLE * largest and abs(values[worst].imag) < 1e-6 * abs(values[worst]):
-        shape = shapes[:, worst] / np.max(np.abs(shapes[:, worst] / scale))
-        return linear.own_axes @ shape, []
-    loose = np.flatnonzero(np.abs(values) <= FREE * largest) if largest else range(len(values))
-    return None, list(dict.fromkeys(_name(dynamics, shapes[:, k] / scale) for k in loose))
+    found = lowest(known.stiffness, known.jacobian, system.mass, scale, known.left)
+    for shape in found.unstable.T:
+        return shape / np.max(np.abs(shape / scale)), []
+    return None, list(dict.fromkeys(_name(dynamics, shape / scale) for shape in found.free.T))
 
 
 def _name(dynamics: Dynamics, shape: np.ndarray) -> str:

@@ -18,7 +18,6 @@ from ..presolve.subsystems import counters_of
 from ..results.body_axes import from_own_axes, rates_from_own_axes
 from ..results.saved_state import SavedState, read_state
 from ..results.solution import Solution
-from ..solve.settings import changed
 
 StartFrom: TypeAlias = SavedState | Solution | str | Path
 """A saved state: one row of a solution or of a file of results, the last unless told otherwise."""
@@ -43,10 +42,10 @@ def state_to_start_from(given: StartFrom | None) -> SavedState | None:
     raise InputError(f"start_from: found {given!r}, expected a file of results, a Solution, or a state of one")
 
 
-def starting_at(chosen: RunSettings, state: SavedState | None, given: RunSettings | None, changes: Any) -> RunSettings:
-    """The settings of a run that starts at the time of its state, unless the caller asks for another start."""
-    told = "start" in changes or (given is not None and "start" in given.model_fields_set)
-    return chosen if state is None or told else changed(chosen, {"start": state.t})
+def starting_at(state: SavedState | None, given: RunSettings | None, changes: dict[str, Any]) -> dict[str, Any]:
+    """Changes of settings for a run that starts at the time of its state, unless the caller asks for another start."""
+    asked = "start" in changes or (given is not None and "start" in given.model_fields_set)
+    return changes if state is None or asked else {**changes, "start": state.t}
 
 
 def started_from(system: System, model: ModelData, state: SavedState | None) -> System:

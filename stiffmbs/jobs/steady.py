@@ -10,13 +10,17 @@ from ..compile.system import System
 from ..describe.model_data import ModelData
 from ..describe.settings import SteadyMotion as Described
 from ..errors import InputError, SolverError
+from ..linear_analysis.steady_motion import eigenvalues_beside
 from ..solve.dynamics import Dynamics
-from ..solve.equilibrium import find_equilibrium
+from ..solve.equilibrium import Equilibrium, find_equilibrium
 from ..solve.force_balance import balance_at
 from ..solve.initial import InitialValues
 from ..solve.nearest_equilibrium import nearest_equilibrium
 from ..solve.steady_motion import SteadyMotion
-from .settled import Settled
+from .settled import GROWING, Settled
+
+MOST_FOR_STABILITY = 1500
+"""Velocities up to which the stability of a steady motion is looked at (dense matrices)."""
 
 AHEAD = 1e-3
 """How far a motion goes, rad or parts of the mechanism's size, until it is looked at whether forces still balance."""
@@ -56,9 +60,30 @@ def settled_in_motion(
         found = nearest_equilibrium(dynamics, t, motion)
     _refuse_joints(dynamics, t)
     _refuse_unsteady(dynamics, t, motion)
-    notes = ("whether the steady motion is stable was not looked at",)
+    values = _eigenvalues(dynamics, t, motion, found)
+    notes = (_stability(values, dynamics.system.n_u),)
     moving = replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
-    return Settled(moving, found.moves, found.imbalance, (), notes)
+    return Settled(moving, found.moves, found.imbalance, (), notes, () if values is None else tuple(values.tolist()))
+
+
+def _eigenvalues(dynamics: Dynamics, t: float, motion: SteadyMotion, found: Equilibrium) -> np.ndarray | None:
+    """Those of motions beside the steady one; None where they cannot be told."""
+    if dynamics.system.n_u > MOST_FOR_STABILITY:
+        return None
+    state = dynamics.state
+    state.q[:], state.u[:] = found.q, found.u
+    dynamics.accelerate(t)
+    return eigenvalues_beside(dynamics, t, motion, found.acceleration)
+
+
+def _stability(values: np.ndarray | None, n_u: int) -> str:
+    if values is None:
+        reason = f"it has {n_u} velocities" if n_u > MOST_FOR_STABILITY else "its equations change along the motion"
+        return f"whether the steady motion is stable was not looked at: {reason}"
+    fastest = float(np.max(values.real, initial=0.0))
+    if fastest > GROWING * np.max(np.abs(values), initial=0.0):
+        return f"the steady motion is unstable: motions beside it grow at {fastest:.3g} 1/s"
+    return "no small motion beside the steady one grows"
 
 
 def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, described: Described) -> SteadyMotion:

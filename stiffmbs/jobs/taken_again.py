@@ -63,10 +63,12 @@ def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
     """What output instants, or instants within long steps, show."""
-    trajectory = computed.trajectory
+    system, trajectory = job.dynamics.system, computed.trajectory
+    if not system.has_laws:
+        return None
     long_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.long_steps
     found = [
-        overlooked(job.dynamics.system, computed.rows, trajectory.step_times, job.settings),
+        overlooked(system, computed.rows, trajectory, job.settings),
         *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
     ]
     return together([each for each in found if each is not None])

@@ -107,9 +107,8 @@ def _column(
             "prescribe the displacement"
         )
     own = about.linear.own_axes
-    change = Input(
-        name, own.T @ (more - force) / (2 * step), (wider - gap) / (2 * step), (other - of_states) / (2 * step)
-    )
+    forces, rates = about.linear.algebraic.passed_on(own.T @ (more - force), other - of_states)
+    change = Input(name, forces / (2 * step), (wider - gap) / (2 * step), rates / (2 * step))
     acts = effect(about.linear, about.state, change, about.scale)
     moved = np.outer((-step, step), acts.pose), np.outer((-step, step), acts.velocity)
     same = np.zeros((1, len(system.states)))
@@ -170,7 +169,7 @@ def _channels(
 def _differentiated(about: _About, outputs: Sequence[str]) -> np.ndarray:
     """C: the outputs' derivatives by the state, central differences of what a run would report."""
     state = about.state
-    of_states = np.eye(len(state.matrix))[len(state.matrix) - state.n_states :]
+    of_states = about.linear.algebraic.among_all(np.eye(len(state.matrix))[len(state.matrix) - state.n_states :])
     parts = state.poses, state.velocities, of_states
     scales = np.concatenate([about.scale, about.scale, about.found.dynamics.system.state_scales])
     sizes = np.abs(np.vstack(parts) / scales[:, None]).max(axis=0)

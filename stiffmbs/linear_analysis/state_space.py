@@ -1,7 +1,6 @@
 """The linearised equations in as many variations as there are degrees of freedom.
 
-Poses vary by x = W a with G W = 0, velocities by v = N b + P a with J N = 0 and J P = -H W: the constraints hold, and
-with L^T B = 0 multipliers drop out (null space method; Negrut and Ortiz, J. Comput. Nonlinear Dyn. 1, 2006).
+Poses vary by x = W a + Q s with G W = 0 and G Q = -G_s, velocities by v = N b + P (a, s) with J N = 0, so that the constraints hold; with L^T B = 0 multipliers drop out (null space method; Negrut and Ortiz, J. Comput. Nonlinear Dyn. 1, 2006).
 """
 
 from __future__ import annotations
@@ -77,16 +76,19 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
         for matrix in (linear.position, linear.reactions.T)
     )
     n_a, n_b, n_s = poses.shape[1], free.shape[1], len(linear.rate_by_states)
-    x = np.hstack([poses, np.zeros((len(scale), n_b + n_s))])
-    following = _following(constraints, linear.velocity_at_position @ poses, scale)
-    v = np.hstack([following, free, np.zeros((len(scale), n_s))])
     s = np.hstack([np.zeros((n_s, n_a + n_b)), np.eye(n_s)])
+    led = _following(_Constraints(linear.position * scale), linear.position_by_states, scale)
+    x = np.hstack([poses, np.zeros((len(scale), n_b)), led])
+    v = _following(constraints, linear.velocity_at_position @ x + linear.velocity_by_states @ s, scale)
+    v[:, n_a : n_a + n_b] += free
     n = n_a + n_b + n_s
-    carried = _following(constraints, linear.acceleration_at_position @ x + linear.acceleration_at_velocity @ v, scale)
+    asked = (
+        linear.acceleration_at_position @ x + linear.acceleration_at_velocity @ v + linear.acceleration_by_states @ s
+    )
+    carried = _following(constraints, asked, scale)
     acting = linear.stiffness @ x + linear.damping @ v + linear.by_states @ s
     force = left.T @ (acting - linear.mass @ carried)
     accelerations = _solved(left.T @ linear.mass @ free, np.hstack([force, left.T]))
-    rates = (poses / scale[:, None]).T @ (v / scale[:, None])
     found = carried + free @ accelerations[:, :n]
     rates_of_states = linear.rate_by_pose @ x + linear.rate_by_velocity @ v + linear.rate_by_states @ s
     forced = np.zeros((n_s, len(scale)))
@@ -94,12 +96,14 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
         reactions = np.linalg.pinv(linear.reactions)
         rates_of_states += linear.rate_by_reactions @ reactions @ (acting - linear.mass @ found)
         forced = linear.rate_by_reactions @ reactions @ (np.eye(len(scale)) - linear.mass @ free @ accelerations[:, n:])
+    rates = (poses / scale[:, None]).T @ ((v - led @ rates_of_states) / scale[:, None])
+    moved = (poses / scale[:, None]).T @ (-(led @ forced) / scale[:, None])
     return StateMatrix(
         matrix=np.vstack([rates, accelerations[:, :n], rates_of_states]),
         poses=x,
         velocities=v,
         accelerations=found,
-        forced=np.vstack([np.zeros((n_a, len(scale))), accelerations[:, n:], forced]),
+        forced=np.vstack([moved, accelerations[:, n:], forced]),
         n_poses=n_a,
         n_states=n_s,
     )

@@ -15,12 +15,14 @@ from scipy.sparse import csr_array, diags_array
 from ..compile.quaternions import rotated
 from ..compile.system import System
 from ..solve.dynamics import Dynamics
+from .algebraic import Algebraic, algebraic_of, without_algebraic
 
 
 @dataclass(frozen=True)
 class Linearised:
-    """M v' = K x + D v + F s - B dlam, s' = R_x x + R_v v + R_s s + R_lam dlam, with G x = 0, H x + J v = 0 and
-    J v' + H_x x + H_v v = 0; s are variations of the user's own states.
+    """M v' = K x + D v + F s - B dlam, s' = R_x x + R_v v + R_s s + R_lam dlam, with G x + G_s s = 0, H x + J v + H_s s = 0
+    and J v' + H_x x + H_v v + A_s s = 0; s are variations of the user's own states with rates;
+    algebraic states are put out.
 
     Attributes
     ----------
@@ -38,12 +40,16 @@ class Linearised:
         H_x and H_v, of the constraints of accelerations.
     by_states : ndarray, shape (n_u, states)
         F.
+    position_by_states, velocity_by_states, acceleration_by_states : ndarrays, shapes (holonomic, states), (n_c, states), (n_c, states)
+        G_s, H_s and A_s.
     rate_by_pose, rate_by_velocity, rate_by_states, rate_by_reactions : ndarrays, shapes (states, n_u), (states, n_u), (states,
             states), (states, n_c)
         R_x, R_v, R_s and R_lam.
     own_axes, spin : sparse arrays, shape (n_u, n_u)
         From ground axes to those that u has, and w x of every body in ground axes: the variation of u' is
         own_axes (v' - w x v).
+    algebraic : Algebraic
+        How algebraic states follow.
     """
 
     mass: csr_array
@@ -56,12 +62,16 @@ class Linearised:
     acceleration_at_position: np.ndarray
     acceleration_at_velocity: np.ndarray
     by_states: np.ndarray
+    position_by_states: np.ndarray
+    velocity_by_states: np.ndarray
+    acceleration_by_states: np.ndarray
     rate_by_pose: np.ndarray
     rate_by_velocity: np.ndarray
     rate_by_states: np.ndarray
     rate_by_reactions: np.ndarray
     own_axes: csr_array
     spin: csr_array
+    algebraic: Algebraic
 
 
 def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linearised:
@@ -89,14 +99,16 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
         return state.matrix("all_levels_tangent", name)
 
     rates = term("Z")
-    q, u = system.of_body.straight(len(system.bodies))
+    q, u = system.straight
     rates[q, u] += 1.0
     axes, spin = _axes(system, state.q), _spin(system, state.q, state.u)
     back = axes.T
     rows = system.active
     to_coordinates = rates @ back
     mass = axes @ diags_array(system.mass) @ back
-    return Linearised(
+    own = slice(system.first_state, None)
+    by_states, rate_by_states = axes @ (term("f_q") - term("G_lam"))[:, own], term("rate_q")[own, own]
+    linear = Linearised(
         mass=mass,
         stiffness=axes @ (term("f_q") - term("G_lam")) @ to_coordinates,
         damping=axes @ term("f_u") @ back + mass @ spin,
@@ -106,14 +118,19 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
         velocity_at_position=(term("V_q") @ to_coordinates)[rows],
         acceleration_at_position=(term("A_q") @ to_coordinates)[rows],
         acceleration_at_velocity=-(term("gamma_u") @ back + term("J") @ back @ spin)[rows],
-        by_states=axes @ term("f_q")[:, system.first_state :],
-        rate_by_pose=term("rate_q")[system.first_state :] @ to_coordinates,
-        rate_by_velocity=term("rate_u")[system.first_state :] @ back,
-        rate_by_states=term("rate_q")[system.first_state :, system.first_state :],
-        rate_by_reactions=term("rate_lam")[system.first_state :, rows],
+        by_states=by_states,
+        position_by_states=term("C_x")[rows & system.holonomic][:, own],
+        velocity_by_states=term("V_q")[rows][:, own],
+        acceleration_by_states=term("A_q")[rows][:, own],
+        rate_by_pose=term("rate_q")[own] @ to_coordinates,
+        rate_by_velocity=term("rate_u")[own] @ back,
+        rate_by_states=rate_by_states,
+        rate_by_reactions=term("rate_lam")[own, rows],
         own_axes=back,
         spin=spin,
+        algebraic=algebraic_of(system.algebraic, by_states, rate_by_states),
     )
+    return without_algebraic(linear)
 
 
 def _axes(system: System, q: np.ndarray) -> csr_array:

@@ -68,6 +68,11 @@ def effect(linear: Linearised, state: StateMatrix, given: Input, scale: np.ndarr
     InputError
         When the input moves a constraint, and a state feels how fast, or the reaction.
     """
+    if np.any(linear.position_by_states) and (np.any(given.rates) or np.any(given.position)):
+        raise InputError(
+            f"input '{given.name}': found one that changes rates of states or moves a constraint where constraints follow states, "
+            "expected a force"
+        )
     n_a, end = state.n_poses, state.n_poses + state.degrees_of_freedom
     of_velocities = slice(n_a, end)
     free, forced = state.velocities[:, of_velocities], state.forced[of_velocities]

@@ -10,7 +10,7 @@ import numpy as np
 from ..compile.group import Group
 from ..compile.kind import Kind
 from ..compile.record import record_of
-from ..compile.system import System
+from ..compile.system import System, Term
 from ..compile.terms import TERM_SETS
 from .relations import NEGLIGIBLE
 
@@ -41,7 +41,7 @@ class Dependence:
         return changing
 
 
-def dependence(system: System, values: np.ndarray) -> Dependence:
+def dependence(system: System, term: Term, values: np.ndarray) -> Dependence:
     """What the entries of C_q depend on, by the symbols of their kinds.
 
     A summand of an entry is left out where its numbers are zero; where it is bounded, also where they are rounding beside
@@ -50,10 +50,11 @@ def dependence(system: System, values: np.ndarray) -> Dependence:
     Parameters
     ----------
     system : System
+    term : Term
+        C_q in the set ``position``.
     values : ndarray
-        Of the set ``position`` at a pose.
+        Of that set at a pose.
     """
-    term = system.term("position", "C_q")
     rounding = np.zeros(system.n_c)
     np.fmax.at(rounding, term.row, NEGLIGIBLE * np.abs(values[term.source]))
     joints = [(g, group) for g, group in enumerate(system.groups) if group.record.variation]
@@ -128,9 +129,10 @@ def _starts(lengths: list[int]) -> np.ndarray:
 
 
 def _of_group(system: System, g: int, group: Group, values: np.ndarray, rounding: np.ndarray) -> Dependence:
-    width, of_kind = group.entries("C_q"), _summands(group.kind)
+    width, of_kind = group.entries["C_q"], _summands(group.kind)
     first = int(system.places["position"][g, 1 + TERM_SETS["position"].index("C_q")])
-    source, row, column = (part.reshape(group.count, width) for part in group.placed("C_q", first))
+    placed, coordinates = group.placed("C_q", first), group.coordinates(of_kind.on)
+    source, row, column = (part.reshape(group.count, width) for part in placed)
     least = np.where(of_kind.bounded, rounding[row[:, of_kind.entry]], 0.0)
     counts = (_sizes(group, of_kind)[:, of_kind.product] > least) & (column < system.n_q)[:, of_kind.entry]
     present = np.zeros((group.count, width), dtype=bool)
@@ -139,7 +141,7 @@ def _of_group(system: System, g: int, group: Group, values: np.ndarray, rounding
     number = np.cumsum(present.ravel()).reshape(present.shape) - 1
     element, pair = np.nonzero(counts[:, of_kind.of])
     entry = number[element, of_kind.entry[of_kind.of[pair]]]
-    on = group.coordinates(of_kind.on)[element, pair]
+    on = coordinates[element, pair]
     inside = on < system.n_q
     return Dependence(row[present], column[present], values[source[present]], entry[inside], on[inside])
 

@@ -39,7 +39,7 @@ def independent_coordinates(system: System, state: State, t: float) -> Coordinat
     if not candidates.any():
         return found.coordinates(system)
     state.evaluate("position", t)
-    C_q = dependence(system, state.values["position"])
+    C_q = dependence(system, system.term("position", "C_q"), state.values["position"])
     while True:
         moves = found.independent_of != FIXED
         open_rows = candidates & ~found.satisfied
@@ -61,7 +61,8 @@ def _candidates(system: System) -> np.ndarray:
         rows[group.first_row : last] &= np.tile(of_group, group.count)
     if any(group.record.patterns.get("f_lam") for group in system.groups):
         rows[system.term("tangent", "f_lam").column] = False
-    rows[system.term("tangent", "rate_lam").column] = False
+    if system.states:
+        rows[system.term("tangent", "rate_lam").column] = False
     return rows
 
 
@@ -72,7 +73,7 @@ def _constant_rows(
 
     They hold no quaternions.
     """
-    straight, _ = system.of_body.straight(len(system.bodies))
+    straight, _ = system.straight
     counts = moves[C_q.column]
     included = open_rows.copy()
     included[C_q.row[counts & (C_q.varies(moves) | ~np.isin(C_q.column, straight))]] = False

@@ -59,6 +59,10 @@ class MergedBodies:
         """That of the model as described."""
         return self.model.size()
 
+    def spin_axes(self) -> dict[str, str]:
+        """None."""
+        return {}
+
     def elements(self) -> Iterator[tuple[str, Element]]:
         """What acts on the bodies that are left, what they have of themselves (weights) too, and counters of turns."""
         for name, element in self.model.elements_at_initial_pose():

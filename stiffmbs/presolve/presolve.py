@@ -1,7 +1,8 @@
 """The presolve: what is solved for in place of the whole model, and how the whole follows from it.
 
-Bodies between fixed joints are merged and independent mechanisms solved apart.  Nothing is lost: the states of all
-bodies follow from those solved for, and every reaction from the equations of the whole.
+Bodies between fixed joints are merged, quaternions kept from spinning with their bodies, and independent mechanisms solved
+apart.  Nothing is lost: the states of all bodies follow from those solved for, and every reaction from the equations of the
+whole.
 """
 
 from __future__ import annotations
@@ -11,11 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..compile.compile_model import compile_model
+from ..compile.quaternions import rotated
 from ..compile.system import System
 from ..describe.model_data import ModelData
 from .body_fixed_poses import BODY_FIXED_POSES, BodyFixedPoses
 from .merged_bodies import MergedBodies, merge
-from .subsystems import behind_bodies, mechanisms, part_of
+from .spin import Spin
+from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
+from .subsystems import A_STATE, behind_bodies, mechanisms, part_of
 
 MOST_APART = 8
 """Mechanisms that are solved apart: each has a start and steps of its own, which many tiny ones would not be worth."""
@@ -36,6 +40,9 @@ class Part:
         Where each of them is on that.
     behind : ndarray of int
         The coordinates of the whole that the part's own counters of turns and states stand for.
+    kept : ndarray of int
+        The coordinates of the part that these are.
+    spins : tuple of Spin
     """
 
     system: System
@@ -43,12 +50,15 @@ class Part:
     parent: np.ndarray
     poses: BodyFixedPoses
     behind: np.ndarray
+    kept: np.ndarray
+    spins: tuple[Spin, ...]
 
     def reduced(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The coordinates and velocities of the part's bodies, from those of the whole that satisfy its constraints."""
         of, first = np.unique(self.parent, return_index=True)
         assert len(of) == len(self.system.bodies)
-        behind, rates = q[self.behind], u.reshape(-1, self.system.of_body.n_u)
+        behind, rates = np.zeros(self.system.n_q - self.system.n_pose), u.reshape(-1, self.system.of_body.n_u)
+        behind[self.kept - self.system.n_pose] = q[self.behind]
         places = q[: self.system.of_body.n_q * len(rates)].reshape(len(rates), -1)
         places, rates = places[self.bodies], rates[self.bodies]
         if self.poses.moved:
@@ -58,16 +68,20 @@ class Part:
     def put(self, q: np.ndarray, u: np.ndarray, into_q: np.ndarray, into_u: np.ndarray) -> None:
         """Write the states of the bodies of the whole, one state a row, from those of the part's bodies."""
         n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
-        of_bodies, into_q[:, self.behind] = np.split(q, [n_q * count], axis=1)
-        of = of_bodies.reshape(len(q), count, n_q)[:, self.parent]
-        rates = u.reshape(len(u), count, n_u)[:, self.parent]
+        into_q[:, self.behind] = q[:, self.kept]
+        of, rates = q[:, : n_q * count].reshape(len(q), count, n_q), u.reshape(len(u), count, n_u)
+        if self.spins:
+            of, rates = of.copy(), rates.copy()
+            for spin in self.spins:
+                spin.turned(of, rates, q[:, spin.angle])
+        of, rates = of[:, self.parent], rates[:, self.parent]
         if self.poses.moved:
             of, rates = self.poses.carried(of, rates)
         into_q[:, n_q * self.bodies[:, None] + np.arange(n_q)] = of
         into_u[:, n_u * self.bodies[:, None] + np.arange(n_u)] = rates
 
 
-def parts_of(model: ModelData, whole: System, apart: bool = True) -> tuple[Part, ...]:
+def parts_of(model: ModelData, whole: System, way: np.ndarray | None, apart: bool = True) -> tuple[Part, ...]:
     """The mechanisms to solve in place of a compiled model; empty where that is the model itself.
 
     Parameters
@@ -75,38 +89,59 @@ def parts_of(model: ModelData, whole: System, apart: bool = True) -> tuple[Part,
     model : ModelData
     whole : System
         With its redundant equations marked.
+    way : ndarray, shape (n_u,), or None
+        The velocities at the start times the duration of the run; None where quaternions are to follow all spins.
     apart : bool
         Whether independent mechanisms may be solved apart.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
     merged = merge(model, held)
-    system = _compiled(merged, whole) if merged else whole
+    spun = None if way is None else spinning(merged or model, _turns(merged, whole, way))
+    system = _compiled(spun or merged, whole) if spun or merged else whole  # type: ignore[arg-type]
     found = mechanisms(system) if apart else []
     if not 1 < len(found) <= MOST_APART:
-        if not merged:
+        if system is whole:
             return ()
         found = [np.arange(len(system.bodies))]
-    return tuple(_part(bodies, system, whole, merged) for bodies in found)
+    return tuple(_part(bodies, system, whole, merged, spun) for bodies in found)
 
 
-def _compiled(merged: MergedBodies, whole: System) -> System:
-    """The merged model, compiled, with the same equations redundant and the same size as the whole."""
-    system = compile_model(merged)
+def _turns(merged: MergedBodies | None, whole: System, way: np.ndarray) -> dict[str, np.ndarray]:
+    """The angular part of a way for each body that is solved for, about its principal axes."""
+    of_bodies = way.reshape(len(whole.bodies), -1)[:, whole.of_body.linear :]
+    turns = dict(zip(whole.bodies, of_bodies, strict=True))
+    if merged is None or merged.dimensions == 2:
+        return turns
+    on_carrier = {name: np.array(merged.members[name][1].orientation) for name in merged.bodies}
+    return {name: rotated(orientation, turns[name]) for name, orientation in on_carrier.items()}
+
+
+def _compiled(model: MergedBodies | SpinningBodies, whole: System) -> System:
+    """The model in place of the whole, compiled, with the same equations redundant and the same size."""
+    system = compile_model(model)
     on = dict(zip(whole.equations, whole.active, strict=True))
     return replace(system, active=np.array([on[equation] for equation in system.equations], dtype=bool))
 
 
-def _part(bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None) -> Part:
+def _part(
+    bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None, spun: SpinningBodies | None
+) -> Part:
     own = part_of(system, bodies)
     number = {name: k for k, name in enumerate(own.bodies)}
     of_whole, of_part = behind_bodies(whole), behind_bodies(own)
-    behind = np.array([of_whole[key] for key in sorted(of_part, key=of_part.__getitem__)], dtype=np.int64)
+    shared = sorted(of_part.keys() & of_whole.keys(), key=of_part.__getitem__)
+    behind, kept = (np.array([of[key] for key in shared], dtype=np.int64) for of in (of_whole, of_part))
+    spins = tuple(
+        Spin(number[name], AXES.index(axis), of_part[name_of_angle(name), A_STATE])
+        for name, axis in (spun.axes if spun else {}).items()
+        if name in number
+    )
     poses = BODY_FIXED_POSES[whole.of_body.dimensions]
     if merged is None:
-        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), behind)
+        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), behind, kept, spins)
     carried = [(k, *merged.members[name]) for k, name in enumerate(whole.bodies) if merged.members[name][0] in number]
     numbers = np.array([k for k, _, _ in carried])
     parent = np.array([number[name] for _, name, _ in carried])
     at_initial_pose = whole.q[: whole.n_pose].reshape(len(whole.bodies), -1)[numbers]
     placed = poses.of([place for _, _, place in carried]).like(at_initial_pose, parent)
-    return Part(own, numbers, parent, placed, behind)
+    return Part(own, numbers, parent, placed, behind, kept, spins)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..compile.coordinates import FIXED, Coordinates, all_independent
+from ..compile.coordinates import FIXED, Coordinates
 from ..compile.system import System
 
 NEGLIGIBLE = 1e-13
@@ -28,12 +28,11 @@ class Relations:
 
     @classmethod
     def none(cls, system: System) -> Relations:
-        start = all_independent(system)
-        return cls(start.independent_of, start.ratio, start.satisfied)
+        return cls(np.arange(system.n_q), np.ones(system.n_q), np.zeros(system.n_c, dtype=bool))
 
     def coordinates(self, system: System) -> Coordinates:
         """With the velocities, which are related as the coordinates that they are rates of."""
-        q, u = system.of_body.straight(len(system.bodies))
+        q, u = system.straight
         of_q = np.full(system.n_q, FIXED)
         of_q[q] = u
         independent_of, ratio = np.arange(system.n_u), np.ones(system.n_u)

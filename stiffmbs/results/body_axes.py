@@ -13,9 +13,9 @@ OWN_ARE_PRINCIPAL = np.array([1.0, 0.0, 0.0, 0.0])
 def in_own_axes(
     system: System, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates, velocities and accelerations, one instant a row, of bodies as they are described; counters of turns and states are left out.
+    """Coordinates, velocities and accelerations, one instant a row, of bodies as they are described.
 
-    Where all own axes are principal ones, and in the plane, the arrays are returned as they are.
+    Counters of turns and states are left out.  Where all own axes are principal ones, and in the plane, the arrays are returned as they are.
     """
     axes = system.principal_axes
     q = q[:, : system.n_pose]

@@ -10,7 +10,6 @@ from ..describe.model_data import ModelData
 from ..presolve.subsystems import counters_of
 from ..solve.dynamics import OutputRows
 from .body_axes import in_own_axes
-from .energy import kinetic_energy, potential_energy
 from .states import state_channels
 
 
@@ -18,23 +17,25 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     """All channels by name: bodies, joints and forces, energies, constraint violations, requests."""
     channels: dict[str, np.ndarray] = {}
     of_body = system.of_body
-    states = in_own_axes(system, rows.q, rows.u, rows.acceleration)
+    states = rows.q, rows.u, rows.acceleration
+    if of_body.dimensions == 3:
+        states = in_own_axes(system, *states)
     labels = (of_body.positions, of_body.velocities, of_body.accelerations)
     for k, body in enumerate(system.bodies):
         for state, names in zip(states, labels, strict=True):
             for offset, name in enumerate(names):
                 channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
-    channels |= state_channels(system, rows.q, rows.values)
+    if system.states or any(group.entries["signal"] for group in system.groups):
+        channels |= state_channels(system, rows.q, rows.values)
     channels |= reactions(system, rows.values)
-    kinetic, potential = kinetic_energy(system, rows.u), potential_energy(system, rows.values)
-    channels["energy.kinetic"], channels["energy.potential"] = kinetic, potential
-    channels["energy.total"] = kinetic + potential
+    channels["energy.kinetic"], channels["energy.potential"] = rows.kinetic, rows.potential
+    channels["energy.total"] = rows.kinetic + rows.potential
     channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
     if not model.requests:
         return channels
     from .requests import requested
 
-    return channels | requested(model, rows.t, channels, _counters(model, system, rows.q))
+    return channels | requested(model, rows.t, channels, counters(model, system, rows.q))
 
 
 def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
@@ -44,10 +45,12 @@ def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
     ----------
     q : ndarray, shape (n, n_q)
     """
+    if not system.n_counters:
+        return {}
     return {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()}
 
 
-def _counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:
+def counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:
     """What is counted of angles over whole turns for requests, rad, by the angle's text."""
     names = {name for name, _ in model.angle_counters()}
     return {

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
+from ..solve.dynamics import OutputRows
 
 MOST_INSTANTS = 100_000
 """Instants that a balance is made of at the most; of more every other one counts, or fewer."""
@@ -91,36 +92,32 @@ class Balance:
         }  # fmt: skip
 
 
-def energy_balance(
-    system: System, t: np.ndarray, kinetic: np.ndarray, potential: np.ndarray, values: np.ndarray, steps: np.ndarray
-) -> Balance:
+def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balance:
     """The balance at the instants of a run; those without values are passed over.
 
     Parameters
     ----------
-    t, kinetic, potential : ndarrays, shape (n,)
-        s, J.
-    values : ndarray, shape (n, values)
-        Values of the output terms, one row per instant.
+    system : System
+    rows : OutputRows
     steps : ndarray
         Ends of the solver's own steps, s; empty where it does not tell them.
     """
-    thinned = slice(None, None, 1 + len(t) // MOST_INSTANTS)
+    thinned, keeps_energy = slice(None, None, 1 + len(rows.t) // MOST_INSTANTS), system.keeps_energy
     with np.errstate(all="ignore"):  # a diverged run has no balance
-        power = values[thinned, system.term("output", "power").source].sum(axis=1)
-        t, kinetic, potential = t[thinned], kinetic[thinned], potential[thinned]
+        t, kinetic = rows.t[thinned], rows.kinetic[thinned]
+        potential, power = rows.potential[thinned], rows.power[thinned]
         known = np.isfinite(kinetic + potential + power) & (np.diff(t, prepend=-np.inf) > 0)
         t, kinetic, potential, power = t[known], kinetic[known], potential[known], power[known]
         if not len(t):
             nothing = np.empty(0)
-            return Balance(t, np.zeros(1), np.zeros(1), nothing, nothing, 0.0, 0.0, system.keeps_energy)
+            return Balance(t, np.zeros(1), np.zeros(1), nothing, nothing, 0.0, 0.0, keeps_energy)
         total = kinetic + potential
-        gained, within = _gained(t, power) if not system.keeps_energy else np.zeros((2, len(t) - 1))
+        gained, within = _gained(t, power) if not keeps_energy else np.zeros((2, len(t) - 1))
         work = np.concatenate([[0.0], np.cumsum(gained)])
-        resolved = 0.0 if system.keeps_energy else _difference(work[::2], t[::2], power[::2])
+        resolved = 0.0 if keeps_energy else _difference(work[::2], t[::2], power[::2])
         scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
     inside = np.searchsorted(steps, t[1:], side="left") - np.searchsorted(steps, t[:-1], side="right")
-    return Balance(t, total - total[0], work, within, inside, resolved, scale, system.keeps_energy)
+    return Balance(t, total - total[0], work, within, inside, resolved, scale, keeps_energy)
 
 
 def _difference(work: np.ndarray, t: np.ndarray, power: np.ndarray) -> float:

@@ -96,7 +96,7 @@ def _changed(
     remedy = f"; take a smaller {' or '.join(finer)} until it is kept" if finer else ""
     steepest = int(np.argmax(np.abs(np.diff(balance.open))))
     yield (
-        f"the energy balance is broken: nothing in the scene takes or gives energy, but kinetic + potential energy changes by "
+        f"the energy balance is broken: nothing in the scene takes or gives energy, but the energy changes by "
         f"{balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged (first by more than {allowed:.2g} J at "
         f"t = {balance.t[beyond[0]]:.6g} s{_where(system, balance, rows, steepest)}){remedy}"
     )

@@ -1,4 +1,4 @@
-"""Writing every channel over time to a file: .csv, .npz, .nc."""
+"""Writing every channel over time to a file: .csv, .npz, .nc, .tab."""
 
 from __future__ import annotations
 
@@ -53,7 +53,19 @@ def _write_netcdf(path: Path, solution: Solution) -> None:
     solution.to_xarray().rename(names).to_netcdf(path, engine="scipy")
 
 
-WRITERS: dict[str, Callable[[Path, Solution], None]] = {".csv": _write_csv, ".npz": _write_npz, ".nc": _write_netcdf}
+def _write_table(path: Path, solution: Solution) -> None:
+    """Columns apart by tabs, their names between double quotes, as Adams/PostProcessor exports tables."""
+    heads = [f'"{name}"' for name in ("time", *solution.channels)]
+    columns = np.column_stack([solution.time, *solution.channels.values()])
+    np.savetxt(path, columns, delimiter="\t", fmt="%.16e", header="\t".join(heads), comments="", encoding="utf-8")
+
+
+WRITERS: dict[str, Callable[[Path, Solution], None]] = {
+    ".csv": _write_csv,
+    ".npz": _write_npz,
+    ".nc": _write_netcdf,
+    ".tab": _write_table,
+}
 
 
 def check_output(path: Path, option: str = "-o") -> None:
@@ -99,7 +111,7 @@ def write(path: Path, solution: Solution) -> None:
     ----------
     path : Path
         Ends in .csv (a header line of names and units, time first), .npz (arrays by channel name, ``time``, and what
-        `Solution.load` needs besides, under names with a slash) or .nc.  Channels without
+        `Solution.load` needs besides, under names with a slash), .nc, or .tab (columns apart by tabs, for other programs).  Channels without
         a unique value are marked: by a column ``rail.fy.not_unique`` of ones, by an array ``not_unique`` of names, or
         by the attribute ``unique`` of each variable.
     """

@@ -170,7 +170,7 @@ class Solution(Mapping[str, np.ndarray]):
         Parameters
         ----------
         path : str or Path
-            Ends in .npz (which `load` reads), .csv or .nc.
+            Ends in .npz (which `load` reads), .csv, .nc or .tab.
 
         Raises
         ------

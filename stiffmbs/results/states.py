@@ -19,8 +19,10 @@ def state_channels(system: System, q: np.ndarray, values: np.ndarray) -> dict[st
         Of the set ``output``, one instant a row.
     """
     channels = {name: q[:, system.first_state + k] for k, name in enumerate(system.states)}
+    algebraic = {name for name, is_algebraic in zip(system.states, system.algebraic, strict=True) if is_algebraic}
     for name, signal in _signals(system, values):
-        channels[f"{name}.rate" if name in channels else name] = signal
+        if name not in algebraic:  # what is zero all the time
+            channels[f"{name}.rate" if name in channels else name] = signal
     return channels
 
 
@@ -29,6 +31,6 @@ def _signals(system: System, values: np.ndarray) -> list[tuple[str, np.ndarray]]
     return [
         (name, values[:, system.places["output"][g, 1 + place] + k])
         for g, group in enumerate(system.groups)
-        if group.entries("signal")
+        if group.entries["signal"]
         for k, name in enumerate(group.names)
     ]

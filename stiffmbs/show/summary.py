@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from .force_table import NOT_UNIQUE, force_table
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ..adams.listing import ListedStatement
     from ..jobs.check import Report
 
 UNBROKEN = 10_000
@@ -56,9 +58,10 @@ def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
     return ranges
 
 
-def check_as_json(scene: str, report: Report) -> str:
-    """The one-line JSON object of ``stiffmbs check --json``."""
-    return json_line(report.as_dict(scene))
+def check_as_json(scene: str, report: Report, listed: Sequence[ListedStatement] = ()) -> str:
+    """The one-line JSON object of ``stiffmbs check --json``, of a dataset with its statements."""
+    statements = {"statements": [statement.as_dict() for statement in listed]} if listed else {}
+    return json_line(report.as_dict(scene) | statements)
 
 
 def error_as_json(scene: str, message: str, status: str = "error") -> str:

@@ -20,9 +20,9 @@ from .dynamics import Dynamics
 from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
+from .explicit.fastest_rate import fastest_rate
 from .explicit.integration import Integration
 from .explicit.projected import TRAITS
-from .fastest_rate import fastest_rate
 from .ida.engine import Reached
 from .initial import InitialValues
 from .segments import Segment, joined

@@ -10,6 +10,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..describe.settings import RunSettings
 from ..errors import SolverError
+from .algebraic_states import no_value_ahead, rates_of_algebraic
 from .dynamics import Dynamics
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
@@ -110,7 +111,10 @@ def _failure(integrator: Integrator, reached: Reached) -> str:
         reason = too_fine(integrator.dynamics.system, integrator.settings, q)
         if reason:
             return reason
-    return reached.failure and reached.failure + suspect(integrator.dynamics, reached.t, q, u)
+    if not reached.failure:
+        return ""
+    missing = no_value_ahead(integrator.dynamics, reached.t, q, u)
+    return missing or reached.failure + suspect(integrator.dynamics, reached.t, q, u)
 
 
 def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:
@@ -256,12 +260,15 @@ class Integrator:
         state, coordinates = self.dynamics.state, equations.coordinates
         state.q[:], state.u[:], state.a[:] = start.q, start.u, start.acceleration
         state.lam[:], state.mu[:] = start.lam, 0.0
+        rates = self.dynamics.position_rates(start.q, start.u)
         equations.start_from(start.q)
         y, yp = np.zeros(equations.n), np.zeros(equations.n)
         y[equations.independent] = coordinates.state(start.q, start.u)
-        yp[equations.independent] = coordinates.state(
-            self.dynamics.position_rates(start.q, start.u), start.acceleration
-        )
+        if len(self.dynamics.system.algebraic_coordinates):
+            rates[self.dynamics.system.algebraic_coordinates] = rates_of_algebraic(
+                self.dynamics, t, start.q, start.u, start.acceleration
+            )
+        yp[equations.independent] = coordinates.state(rates, start.acceleration)
         solved = at["lam"] != ABSENT
         multipliers = yp if equations.formulation.integrated else y
         multipliers[at["lam"][solved]] = start.lam[solved]

@@ -11,13 +11,13 @@ import numpy as np
 
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
-from ..compile.inputs.features import InputFeatures, input_features
-from ..compile.machine.layout import DYNAMICS, cells, packed
+from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
+from ..compile.machine.layout import DYNAMICS, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
-from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, SaddlePoint
+from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
 from .storage import allocated, blocks, release
 
 T = TypeVar("T")
@@ -42,6 +42,8 @@ class OutputRows:
     t, q, u, acceleration, lam : ndarrays
     values : ndarray
         The values of the output terms (`stiffmbs.compile.terms`).
+    kinetic, potential, power : ndarrays, shape (n,)
+        Energies, J, and the power of what has no potential, W.
     position_violation, velocity_violation, drift : ndarrays
         Largest violation of a joint, the norm over its equations, in C and in J u + C_t, and in C before projection.
     status : int
@@ -54,6 +56,9 @@ class OutputRows:
     acceleration: np.ndarray
     lam: np.ndarray
     values: np.ndarray
+    kinetic: np.ndarray
+    potential: np.ndarray
+    power: np.ndarray
     position_violation: np.ndarray
     velocity_violation: np.ndarray
     drift: np.ndarray
@@ -84,14 +89,24 @@ class Dynamics:
         self.state = State(system)
         for term_set in ("motion", "output"):
             self.state.load(term_set)
-        self._positions = SaddlePoint(POSITION_STEP, self.state)
-        self._velocities = SaddlePoint(VELOCITY_STEP, self.state)
-        self._accelerations = SaddlePoint(ACCELERATIONS, self.state)
+        algebraic = system.algebraic_coordinates.astype(np.int64)
+        self._algebraic = {
+            "algebraic": algebraic,
+            "algebraic_scale": system.state_scales[system.algebraic],
+            "algebraic_before": np.zeros(len(algebraic)),
+        }
+        self._positions, self._velocities, self._accelerations = saddle_points(
+            self.state, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES if len(algebraic) else ACCELERATIONS
+        )
         self._kept: dict[str, tuple[object, object]] = {}
-        behind = [system.term("acceleration", name) for name in ("angle_rate", "rate")]
-        source, row = (np.concatenate([getattr(term, part) for term in behind]) for part in ("source", "row"))
-        self._behind = source.astype(np.int64), row.astype(np.int64)
-        self._features = np.inf, -np.inf, InputFeatures()
+        counters, states = system.term("acceleration", "angle_rate"), system.term("acceleration", "rate")
+        source, row = np.append(counters.source, states.source), np.append(counters.row, states.row)
+        moving = ~np.isin(row, algebraic)
+        self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
+        self._n_output = system.n_values("output")
+        self._potential = system.term("output", "potential").source
+        self._power = system.term("output", "power").source
+        self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         self.table = packed(
             DYNAMICS,
@@ -103,13 +118,15 @@ class Dynamics:
                 "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table,
                 "acceleration_factors": self._accelerations.factors_table,
-                "n_behind": len(row),
+                "n_behind": len(self._behind[1]),
                 "behind_source": self._behind[0],
                 "behind_row": self._behind[1],
-                "by_reactions": len(system.term("tangent", "rate_lam").row) > 0,
+                "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
+                "n_algebraic": len(algebraic),
+                **self._algebraic,
             },
         )
-        self._at, self._cells = self.table.ctypes.data, cells(self.table, DYNAMICS)
+        self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]
 
     def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
         """What a solver has set up for this state and such settings; made where there is none, one for each name."""
@@ -127,7 +144,7 @@ class Dynamics:
 
     def forget_inputs(self) -> None:
         """Have the features of inputs sought anew, as formulas of time were changed in place."""
-        self._features = np.inf, -np.inf, InputFeatures()
+        self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end = np.nan, np.nan, None
 
     def return_to_start(self) -> None:
@@ -145,6 +162,8 @@ class Dynamics:
 
     def input_features(self, start: float, end: float) -> InputFeatures:
         """The features of the inputs between two instants, sought once for all runs within them."""
+        if not self.system.has_inputs:
+            return NO_FEATURES
         first, last, found = self._features
         if not first <= start <= end <= last:
             found = input_features(self.system, start, end)
@@ -153,26 +172,29 @@ class Dynamics:
 
     def input_end(self, start: float, end: float) -> InputEnd | None:
         """Where the first formula of time ends between two instants, sought once for all runs between them."""
-        if self._input_end[:2] != (start, end):
+        if self.system.has_inputs and self._input_end[:2] != (start, end):
             self._input_end = start, end, first_input_end(self.system, start, end)
         return self._input_end[2]
 
     def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
         """Move positions by Newton's smallest moves until |C| <= tolerance; the number of moves, or a failure."""
-        return ASSEMBLE.load()(t, tolerance, most, self._at)
+        return ASSEMBLE.call(t, tolerance, most, self._at)
 
     def correct_velocities(self, t: float) -> int:
         """The smallest correction of u in the mass matrix that satisfies J u + C_t = 0; 0 or a failure."""
-        return CORRECT_VELOCITIES.load()(t, self._at)
+        return CORRECT_VELOCITIES.call(t, self._at)
 
     def accelerate(self, t: float) -> tuple[int, np.ndarray]:
         """0 or a failure (`stiffmbs.solve.native.statuses`), and u' from the block system; the multipliers are in the state's lam."""
         acceleration = np.empty(self.system.n_u)
-        return ACCELERATE.load()(t, acceleration.ctypes.data, self._at), acceleration
+        return ACCELERATE.call(t, acceleration.ctypes.data, self._at), acceleration
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known."""
-        rates = self.system.of_body.position_rates(q, u)
+        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known.
+
+        That of an algebraic state is given as zero.
+        """
+        rates = self.system.of_body.position_rates(q, self.system.followed * u)
         source, row = self._behind
         if len(row):
             rates[row] = self.state.values["acceleration"][source]
@@ -187,23 +209,27 @@ class Dynamics:
         project : bool
             Whether each state is first brought back to the constraints.
         """
-        system, count = self.system, len(t)
-        n_output = system.n_values("output")
+        system, count, n_output = self.system, len(t), self._n_output
         widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 3)
         rows = [allocated(count, width) for width in widths]
+        kinetic, potential, power = (allocated(count) for _ in range(3))
         done = 0
         for block in blocks(count):
             rows[0][block], rows[1][block] = q[block], u[block]
             times = np.array(t[block], dtype=float)
             addresses = [array[block].ctypes.data for array in rows]
-            done = block.start + OUTPUT_POINTS.load()(
+            done = block.start + OUTPUT_POINTS.call(
                 len(times), times.ctypes.data, project, POSITION_TOLERANCE, n_output, *addresses, self._at
             )
-            release(*rows, q, u)
+            kinetic[block] = 0.5 * rows[1][block] ** 2 @ system.mass
+            potential[block] = rows[4][block][:, self._potential].sum(axis=1)
+            power[block] = rows[4][block][:, self._power].sum(axis=1)
+            release(*rows, kinetic, potential, power, q, u)
             if done < block.stop:
                 break
         q, u, acceleration, lam, values, largest = (array[:done] for array in rows)
         position, velocity, drift = largest.T
         return OutputRows(
-            t[:done], q, u, acceleration, lam, values, position, velocity, drift, int(self._cells["status"])
-        )
+            t[:done], q, u, acceleration, lam, values, kinetic[:done], potential[:done], power[:done],
+            position, velocity, drift, int(self._cells["status"]),
+        )  # fmt: skip

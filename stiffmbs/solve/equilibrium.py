@@ -8,7 +8,7 @@ Anal. 35, 1998), which lead to stable equilibria alone: from the pose q_n each s
 by Newton's method on (s M - f_q + d(J^T lam)/dq) d = what is left.  s falls where Newton's moves become smaller quickly, as
 where forces change along the step as their derivatives predict, and rises where they do not, as where a wheel meets the
 road.  With s = 0 this is Newton's method for the equilibrium itself.  States x of the user's own are unknowns too: a step
-seeks sqrt(s) (x - x_n) = x'(q, x), as the implicit Euler step of its length.
+seeks sqrt(s) (x - x_n) = x'(q, x), as the implicit Euler step of its length.  The equations of algebraic states have no such term.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, know
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
     """Newton's move in a step that has come so far as a whole; `shift` is the root of s."""
     system, jacobian = dynamics.system, known.jacobian
-    inertia = np.append(shift**2 * system.mass, np.full(len(system.states), shift))
+    inertia = np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift))
     matrix = block_array([[diags_array(inertia) + known.stiffness, known.reactions], [jacobian, None]], format="csc")
     right = np.concatenate([known.left - inertia * whole, np.zeros(jacobian.shape[0])])
     try:

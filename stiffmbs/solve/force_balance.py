@@ -11,12 +11,14 @@ from scipy.sparse.linalg import splu
 from ..compile.system import System
 from ..compile.terms import TERM_AXES
 from ..errors import SolverError
+from .algebraic_states import failure
 from .dynamics import Dynamics
-from .failures import FAILURES
 from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
 """Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
+PASSED_ON = 1e-8
+"""Imbalance, relative to the largest force, up to which rounding counts that joints have passed on from other bodies."""
 FOLLOWED = 1e-9
 """Part of the accelerations that constraints may ask for beside those of the motion, and count as none."""
 
@@ -75,7 +77,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(f"no equilibrium was found: {FAILURES[status]}")
+        raise SolverError(f"no equilibrium was found: {failure(dynamics, status, t)}")
     rates = dynamics.position_rates(state.q, state.u)[system.first_state :]
     lam = state.lam[: system.n_c].copy()
     steady = motion.acceleration(dynamics)
@@ -85,11 +87,19 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
         np.max(np.abs(part), initial=0.0) for part in (state.vector("motion", "f"), entries, system.mass * steady)
     )
     stiffness, jacobian = _derivatives(dynamics, t, motion, lam)
-    farthest = np.max(np.abs(state.q[system.of_body.straight(len(system.bodies))[0]]), initial=system.size)
+    farthest = np.max(np.abs(state.q[system.straight[0]]), initial=system.size)
     rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
+    roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which passes on no more than there is
+    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), PASSED_ON * largest)
     left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
     found = Balance(
-        left, lam, float(largest), np.maximum(BALANCED * largest, rounding), stiffness, jacobian, jacobian.T
+        left,
+        lam,
+        float(largest),
+        np.maximum.reduce([np.full(len(left), BALANCED * largest), rounding, passed_on]),
+        stiffness,
+        jacobian,
+        jacobian.T,
     )
     return with_states(dynamics, found, rates, motion, t) if system.states else found
 
@@ -109,20 +119,24 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     system, q = dynamics.system, dynamics.state.q
     own, active = slice(system.first_state, None), np.flatnonzero(system.active)
     by_velocity = _position_rates(dynamics)
-    of_rates = sparse_term(dynamics, "rate_q")[own]
+    of_rates, of_states = (
+        sparse_term(dynamics, "rate_q")[own],
+        (sparse_term(dynamics, "f_q") - sparse_term(dynamics, "G_lam"))[:, own],
+    )
     by_pose = -of_rates @ by_velocity
     if not motion.is_rest:
         velocity, _ = motion.derivatives(dynamics, t, by_velocity)
         by_pose = by_pose - sparse_term(dynamics, "rate_u")[own] @ velocity
-    stiffness = [[known.stiffness, -sparse_term(dynamics, "f_q")[:, own]], [by_pose, -of_rates[:, own]]]
-    no_state = csc_array((len(active), len(system.states)))
+    stiffness = [[known.stiffness, -of_states], [by_pose, -of_rates[:, own]]]
+    by_states = sparse_term(dynamics, "C_x")[active][:, own]
     reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
     sizes = system.per_coordinate(system.size, 1.0)
     sizes[own] = system.state_scales
     allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)))
+    rounding = ROUNDING * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
     return Balance(
-        np.append(known.left, rates), known.lam, known.largest, np.append(known.allowed, allowed),
-        block_array(stiffness, format="csc"), block_array([[known.jacobian, no_state]], format="csc"),
+        np.append(known.left, rates), known.lam, known.largest, np.append(np.maximum(known.allowed, rounding), allowed),
+        block_array(stiffness, format="csc"), block_array([[known.jacobian, by_states]], format="csc"),
         block_array(reactions, format="csc"), len(system.states),
     )  # fmt: skip
 
@@ -130,7 +144,7 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
 def _position_rates(dynamics: Dynamics) -> csc_array:
     """Z of q' = Z u, of all coordinates."""
     system = dynamics.system
-    q, u = system.of_body.straight(len(system.bodies))
+    q, u = system.straight
     return sparse_term(dynamics, "Z") + csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import AssemblyError
+from .algebraic_states import failure
 from .dynamics import POSITION_TOLERANCE, Dynamics
 from .failures import FAILURES
 from .moves import Move, moves, position_words, velocity_words
@@ -82,7 +83,8 @@ def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
         When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
         friction and reactions find no balance.
     """
-    take_nearest_turns(dynamics, t)
+    if dynamics.system.n_counters:
+        take_nearest_turns(dynamics, t)
     return consistent_values(dynamics, t)
 
 
@@ -97,7 +99,8 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
     status = dynamics.correct_velocities(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))
-    state.count_anew(t)
+    if system.n_counters:
+        state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))
@@ -131,7 +134,7 @@ def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
         return _balance_sentence(dynamics)
     if status == NOT_FINITE:
         return _undefined_sentence(dynamics, t)
-    return f"no consistent start was found: {FAILURES[status]}"
+    return f"no consistent start was found: {failure(dynamics, status, t)}"
 
 
 def _balance_sentence(dynamics: Dynamics) -> str:

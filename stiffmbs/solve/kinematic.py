@@ -8,13 +8,13 @@ from ..compile.inputs.features import InputFeatures
 from ..compile.inputs.of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
+from .algebraic_states import failure
 from .dynamics import Dynamics
 from .events.limits import refuse_beyond_limits
 from .events.narrow_inputs import hidden_peak, narrower_than_output
-from .failures import FAILURES
 from .initial import InitialValues
 from .kinematic_states import Instant, states_after
-from .native.statuses import NO_BALANCE, NO_MEMORY, NOT_FINITE
+from .native.statuses import NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
@@ -51,6 +51,7 @@ def solve(
         When the drives leave a freedom or prescribe one twice.
     """
     _refuse_freedoms(dynamics)
+    _refuse_followed_states(dynamics)
     times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, 1001)
     system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
@@ -72,6 +73,18 @@ def solve(
     narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
     note = narrow or hidden_peak(inputs_of(system), features, times)
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
+
+
+def _refuse_followed_states(dynamics: Dynamics) -> None:
+    """Refuse drives and constraints that follow states: the motion then is not prescribed beforehand."""
+    system = dynamics.system
+    of_velocities = system.term("tangent", "V_q")
+    rows = [*system.term("tangent", "C_x").row, *of_velocities.row[of_velocities.column >= system.first_state]]
+    if rows:
+        raise InputError(
+            f"'{system.equations[rows[0]][0]}': found a state in a drive or constraint, expected functions of time for the solver "
+            "kinematic; take bdf or auto"
+        )
 
 
 def _refuse_freedoms(dynamics: Dynamics) -> None:
@@ -186,8 +199,8 @@ class _Motion:
 
     def _stuck(self) -> str:
         """Why even the shortest step fails: the mechanism locks, unless the last try failed for a reason of its own."""
-        if self._status in (NOT_FINITE, NO_BALANCE, NO_MEMORY):
-            return f"stopped after t = {self.t:.9g} s: {FAILURES[self._status]}"
+        if self._status in (NOT_FINITE, NO_BALANCE, NO_MEMORY, NO_STATE):
+            return f"stopped after t = {self.t:.9g} s: {failure(self._dynamics, self._status, self.t)}"
         return self._locked()
 
     def _locked(self) -> str:

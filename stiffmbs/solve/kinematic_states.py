@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SolverError
+from .algebraic_states import rates_by_states
 from .dynamics import Dynamics
 
 TOLERANCE = 1e-10
@@ -26,7 +27,7 @@ class Instant:
 
 
 def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
-    """The states at a later instant, shape (states,); the state at hand is left as it is.
+    """The states at a later instant, shape (states,), the algebraic ones as they were; the state at hand is left as it is.
 
     Parameters
     ----------
@@ -42,19 +43,21 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
         Where the states cannot be integrated; SciPy's Radau (Hairer and Wanner II, ch. IV.8) does that.
     """
     system = dynamics.system
-    if not system.states or t <= before.t:
-        return before.q[system.first_state :].copy()
+    states, changing = before.q[system.first_state :].copy(), ~system.algebraic
+    if not changing.any() or t <= before.t:
+        return states
     from scipy.integrate import solve_ivp
 
     along = _Along(dynamics, before)
     with dynamics.state.unchanged():
         found = solve_ivp(
-            along.rates, (before.t, t), before.q[system.first_state :], method="Radau", jac=along.jacobian,
-            rtol=TOLERANCE, atol=TOLERANCE * system.state_scales, t_eval=[t],
+            along.rates, (before.t, t), states[changing], method="Radau", jac=along.jacobian,
+            rtol=TOLERANCE, atol=TOLERANCE * system.state_scales[changing], t_eval=[t],
         )  # fmt: skip
     if not found.success:
         raise SolverError(f"stopped after t = {before.t:.9g} s: the states could not be integrated: {found.message}")
-    return np.asarray(found.y[:, -1])
+    states[changing] = found.y[:, -1]
+    return states
 
 
 class _Along:
@@ -62,20 +65,20 @@ class _Along:
 
     def __init__(self, dynamics: Dynamics, before: Instant) -> None:
         self._dynamics, self._before = dynamics, before
+        self._places = dynamics.system.first_state + np.flatnonzero(~dynamics.system.algebraic)
 
     def rates(self, t: float, values: np.ndarray) -> np.ndarray:
         """x' at an instant."""
         if not self._go_to(t, values):
             return np.full(len(values), np.nan)
         state = self._dynamics.state
-        return self._dynamics.position_rates(state.q, state.u)[self._dynamics.system.first_state :]
+        return self._dynamics.position_rates(state.q, state.u)[self._places]
 
     def jacobian(self, t: float, values: np.ndarray) -> np.ndarray:
         """dx'/dx at an instant."""
-        system, state = self._dynamics.system, self._dynamics.state
         self._go_to(t, values)
-        state.evaluate("tangent", t)
-        return state.matrix("tangent", "rate_q")[system.first_state :, system.first_state :]
+        self._dynamics.state.evaluate("tangent", t)
+        return rates_by_states(self._dynamics)
 
     def _go_to(self, t: float, values: np.ndarray) -> bool:
         """Make the state at hand that of the motion at an instant; whether it was found."""
@@ -83,7 +86,7 @@ class _Along:
         state, h = dynamics.state, t - before.t
         state.q[:] = system.of_body.moved(before.q, h * before.u + h * h / 2 * before.acceleration)
         state.q[system.n_pose : system.first_state] += h * before.turning
-        state.q[system.first_state :] = values
+        state.q[self._places] = values
         state.u[:] = before.u + h * before.acceleration
         if dynamics.assemble(t, most=MOST_MOVES) < 0 or dynamics.correct_velocities(t) < 0:
             return False

@@ -1,13 +1,16 @@
-"""What the settings of a run mean for it: the instants to report, and what its states are good for."""
+"""What the settings of a run mean for it: the instants to report, what its states are good for, what is asked in vain."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from ..compile.system import System
 from ..describe.settings import RunSettings
 from . import traits_of
+from .solver import Traits
 from .trajectory import Grid
 
 DEFAULT_POINTS = 1001
@@ -32,6 +35,8 @@ def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:
     InputError
         When a field is unknown or its value out of bounds.
     """
+    if not changes:
+        return settings
     kept = {name: getattr(settings, name) for name in settings.model_fields_set}
     if {"output", "points"} & changes.keys():
         kept = {name: value for name, value in kept.items() if name not in ("output", "points")}
@@ -51,3 +56,26 @@ def output_grid(settings: RunSettings) -> Grid:
         return Grid(start, end, times)
     points = settings.points if isinstance(settings.points, int) else DEFAULT_POINTS
     return Grid(start, end, np.linspace(start, end, points))
+
+
+def settings_notes(settings: RunSettings, system: System) -> Iterator[str]:
+    """Settings that were given and have no effect, and events that the steps may pass over."""
+    traits = traits_of(settings)
+    yield from _ignored(settings, traits)
+    if not traits.locates_events and system.n_values("event_function"):
+        yield (
+            f"{traits.name} does not locate the breakpoints that forces have in the state (contacts, step, abs, tables), and a step of "
+            f"{settings.step:g} s may pass over them; dopri5, dop853 and bdf see them"
+        )
+
+
+def _ignored(settings: RunSettings, traits: Traits) -> Iterator[str]:
+    ignored = traits.ignored(settings)
+    if ignored:
+        given = [f"{name} = {f'{value:g}' if isinstance(value, float) else value}" for name, value in ignored.items()]
+        reads = f"reads {_listed(traits.reads)}" if traits.reads else "follows the drives alone"
+        yield f"{_listed(given)} {'has' if len(given) == 1 else 'have'} no effect: {traits.name} {reads}"
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.sparse import block_diag, csc_array
 
 from ..compile.quaternions import CONJUGATE, rotated
+from ..compile.system import System
 from .dynamics import Dynamics
 
 SMALL = 1e-9
@@ -66,6 +67,12 @@ class SteadyMotion:
                 missing = missing + across @ spins
                 spins[rolls] -= np.linalg.lstsq(across[:, rolls], missing, rcond=SMALL)[0]
             state.u[self.spinning] += spins
+
+    def turning(self, system: System) -> csc_array:
+        """W x for displacements and rotations of all bodies in ground axes, shape (n_u, n_u)."""
+        turn = _matrix(self.rotation)
+        of_body = [turn, np.zeros((1, 1))] if system.of_body.linear == 2 else [turn, turn]
+        return csc_array(block_diag(of_body * len(system.bodies)))
 
     def acceleration(self, dynamics: Dynamics) -> np.ndarray:
         """u' of the present pose and velocities."""

@@ -7,12 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..presolve.linear_equations import independent_coordinates
-from ..presolve.presolve import Part
+from ..presolve.presolve import Part, parts_of
+from . import traits_of
 from .dynamics import Dynamics
 from .events.restart import restarted
 from .initial import InitialValues
+from .settings import may_presolve
 from .storage import allocated
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
@@ -54,6 +57,35 @@ def leave_out_coordinates(dynamics: Dynamics, t: float) -> None:
     found = independent_coordinates(dynamics.system, dynamics.state, t)
     if found.independent.any():
         dynamics.coordinates = found
+
+
+def presolved(
+    model: ModelData, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
+) -> tuple[Subsystem, ...]:
+    """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
+
+    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.  Where all
+    steps are implicit, quaternions do not follow spins; explicit ones would only come nearer to the limit of their stability.
+
+    Parameters
+    ----------
+    model : ModelData
+    dynamics : Dynamics
+        Of the whole, at its start.
+    start : InitialValues
+    grid : Grid
+    settings : RunSettings
+    """
+    if not may_presolve(settings):
+        return ()
+    traits = traits_of(settings)
+    way = (grid.end - grid.start) * start.u if traits.implicit and not traits.switches else None
+    parts = parts_of(model, dynamics.system, way, apart=grid.times is not None)
+    subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
+    if traits.implicit:
+        for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
+            leave_out_coordinates(solved, grid.start)
+    return subsystems
 
 
 def solve_subsystems(

@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 ProgressCallback = Callable[[float], None]
 
 
+def unwatched(t: float) -> None:
+    """Of a run whose progress nobody follows."""
+
+
 class Outcome(Enum):
     """How a run ended, as a sentence for a person."""
 

@@ -32,14 +32,14 @@ def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:
         Angles and moments in the solver's axes; SI units.
     """
     system = state.system
-    groups = [(g, group) for g, group in enumerate(system.groups) if group.entries("f_q") and group.kind.element.kind]
+    groups = [(g, group) for g, group in enumerate(system.groups) if group.entries["f_q"] and group.kind.element.kind]
     found: dict[int, dict[str, np.ndarray]] = {}
     if not groups:
         return found
     state.evaluate("tangent", t)
     at = 1 + TERM_SETS["tangent"].index("f_q")
     for g, group in groups:
-        first, width = system.places["tangent"][g, at], group.entries("f_q")
+        first, width = system.places["tangent"][g, at], group.entries["f_q"]
         values = state.values["tangent"][first : first + group.count * width].reshape(group.count, width)
         for e, k in zip(*np.nonzero(_acts(group, values) & (group.bodies < len(system.bodies))), strict=True):
             body = int(group.bodies[e, k])

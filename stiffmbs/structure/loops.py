@@ -55,7 +55,7 @@ class Loop:
     coordinates: np.ndarray
 
 
-def loops(system: System, state: State, t: float) -> list[Loop]:
+def loops(system: System, state: State) -> list[Loop]:
     """The parts of a system in which equations could depend on each other, those that share no body apart.
 
     A body with a single joint is taken away with it where the joint's rows are independent on that body's velocities
@@ -64,11 +64,8 @@ def loops(system: System, state: State, t: float) -> list[Loop]:
     Parameters
     ----------
     state : State
-        At the pose to look at.
-    t : float
-        s.
+        With the set ``motion`` evaluated at the pose to look at.
     """
-    state.evaluate("motion", t)
     joints = [joint for g, group in enumerate(system.groups) for joint in _joints(system, state, g, group)]
     joints_of: list[set[int]] = [set() for _ in system.bodies]
     for k, (joint, _) in enumerate(joints):

@@ -82,9 +82,10 @@ def examine(system: System, start: float, duration: float, order: Sequence[str])
         Names of all joints; the last is dropped first.
     """
     state = State(system)
+    state.evaluate("motion", start)
     active = np.ones(system.n_c, dtype=bool)
     rank_results = []
-    for loop in loops(system, state, start):
+    for loop in loops(system, state):
         from .rank_result import rank_result_of  # trees do not pay for it
 
         rank_result = rank_result_of(loop, state, start, duration, order)

@@ -55,7 +55,8 @@ class InputNumbers:
         for name in self._names:
             if not changes_of_numbers(job, self._scene({**self.values, name: self.values[name] + 1.0})):
                 raise InputError(
-                    f"input '{name}': found a value that more than numbers of forces follow from, expected one of forces alone"
+                    f"input '{name}': found a value that more than numbers of forces and states follow from, expected one of these "
+                    "alone"
                 )
         self._quick = self._linear()
 

@@ -124,20 +124,20 @@ def parsed(text: str) -> ast.Expression:
         raise InputError(f"output '{text}': found no formula, expected such as peak(rail.fy)") from None
 
 
-def _channel(node: ast.AST) -> str | None:
+def channel_of(node: ast.AST) -> str | None:
     """The dotted name that a part of a formula is; None where it is none."""
     match node:
         case ast.Name(name):
             return name
         case ast.Attribute(owner, name):
-            before = _channel(owner)
+            before = channel_of(owner)
             return f"{before}.{name}" if before else None
     return None
 
 
 def _channels(node: ast.AST) -> Iterator[str]:
     """The channels that a formula names."""
-    name = _channel(node)
+    name = channel_of(node)
     if name:
         yield name
         return
@@ -159,7 +159,7 @@ def _check(text: str, node: ast.AST) -> None:
             parts = [left, right]
         case ast.UnaryOp(operator, operand) if type(operator) in OPERATORS:
             parts = [operand]
-        case _ if _channel(node):
+        case _ if channel_of(node):
             return
         case _:
             known = ", ".join((*REDUCTIONS, *FUNCTIONS))
@@ -178,7 +178,7 @@ def _is_series(node: ast.AST) -> bool:
             return _is_series(left) or _is_series(right)
         case ast.UnaryOp(_, operand):
             return _is_series(operand)
-    return _channel(node) is not None
+    return channel_of(node) is not None
 
 
 def _value(node: ast.AST, solution: Solution) -> Any:
@@ -193,7 +193,7 @@ def _value(node: ast.AST, solution: Solution) -> Any:
             return OPERATORS[type(operator)](_value(left, solution), _value(right, solution))
         case ast.UnaryOp(operator, operand):
             return OPERATORS[type(operator)](_value(operand, solution))
-    name = _channel(node) or ""
+    name = channel_of(node) or ""
     if name == TIME:
         return solution.time
     try:

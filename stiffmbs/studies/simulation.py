@@ -10,16 +10,18 @@ import numpy as np
 
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, InputError
-from ..jobs.run import Job, Runnable, prepare
+from ..jobs.run import Job, Runnable, data_of, prepare
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
 from ..results.channels import channels_of, turns_of
 from ..results.saved_state import TURNS, SavedState
-from ..solve.failures import FAILURES
+from ..solve.algebraic_states import failure
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers
 from .stepping import stepper_of
 
+OWN_INPUTS = "inputs"
+"""The section of a scene with its inputs."""
 INPUT = "simulation/input/"
 """Before the names of inputs in files of saved simulations."""
 
@@ -37,8 +39,9 @@ def simulation(
     ----------
     model : Model, Scene, str or Path
     inputs : mapping of str to float, optional
-        What will be changed between steps, with its first values: parameters or paths of the scene that stand in forces alone, such
-        as ``{"F": 0.0}`` or ``{"forces.motor.torque": 0.0}``; SI units.
+        What will be changed between steps, with its first values: parameters or paths of the scene that stand in forces and states
+        alone, such as ``{"F": 0.0}`` or ``{"forces.motor.torque": 0.0}``; SI units.  The inputs of the model that are numbers are
+        among them by their names anyway.
     settings : RunSettings, optional
         The scene's own by default.
     **changes
@@ -57,8 +60,11 @@ def simulation(
     >>> while sim.t < 1.0:
     ...     sim.step(0.01, inputs={"forces.spring.stiffness": 270.0 if sim["cart.vx"] > 0 else 300.0})
     """
-    given = dict(inputs or {})
-    solver = CaseSolver(Task(written_scene(model), tuple(given), {}, ()))
+    data = data_of(model)
+    own = {name: float(value) for name, value in data.inputs.items() if isinstance(value, float)}
+    given = own | dict(inputs or {})
+    paths = (f"{OWN_INPUTS}.{name}" if name in own else name for name in given)
+    solver = CaseSolver(Task(written_scene(data), tuple(paths), {}, ()))
     scene = solver.scene([float(value) for value in given.values()])
     return Simulation(solver, given, changed(settings or scene.run, dict(changes)))
 
@@ -161,7 +167,7 @@ class Simulation:
             rows = dynamics.report(np.array([self.t]), self.q[None], self.u[None], project=True)
         if not len(rows.t):
             raise AssemblyError(
-                f"no accelerations and reactions were found at t = {self.t:.9g} s: {FAILURES[rows.status]}"
+                f"no accelerations and reactions were found at t = {self.t:.9g} s: {failure(dynamics, rows.status, self.t)}"
             )
         return channels_of(job.data, dynamics.system, rows), turns_of(dynamics.system, rows.q)
 

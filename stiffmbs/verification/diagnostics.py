@@ -116,8 +116,8 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
             f"{body} at {words}" for body, words in zip(pose.bodies[:NAMED], pose.poses[:NAMED], strict=True)
         )
         return (
-            f"another branch: at t = {pose.t:.6g} s the mechanism passes a (nearly) singular pose ({where}), where "
-            f"{', '.join(pose.joints)} hold less than elsewhere and the motion may go on in more than one way; the runs "
+            f"another branch: at t = {pose.t:.6g} s the mechanism passes a (nearly) singular pose ({where}); "
+            f"{', '.join(pose.joints)} hold less there than elsewhere, and the motion may go on in more than one way; the runs "
             f"part there ({first.body} is elsewhere from t = {first.t:.4g} s on). Remedy: a tighter rtol until two runs "
             "agree, exact dimensions, or a gear or stop that decides the branch"
         )

@@ -21,14 +21,13 @@ from ..compile.system import System
 from ..diagnostics.singular_poses import PosesOnTheWay
 from ..errors import StiffmbsError
 from ..jobs.run import Job
-from ..results.energy import kinetic_energy, potential_energy
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import may_be_missing
-from ..results.missing_rows import reported
 from ..results.solution import Solution
 from ..solve import traits_of
 from ..solve.dynamics import OutputRows
 from ..solve.events.restart import restarted
+from ..solve.missing_rows import reported
 from ..solve.settings import changed, near_constraints
 from ..solve.trajectory import Grid, Outcome
 from .dense_sampling import apart
@@ -135,12 +134,11 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     if trajectory.outcome is Outcome.INTERRUPTED:
         return Along(None, obstacle="not looked along: no time was left")
     rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
-    system, values = job.dynamics.system, rows.values
-    energies = kinetic_energy(system, rows.u), potential_energy(system, values)
-    balance = energy_balance(system, rows.t, *energies, values, trajectory.step_times)
+    system = job.dynamics.system
+    balance = energy_balance(system, rows, trajectory.step_times)
     left = allowed - (time.perf_counter() - begun)
     stretches = tuple(_stepped_over(job, rows, trajectory.step_times, left))
-    if not _same_way(first, rows.t, energies[0]):
+    if not _same_way(first, rows.t, rows.kinetic):
         return Along(None, elsewhere=stretches)
     return Along(balance, may_be_missing(system, balance, rows, job.settings), stretches)
 
@@ -197,7 +195,7 @@ def _momentum(system: System, rows: OutputRows) -> tuple[np.ndarray, float]:
     """
     t, u, a = rows.t, rows.u, rows.acceleration
     roots = np.sqrt(system.mass)
-    speed = float(np.sqrt(2 * np.nanmax(kinetic_energy(system, u), initial=0.0)))
+    speed = float(np.sqrt(2 * np.nanmax(rows.kinetic, initial=0.0)))
     if len(t) < 3 or not speed:
         return np.zeros(max(len(t) - 1, 0)), speed
     h = np.diff(t)[:, None]

@@ -25,7 +25,6 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from ..compile.laws import has_laws
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..jobs.run import Job, Runnable, prepare, solved
 from ..jobs.start_from import StartFrom
@@ -147,7 +146,7 @@ class _Verification:
             self._skipped.append(self._along.obstacle)
         elif not self._along.stretches:
             self._look_along_others(spare)
-        if self._along.stretches or has_laws(self._job.dynamics.system):
+        if self._along.stretches or self._job.dynamics.system.has_laws:
             longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
             name, changes = self._tighter_settings(self._levels()[0])
             reported = self._first.time

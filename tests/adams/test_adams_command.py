@@ -117,7 +117,7 @@ def test_a_scene_that_cannot_be_written_is_told(in_folder):
     [
         (("REVOLUTE", "HINGE"), "model.adm, line 26, JOINT/1: found 'HINGE', expected one of REVOLUTE"),
         (("PART = 2\n, QP", "PART = 3\n, QP"), "model.adm, line 14, MARKER/21: found PART = 3, which the dataset does"),
-        (("GRAPHICS/1", "CONTACT/1"), "model.adm: found statements that are not read here: CONTACT/1 (line 20)"),
+        (("GRAPHICS/1", "FLEX_BODY/1"), "model.adm: found statements that are not read here: FLEX_BODY/1 (line 20)"),
         (("IP = 1E4, 2E4, 2E4", "IP = 1E4, 2E4, -9E4"), "model.adm, line 10, PART/2: found principal moments"),
         (
             (", REULER = 0, 90D, 0\nGRAPHICS", ", REULER = 0, 0, 0\nGRAPHICS"),

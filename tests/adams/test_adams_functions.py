@@ -93,8 +93,18 @@ def test_variables_stand_for_their_expressions():
         "VARIABLE/1, FUNCTION=2*TIME\nVARIABLE/2, IC=1, FUNC=VARVAL(1)+1\nSFORCE/1, TRANS, I=22, J=1, FUNC=VARVAL(2)"
     )
     assert found["forces"]["SFORCE_1"]["force"] == "2 * t + 1"
-    with pytest.raises(InputError, match=r"VARIABLE/1: found VARVAL\(1\), which depends on itself"):
-        made("VARIABLE/1, FUNCTION=VARVAL(1)+1\nSFORCE/1, TRANS, I=22, J=1, FUNC=VARVAL(1)")
+
+
+def test_variables_that_depend_on_themselves_are_algebraic_states():
+    found = made(
+        "VARIABLE/1, IC=2, FUNCTION=VARVAL(2)/2+1\nVARIABLE/2, FUNCTION=COS(VARVAL(1))\nVARIABLE/3, FUNCTION=2*VARVAL(1)\n"
+        "SFORCE/1, TRANS, I=22, J=1, FUNC=VARVAL(3)"
+    )
+    assert found["states"] == {
+        "VARIABLE_1_value": {"zero": "VARIABLE_2_value / 2 + 1 - VARIABLE_1_value", "start": 2},
+        "VARIABLE_2_value": {"zero": "cos(VARIABLE_1_value) - VARIABLE_2_value", "start": 0},
+    }
+    assert found["forces"]["SFORCE_1"]["force"] == "2 * VARIABLE_1_value"
 
 
 @pytest.mark.parametrize(

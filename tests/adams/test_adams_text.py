@@ -215,8 +215,8 @@ def test_wrong_statements_are_told_with_their_line(text, words):
 
 
 def test_what_is_not_read_is_listed_at_once():
-    text = "FLEX_BODY/3, CM=1\nCONTACT/1, IGEOM=2, JGEOM=3\nNONSENSE/7\nGRAPHICS/1, CYLINDER, CM=21, LENGTH=1, RADIUS=1"
-    with pytest.raises(InputError, match=r"FLEX_BODY/3 \(line 6\), CONTACT/1 \(line 7\), NONSENSE/7 \(line 8\); exp"):
+    text = "FLEX_BODY/3, CM=1\nNFORCE/1, JPART=3\nNONSENSE/7\nGRAPHICS/1, CYLINDER, CM=21, LENGTH=1, RADIUS=1"
+    with pytest.raises(InputError, match=r"FLEX_BODY/3 \(line 6\), NFORCE/1 \(line 7\), NONSENSE/7 \(line 8\); exp"):
         dataset(text)
 
 

@@ -127,7 +127,34 @@ def test_ranges(text, numbers):
     assert numbers_in("--over", text) == pytest.approx(numbers)
 
 
-@pytest.mark.parametrize("text", ["", "1..", "1..1", "1..2:1", "1..2:x", "a..b", "1 kN..2 kN", "1,,2"])
+@pytest.mark.parametrize(
+    ("text", "numbers"),
+    [
+        ("1e2..1e4 N/mm", (1e5, 1e6, 1e7)),
+        ("1 kN/m .. 1e3 kN/m:4", (1e3, 1e4, 1e5, 1e6)),
+        ("1e5..1e9:3 N/m", (1e5, 1e7, 1e9)),
+        ("20, 100 N/mm,1 kN/m", (2e4, 1e5, 1e3)),
+        ("5 N/m", (5.0,)),
+    ],
+)
+def test_ranges_with_units_are_in_si(text, numbers):
+    found = values_in("--over", f"k={text}")
+    assert found.parameter == "k"
+    assert found.numbers == pytest.approx(numbers)
+    assert found.dimension == (1, 0, -2)
+
+
+def test_a_unit_that_does_not_fit_the_parameter_is_refused(examples):
+    result = invoke(
+        "compare", examples / "cart_pendulum.yaml", "--over", "forces.spring.stiffness=1..10 mm", "--duration", "1"
+    )
+    assert result.exit_code == 2, result.output
+    assert "N/m" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "text", ["", "1..", "1..1", "1..2:1", "1..2:x", "a..b", "1 kN..2 furlongs", "1 kN..2 m", "1 kN..x", "1,,2"]
+)
 def test_what_is_no_range_is_refused(text):
     with pytest.raises(InputError, match=r"--over: found"):
         values_in("--over", f"k={text}")

@@ -196,7 +196,7 @@ def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch):
     model.add("block", body)
     model.add("mount", spatial.Bushing(i="block", j="ground", stiffness=(1, 1, 1, 1, 1, 1)))
     described = model.data()
-    kind, _ = sorted_out(described.forces["mount"], described)
+    kind, _ = sorted_out("mount", described.forces["mount"], described)
     before, read = record._entry(kind), Path.read_text
     assert record._entry(kind) == before
     monkeypatch.setattr(

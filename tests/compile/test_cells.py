@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from stiffmbs.compile.machine.compiler import compiled_source
-from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, cells, fill, packed
+from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, Layout, fill, packed
 from stiffmbs.compile.machine.translate.values import Untranslatable
 
-LAYOUT = {"n": INT, "t": FLOAT_CELL, "row": FLOATS, "steps": INT_CELL}
+LAYOUT = Layout({"n": INT, "t": FLOAT_CELL, "row": FLOATS, "steps": INT_CELL})
 HEADER = f"""
 from stiffmbs.compile.machine.native.access import address_of, floats, view_of
 
@@ -28,7 +28,7 @@ def run(body, table):
 def test_both_sides_read_and_set_cells():
     row = np.array([3.0, 4.0])
     table = packed(LAYOUT, {"n": 2, "t": 0.5, "row": row})
-    own = cells(table, LAYOUT)
+    own = table.view(LAYOUT.cells)[0]
     run("for k in range(x.n):\n    x.t += x.row[k]\n    x.steps = x.steps + 1", table)
     assert (own["t"], own["steps"]) == (7.5, 2)
     own["t"] = -1.0
@@ -39,13 +39,13 @@ def test_both_sides_read_and_set_cells():
 def test_the_address_of_a_cell_points_to_it():
     table = packed(LAYOUT, {"n": 0, "t": 1.0, "row": np.zeros(1)})
     run("p = address_of(x.t)\np[0] = 4.0\ncount = address_of(x.steps)\ncount[0] = 9", table)
-    assert cells(table, LAYOUT).item() == (4.0, 9)
+    assert table.view(LAYOUT.cells)[0].item() == (4.0, 9)
 
 
 def test_a_table_filled_anew_keeps_cells_that_are_not_given():
     table = packed(LAYOUT, {"n": 1, "t": 1.0, "steps": 5, "row": np.zeros(1)})
     fill(table, LAYOUT, {"n": 3, "t": 2.0, "row": np.zeros(1)})
-    assert table[0] == 3 and cells(table, LAYOUT).item() == (2.0, 5)
+    assert table[0] == 3 and table.view(LAYOUT.cells)[0].item() == (2.0, 5)
 
 
 @pytest.mark.parametrize(
@@ -64,4 +64,4 @@ def test_what_is_no_cell_cannot_be_set(body, reason):
 
 def test_python_is_told_of_an_unknown_cell():
     with pytest.raises(ValueError, match="tempo"):
-        cells(packed(LAYOUT, {"n": 0, "row": np.zeros(1)}), LAYOUT)["tempo"] = 1.0
+        packed(LAYOUT, {"n": 0, "row": np.zeros(1)}).view(LAYOUT.cells)[0]["tempo"] = 1.0

@@ -24,7 +24,7 @@ from stiffmbs import (
 )
 from stiffmbs.describe.model import PlanarData
 
-SECTIONS = ("name", "gravity", "markers", "bodies", "joints", "forces", "requests")
+SECTIONS = ("name", "gravity", "markers", "bodies", "states", "joints", "forces", "requests")
 USUAL = sorted((Path(stiffmbs.__file__).parent / "jobs").glob("*.yaml"))
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
 

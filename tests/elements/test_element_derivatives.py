@@ -66,7 +66,7 @@ def state(request):
     return state_with(*request.param)
 
 
-def state_with(dimensions, kind, form):
+def state_with(dimensions, kind, form, with_model=False):
     """A random state of three bodies with a random element of a class."""
     rng = np.random.default_rng(7)
     model = three_bodies(rng) if dimensions == 2 else three_bodies_in_space(rng)
@@ -78,7 +78,7 @@ def state_with(dimensions, kind, form):
     state.lam[:] = rng.uniform(-1, 1, len(state.lam))
     state.mu[:] = rng.uniform(-1, 1, len(state.mu))
     state.is_joint = issubclass(kind, Joint)
-    return state
+    return (state, model.data()) if with_model else state
 
 
 def rates(state):

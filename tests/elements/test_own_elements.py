@@ -201,6 +201,7 @@ print(round(solution["a.x"][-1], 6), round(solution["a.y"][-1], 6))
 """
 
 
+@pytest.mark.long
 def test_another_text_of_a_class_is_never_taken_for_the_kept_one(tmp_path):
     script = tmp_path / "script.py"
     for axis, expected in ((1, "0.5 0.0"), (0, "0.0 1.0"), (1, "0.5 0.0")):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs import AppliedForce, Body, Marker, Model, Revolute, TorsionSpring
 from stiffmbs.errors import SolverError
 
 
@@ -102,10 +103,35 @@ def test_a_thousand_bodies_hang_as_a_catenary_of_springs_says():
     found = stiffmbs.equilibrium(read({"gravity": [0, -9.81], "bodies": bodies, "forces": forces}))
     sag = mass * 9.81 / stiffness * count * (count + 1) / 2
     assert found.channels[f"b{count - 1}.y"] == pytest.approx(-0.1 * count - sag, rel=1e-10)
-    assert any("whether the equilibrium is stable was not looked at" in note for note in found.notes)
+    assert not found.notes  # stable, and nothing free
+
+
+def test_a_long_strut_finds_its_stable_branch_as_the_elastica_has_it():
+    """Euler's column, clamped below, of 120 rods: Timoshenko and Gere, Theory of Elastic Stability, 2nd ed., table 2-1."""
+    count, load = 120, 1.152 * np.pi**2 / 4
+    model = Model("strut")
+    below = Marker(body="ground", point=(0, 0))
+    for k in range(count):
+        rod = model.add(f"b{k}", Body(mass=1 / count, inertia=1 / count**3 / 12, position=(0, (k + 0.5) / count)))
+        foot = rod.at(0, -0.5 / count)
+        model.add(f"pin{k}", Revolute(i=foot, j=below))
+        model.add(f"bend{k}", TorsionSpring(i=foot, j=below, stiffness=count if k else 2 * count))
+        below = rod.at(0, 0.5 / count)
+    model.add("load", AppliedForce(i=below, force=(0, -load)))
+    found = stiffmbs.equilibrium(model)
+    assert any("unstable" in note and "2 lead away from it" in note for note in found.notes)
+    assert abs(found.channels[f"b{count - 1}.x"]) == pytest.approx(0.593, abs=0.01)
+    assert found.channels[f"b{count - 1}.y"] == pytest.approx(0.741, abs=0.01)
 
 
 def test_the_body_with_the_largest_imbalance_is_named():
     scene = "gravity: [0, -9.81]\nbodies: {light: {mass: 1, inertia: 1}, heavy: {mass: 5, inertia: 1}}"
     with pytest.raises(SolverError, match=r"the largest imbalance is left in heavy\.fy"):
         stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+
+
+@pytest.mark.long
+def test_wheels_that_spin_freely_are_free_and_not_unstable(examples):
+    found = stiffmbs.equilibrium(examples / "leaf_sprung_car.yaml")
+    assert not any("unstable" in note for note in found.notes)
+    assert set(found.free) == {"front.left_wheel.wy", "front.right_wheel.wy"}

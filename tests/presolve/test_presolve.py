@@ -100,7 +100,7 @@ def assert_same(with_it, without, tolerance):
 
 
 def solved_unknowns(job):
-    from stiffmbs.jobs.presolve_report import unknowns
+    from stiffmbs.structure.messages.presolve_report import unknowns
 
     return unknowns(job.dynamics.system, job.subsystems, job.dynamics)
 

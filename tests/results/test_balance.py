@@ -7,6 +7,7 @@ import stiffmbs
 from stiffmbs.solve.error_control import newton
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.matrices import Banded, Dense, Sparse
+from stiffmbs.solve.ida.output_correction import OutputCorrection
 from stiffmbs.solve.linear.elimination_order import elimination_order
 from stiffmbs.stress.families.stiffness.stiffness import bar_on_bushing
 from stiffmbs.stress.pendulum import bar_rate, swing
@@ -43,6 +44,19 @@ def test_force_of_a_stiff_bearing_between_steps(stiffness, as_interpolated):
     np.testing.assert_allclose(balanced["bar.angle"], plain["bar.angle"], atol=2e-6)
 
 
+def test_states_whose_forces_balance_are_left_alone(examples, monkeypatch):
+    scene, rtol = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e7 N/m")]), 1e-4
+    seen = stiffmbs.run(scene, solver="bdf", rtol=rtol)
+    limit = OutputCorrection.limit
+    monkeypatch.setattr(OutputCorrection, "limit", lambda self, long, part, balanced: limit(self, long, part, 0.0))
+    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e7 N/m"), ("name", "another")])
+    corrected = stiffmbs.run(scene, solver="bdf", rtol=rtol)
+    assert seen.solver["steps"] == corrected.solver["steps"]
+    force, expected = seen["front_bushing.fx"], corrected["front_bushing.fx"]
+    assert np.any(seen["chassis.y"] != corrected["chassis.y"])
+    np.testing.assert_allclose(force, expected, rtol=0, atol=rtol * np.max(np.abs(corrected["front_spring.fy"])))
+
+
 def test_a_scene_that_is_not_stiff_is_left_alone(examples, as_interpolated):
     scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
     balanced = stiffmbs.run(scene, duration=2.0)
@@ -62,7 +76,7 @@ def test_every_matrix_serves(kind):
 
     def rows(matrix, long_step):
         ida = chain.native(matrix=matrix)
-        ida.correct_outputs(long_step, 1e-6)
+        ida.correct_outputs(long_step, 1e-6, 0.0)
         return chain.through(ida, times)[0]
 
     expected = rows(Dense(n, *pattern), 0.0)

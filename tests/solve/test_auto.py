@@ -133,6 +133,7 @@ def test_output_points_within_one_explicit_step_do_not_ask_for_a_change_of_hands
     np.testing.assert_allclose(solution["bob.x"], 5 * np.cos(w * solution.time), atol=0.01)
 
 
+@pytest.mark.long
 def test_output_points_of_the_last_explicit_step_are_kept_where_hands_change():
     model = stiffening(0.3)
     solution = stiffmbs.run(model, solver="auto", duration=1.5, output=1e-6, rtol=1e-4)

@@ -223,7 +223,7 @@ def test_eliminated_accelerations_are_those_of_the_whole_block_system(seed, coun
     lam = dynamics.state.lam.copy()
     found = np.empty_like(whole)
     assert dynamics.eliminated.serves
-    assert ELIMINATED.load()(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
+    assert ELIMINATED.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
     np.testing.assert_allclose(found, whole, atol=1e-9 * (1 + np.abs(whole).max()))
     np.testing.assert_allclose(dynamics.state.lam, lam, atol=1e-9 * (1 + np.abs(lam).max()))
 

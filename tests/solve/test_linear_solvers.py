@@ -5,7 +5,7 @@ import ctypes
 import numpy as np
 import pytest
 
-from stiffmbs.compile.machine.layout import BLOCK_LU, PAIRED_COLUMNS, cells
+from stiffmbs.compile.machine.layout import BLOCK_LU, PAIRED_COLUMNS
 from stiffmbs.solve.ida.block_lu import COORDINATE, MULTIPLIER, BlockLU
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.paired_columns import PairedColumns
@@ -30,13 +30,13 @@ class Solver:
 
     def counted(self, name):
         """A count of the blocks' solver."""
-        return cells(self.memory.content, BLOCK_LU)[name]
+        return self.memory.content.view(BLOCK_LU.cells)[0][name]
 
     def solved(self, dense, b):
         self.factors["a"][:] = dense[self.rows, self.columns]
-        assert self.matrix.setup.load()(self.solver.ctypes.data, 0) == 0
+        assert self.matrix.setup.call(self.solver.ctypes.data, 0) == 0
         x = np.full(len(b), np.nan)
-        assert self.matrix.solve.load()(self.solver.ctypes.data, 0, x.ctypes.data, b.ctypes.data, 0.0) == 0
+        assert self.matrix.solve.call(self.solver.ctypes.data, 0, x.ctypes.data, b.ctypes.data, 0.0) == 0
         return x
 
 
@@ -87,7 +87,7 @@ def test_most_columns_of_blocks_are_paired():
     n = len(pattern)
     solver.solved(np.where(pattern > 0, 0.1, 0.0) + np.eye(n), np.ones(n))
     entries = solver.factors["l_start"][n] + solver.factors["u_start"][n] - 2 * n
-    assert cells(solver.memory.content, PAIRED_COLUMNS)["n_items"] < 0.6 * entries
+    assert solver.memory.content.view(PAIRED_COLUMNS.cells)[0]["n_items"] < 0.6 * entries
 
 
 def test_blocks_serve_where_pivots_are_good():

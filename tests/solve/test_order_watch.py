@@ -32,6 +32,16 @@ def test_a_vibration_below_the_tolerance_is_not_followed(stiffness, rtol, monkey
     np.testing.assert_allclose(mended["rod.angle"], creeping["rod.angle"], atol=100 * rtol)
 
 
+def test_a_faint_vibration_is_damped_away_and_the_order_free_again(examples, monkeypatch):
+    scene = stiffmbs.load_scene(examples / "half_car.yaml")
+    mended = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    creeping = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    assert mended.solver["steps"] < 0.8 * creeping.solver["steps"]
+    assert any(f"held at 2 for {order_watch.DAMPED_AWAY} of" in note for note in mended.notes)
+    np.testing.assert_allclose(mended["chassis.y"], creeping["chassis.y"], atol=2e-6)
+
+
 def test_a_pendulum_on_a_stiff_undamped_bushing_swings_as_on_a_pin():
     """By its energy: omega^2 = 3 g/l (sin 30 deg + sin of the angle below the horizontal)."""
     solution = solved(rod_on_bushing(1e9), rtol=1e-6)

@@ -85,7 +85,7 @@ def test_a_van_der_pol_circuit_swings_beside_a_pendulum(solver):
     assert solution["bar.angle"] == pytest.approx(alone["bar.angle"], abs=1e-6)
 
 
-@pytest.mark.parametrize("solver", ["bdf", "auto"])
+@pytest.mark.parametrize("solver", ["bdf", pytest.param("auto", marks=pytest.mark.long)])
 def test_a_stiff_van_der_pol_circuit_is_solved(solver):
     model = Model("a body at rest")
     model.add("box", Body(mass=1, inertia=1))

@@ -75,6 +75,8 @@ def test_unknown_keys_and_missing_weights_are_noted(read):
         ("'PAC2002'", "'FTIRE'", "line 9: found the format 'FTIRE', expected PAC2002"),
         ("FNOMIN = 4", "FNOMIN = -4", "found FNOMIN = -4000, expected a number above zero"),
         (FILE, "", "found no KEY = value"),
+        ("LONGVL = 16700", "USE_MODE = 5", "line 10: found USE_MODE = 5, expected 0 to 4 for steady slip"),
+        ("LONGVL = 16700", "TYRESIDE = 'TOP'", "line 10: found TYRESIDE = 'top', expected one of left, right"),
     ],
 )
 def test_faults_are_told_with_their_lines(read, old, new, said):

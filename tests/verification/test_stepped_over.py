@@ -6,7 +6,6 @@ import pytest
 import stiffmbs
 from stiffmbs import Body, Model
 from stiffmbs.describe.model import FORCES
-from stiffmbs.diagnostics.laws import has_laws
 from stiffmbs.jobs.run import prepare, solved
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification import verify as module
@@ -90,9 +89,9 @@ def test_nothing_is_found_along_runs_with_impacts_and_stiff_bushings(name):
 
 
 def test_a_run_with_another_longest_step_where_the_scene_has_laws():
-    assert has_laws(prepare(body_at_a_bump()).dynamics.system)
+    assert prepare(body_at_a_bump()).dynamics.system.has_laws
     pendulum = prepare(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"))
-    assert not has_laws(pendulum.dynamics.system)
+    assert not pendulum.dynamics.system.has_laws
     found = module.verify(stiffmbs.load_scene(EXAMPLES / "bouncing_ball.yaml"))
     assert any("with steps of at most" in sentence for sentence in found.verification)
 

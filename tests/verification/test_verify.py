@@ -20,8 +20,9 @@ NEARLY_ALL, SMALLEST = 0.98, 0.3
 """A peak in a thousand may be outside, as two runs have its error by accident: one of the 83 of a half car at times."""
 IN_DOUBT = {
     "cam_follower": ("less certain",), "chain": ("between the output",),
+    "car": ("take a smaller output",), "leaf_sprung_car": ("take a smaller output",),
 }  # fmt: skip
-"""Examples that are no clean scenes: impacts that magnify all errors, whips between output instants."""
+"""Examples that are no clean scenes: impacts that magnify all errors, whips and small parts on bushings between output instants."""
 
 
 @pytest.fixture(autouse=True)
@@ -125,6 +126,7 @@ def test_a_kinematic_run_says_that_it_is_exact():
     assert not any("certain" in note for note in found.notes)
 
 
+@pytest.mark.long
 def test_a_stiff_force_at_a_loose_tolerance_is_told(tmp_path):
     """The cushioned parallelogram of the guide, stiffer still: motion right to 2e-4 m, force 1.7 times too large."""
     text = (EXAMPLES.parent / "docs" / "guide" / "bushings.md").read_text(encoding="utf-8")
@@ -186,7 +188,7 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
         assert part in told
 
 
-LONG = ("bricard", "governor", "spatial_chain")
+LONG = ("bricard", "car", "governor", "leaf_sprung_car", "quarter_car", "spatial_chain")
 
 
 @pytest.mark.parametrize(

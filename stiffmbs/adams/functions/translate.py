@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any
 
 from ...describe.files.quoted import quoted
@@ -16,9 +17,11 @@ from ...describe.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
 from ..scene.number_format import plain
 from .adams_functions import ADAMS_FUNCTIONS
+from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED
 from .function import Function
-from .trees import measured, over, power, product, times, total
+from .states import depending_on_themselves, differential, rate_name, value_name, value_of_system
+from .trees import measured, name_of, over, power, product, times, total
 
 POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
 VELOCITIES, ANGULAR_VELOCITIES = ("VX", "VY", "VZ", "VM", "VR"), ("WX", "WY", "WZ", "WM")
@@ -55,6 +58,11 @@ class Translation:
         self.mechanism = mechanism
         self.units = mechanism.dataset.units
 
+    @cached_property
+    def implicit_variables(self) -> frozenset[int]:
+        """The VARIABLES that depend on themselves: algebraic states of the scene."""
+        return depending_on_themselves(self.mechanism.dataset.variables)
+
     def formula(self, function: Function, unit: float = 1.0) -> str:
         """The formula of an expression, times a unit.
 
@@ -63,10 +71,10 @@ class Translation:
         DatasetFault
             When it uses what a scene's formulas do not have.
         """
-        return ast.unparse(times(self.translated(function, ()), unit))
+        return ast.unparse(times(self.translated(function), unit))
 
-    def translated(self, function: Function, within: tuple[int, ...]) -> ast.expr:
-        """The tree of an expression's formula; `within` are the variables that it is the value of."""
+    def translated(self, function: Function) -> ast.expr:
+        """The tree of an expression's formula."""
 
         def translate(node: ast.expr) -> ast.expr:
             match node:
@@ -77,7 +85,7 @@ class Translation:
                 case ast.Name(name):
                     return self.name(name, function)
                 case ast.Call(ast.Name("VARVAL"), arguments):
-                    return self.variable(identifier(arguments, 0, function), function, within)
+                    return self.variable(identifier(arguments, 0, function), function)
                 case ast.Call(ast.Name(name), arguments):
                     return self.call(name, arguments, function, translate)
             return node
@@ -98,14 +106,14 @@ class Translation:
             f"found '{name}' in '{quoted(function.text)}', expected TIME, PI, DTOR, RTOD or a function"
         )
 
-    def variable(self, ident: int, function: Function, within: tuple[int, ...]) -> ast.expr:
+    def variable(self, ident: int, function: Function) -> ast.expr:
         """The expression of a VARIABLE in place of its name."""
         variable = self.mechanism.dataset.variables.get(ident)
         if variable is None:
             raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
-        if ident in within:
-            raise function.fault(f"found VARVAL({ident}), which depends on itself, expected one that does not")
-        value = self.translated(variable.function, (*within, ident))
+        if ident in self.implicit_variables:
+            return name_of(value_name(variable))
+        value = self.translated(variable.function)
         if sum(1 for _ in ast.walk(value)) > MOST_PARTS:
             raise function.fault(
                 f"found VARVAL({ident}), which has more than {MOST_PARTS} parts with the variables in it, expected fewer"
@@ -131,6 +139,16 @@ class Translation:
             return self.curve(name, arguments, function, translate)
         if name == "ARYVAL":
             return self.array_value(arguments, function)
+        if name == "DIF":
+            return name_of(differential(self.mechanism.dataset, identifier(arguments, 0, function), function).name)
+        if name == "DIF1":
+            equation = differential(self.mechanism.dataset, identifier(arguments, 0, function), function)
+            return name_of(rate_name(equation)) if equation.implicit else translate(equation.function.tree)
+        if name in ANGLES_OF_AXES:
+            return self._angle(name, arguments, function)
+        if name == "INCANG":
+            ends = [self.reference(identifier(arguments, k, function), function) for k in range(3)]
+            return included_angle(*ends)
         raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected one that is read here")
 
     def measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
@@ -186,6 +204,13 @@ class Translation:
             )
         return self.mechanism.placed(marker).reference
 
+    def _angle(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
+        idents = [identifier(arguments, k, function) for k in range(len(arguments))]
+        if not 1 <= len(idents) <= 2 or not idents[0]:
+            raise function.fault(f"found {len(idents)} markers of {name}, expected 1 or 2")
+        places = [self.mechanism.place(ident, function) if ident else on_ground() for ident in (*idents, 0)[:2]]
+        return angle(name, self.mechanism, *places)
+
     def curve(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
     ) -> ast.expr:
@@ -212,6 +237,9 @@ class Translation:
     def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         """A number out of an ARRAY."""
         ident, at = (identifier(arguments, k, function) for k in range(2))
+        of_system = value_of_system(self.mechanism.dataset, ident, at, function)
+        if of_system is not None:
+            return of_system
         array = self.mechanism.dataset.arrays.get(ident)
         if array is None or not 1 <= at <= len(array.numbers):
             raise function.fault(f"found ARYVAL({ident}, {at}), expected an ARRAY and the place of one of its numbers")

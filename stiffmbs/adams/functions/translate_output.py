@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
 from ..statements.constraints import GeneralConstraint, Numbered
+from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
 from .translate import Translation, identifier
@@ -166,4 +167,6 @@ class OutputTranslation(Translation):
                 if component[0] == "T" or any(found.force)
                 else []
             )
+        if isinstance(found, Elastic) and not found.has_potential and component[0] == "T":
+            return [found.name, found.name + TORQUE]
         return [found.name]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import singledispatchmethod
+from operator import mul
 from typing import Any
 
+from ..functions.expression import parse
 from ..functions.function import Function
 from ..functions.translate import Translation
 from ..statements.constraints import TRANSLATIONAL
 from ..statements.elastic import Beam, Elastic, SpringDamper
+from ..statements.fault import of_each
 from ..statements.forces import SingleForce, VectorForce
 from .mechanism import Mechanism, Place
 from .number_format import plain, vector
@@ -32,10 +35,7 @@ class Forces:
 
     def all(self) -> dict[str, Any]:
         """By name, in the order of the statements' kinds."""
-        found: dict[str, Any] = {}
-        for force in self._mechanism.dataset.forces:
-            found |= self._made(force)
-        return found
+        return of_each(self._mechanism.dataset.forces, self._made)
 
     def _ends(self, force: SingleForce | SpringDamper | Elastic | Beam) -> tuple[Place, Place]:
         return self._mechanism.place(force.i, force, "I"), self._mechanism.place(force.j, force, "J")
@@ -91,6 +91,8 @@ class Forces:
 
     @_made.register
     def _elastic(self, force: Elastic) -> dict[str, Any]:
+        if not force.has_potential:
+            return self._without_potential(force)
         i, j = self._ends(force)
         kind = force.keyword.lower()
         made: dict[str, Any] = {"type": kind, "i": i.reference, "j": j.reference}
@@ -106,6 +108,35 @@ class Forces:
         if any(force.preload):
             made["preload"] = vector(force.preload)
         return {force.name: made}
+
+    def _without_potential(self, force: Elastic) -> dict[str, Any]:
+        """A field whose matrices are not symmetric: components by formula, at marker I along the axes of J."""
+        i, j = self._ends(force)
+        ends = f"({force.i},{force.j},{force.j})"
+        length, time = self._units.length, self._units.time
+        ways = [(f"D{axis}{ends}", length) for axis in "XYZ"] + [
+            (f"A{axis}({force.i},{force.j})", 1.0) for axis in "XYZ"
+        ]
+        rates = [(f"V{axis}{ends[:-1]},{force.j})", length / time) for axis in "XYZ"]
+        rates += [(f"W{axis}{ends}", 1 / time) for axis in "XYZ"]
+        laws = []
+        for row in range(6):
+            terms = [repr(plain(force.preload[row] + sum(map(mul, force.stiffness[row], force.length))))]
+            terms += [
+                f"{-factor!r} * ({self._measured(force, text, unit)})"
+                for factors, measures in ((force.stiffness[row], ways), (force.damping[row], rates))
+                for factor, (text, unit) in zip(factors, measures, strict=True)
+                if factor
+            ]
+            laws.append(" + ".join(terms))
+        made = {"i": i.reference, "j": j.body, "frame": j.reference}
+        return {
+            force.name: {"type": "force", **made, "force": laws[:3]},
+            force.name + TORQUE: {"type": "torque", **made, "torque": laws[3:]},
+        }
+
+    def _measured(self, force: Elastic, text: str, unit: float) -> str:
+        return self._translation.formula(Function(text, parse(text), force.line, force.label), unit)
 
     @_made.register
     def _beam(self, beam: Beam) -> dict[str, Any]:

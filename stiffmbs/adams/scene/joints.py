@@ -11,6 +11,7 @@ import numpy as np
 from ..functions.translate import ANGULAR_VELOCITIES as TURNING
 from ..functions.translate import VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint
+from ..statements.fault import of_each
 from ..statements.geometry import Frame
 from .mechanism import Mechanism, Place
 from .number_format import plain, quaternion, vector
@@ -41,12 +42,10 @@ Z_ALONG_Y = Z_ALONG_X.T
 def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     """The joints of the scene by name, without those that motions and relations make."""
     dataset = mechanism.dataset
-    found: dict[str, Any] = {}
-    for joint in (*dataset.joints.values(), *dataset.primitives.values()):
-        found[joint.name] = _joint(joint, mechanism)
-    for constraint in dataset.general_constraints.values():
-        found[constraint.name] = _general(constraint, mechanism, translation)
-    return found
+    pairs = (*dataset.joints.values(), *dataset.primitives.values())
+    return of_each(pairs, lambda joint: {joint.name: _joint(joint, mechanism)}) | of_each(
+        dataset.general_constraints.values(), lambda one: {one.name: _general(one, mechanism, translation)}
+    )
 
 
 def held(mechanism: Mechanism) -> dict[str, Any]:

@@ -9,18 +9,28 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ...describe.marker import GROUND
 from ..statements.bodies import Marker, Part
-from ..statements.constraints import Numbered
 from ..statements.dataset import Dataset
 from ..statements.fault import DatasetFault
 from ..statements.geometry import IDENTITY, Frame
 from .massless import MASSLESS, lightest, weighed
 from .number_format import plain
+
+
+class Named(Protocol):
+    """What is named where it is wrong."""
+
+    @property
+    def line(self) -> int: ...
+
+    @property
+    def label(self) -> str: ...
+
 
 ORIGIN = Frame(np.zeros(3), IDENTITY)
 
@@ -103,12 +113,12 @@ class Mechanism:
             if ident is not None and (marker is None or self.part_of(marker) is not part):
                 raise DatasetFault(part.line, part.label, f"found {name} = {ident}, expected a marker of this part")
 
-    def tip(self, place: Place) -> str:
-        """A marker at the end of the z axis of another one, 1 m from it, as the scene writes it.
+    def tip(self, place: Place, axis: str = "z") -> str:
+        """A marker at the end of an axis of another one, 1 m from it, as the scene writes it.
 
         With it formulas measure that axis: ``dx(tip, marker, other)`` is its component along the x axis of the other.
         """
-        return self.moved(place, f"{place.name}_z", place.initial.axes[:, 2]).reference
+        return self.moved(place, f"{place.name}_{axis}", place.initial.axes[:, "xyz".index(axis)]).reference
 
     def moved(self, place: Place, name: str, way: np.ndarray) -> Place:
         """A further marker of the scene: another one, moved on its body by a way in ground axes (m) at the start."""
@@ -158,7 +168,7 @@ class Mechanism:
         if exact:
             yield f"EXACT of {', '.join(exact)} is left out: assembly may move every part"
 
-    def place(self, ident: int, user: Numbered | Part, name: str = "I") -> Place:
+    def place(self, ident: int, user: Named, name: str = "I") -> Place:
         """The marker that a statement names.
 
         Raises

@@ -9,6 +9,7 @@ import numpy as np
 from ..functions.motion_law import Law
 from ..functions.translate import Translation
 from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Joint, Motion
+from ..statements.fault import of_each
 from .initial_conditions import initial_displacement
 from .mechanism import Mechanism
 from .relations import SORTS, coordinate
@@ -18,12 +19,12 @@ LENGTHS = ("X", "Y", "Z")
 
 def motions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     """The scene's drives by name."""
-    return {
-        motion.name: _of_joint(motion, mechanism, translation)
-        if motion.joint is not None
-        else _between_markers(motion, mechanism, translation)
-        for motion in mechanism.dataset.motions.values()
-    }
+
+    def made(motion: Motion) -> dict[str, Any]:
+        of_pair = _between_markers if motion.joint is None else _of_joint
+        return {motion.name: of_pair(motion, mechanism, translation)}
+
+    return of_each(mechanism.dataset.motions.values(), made)
 
 
 def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:

@@ -114,8 +114,8 @@ def _outward(joint: Joint, i: Place, j: Place) -> np.ndarray:
     axis, along = _axis(i, j), float(i.initial.axes[:, 0] @ j.initial.axes[:, 2])
     if axis is None or abs(along) < 0.5:
         raise joint.fault(
-            "found the rack's line (the z axis of J) across the pinion's axis (the z axis of I) and not along its x axis, "
-            "expected it half the pitch diameter beside the axis, or along the x axis of I"
+            "found the rack's line (z of J) across the pinion's axis (z of I) and not along x of I, "
+            "expected it half the pitch diameter beside the axis, or along x of I"
         )
     return -np.sign(along) * np.cross(axis, j.initial.axes[:, 2])
 

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+from ..functions.states import states
 from ..functions.translate import Translation
 from ..statements.dataset import Dataset
+from ..statements.fault import of_each
 from .bodies import bodies, ground_markers
 from .bodies import notes as body_notes
+from .contacts import contacts
 from .forces import Forces
 from .gears import gears
 from .initial_conditions import notes as start_notes
@@ -36,23 +41,27 @@ def scene(dataset: Dataset) -> dict[str, Any]:
     mechanism = Mechanism(set_in_motion(Mechanism(dataset)))
     translation = Translation(mechanism)
     requests = Requests(mechanism)
-    driven = motions(mechanism, translation)  # these before bodies, which get the markers that formulas need
-    joined = joints(mechanism, translation)
-    meshed = gears(mechanism)
+    makers: list[tuple[str, Callable[[], dict[str, Any]]]] = [
+        ("joints", partial(joints, mechanism, translation)),
+        ("joints", partial(held, mechanism)),
+        ("joints", partial(relations, mechanism)),
+        ("joints", partial(gears, mechanism)),
+        ("joints", partial(motions, mechanism, translation)),
+        ("states", partial(states, translation)),
+        ("forces", Forces(mechanism, translation).all),
+        ("forces", partial(contacts, mechanism, translation)),
+    ]
+    made = of_each(enumerate(makers), lambda numbered: {str(numbered[0]): numbered[1][1]()})
+    sections: dict[str, dict[str, Any]] = {"joints": {}, "states": {}, "forces": {}}
+    for (section, _), entries in zip(makers, made.values(), strict=True):
+        sections[section] |= entries
     found: dict[str, Any] = {
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
         "gravity": vector(dataset.gravity),
-        "markers": ground_markers(mechanism),
-        "bodies": bodies(mechanism),
-        "joints": {
-            **joined,
-            **held(mechanism),
-            **relations(mechanism),
-            **meshed,
-            **driven,
-        },
-        "forces": Forces(mechanism, translation).all(),
+        "markers": {},
+        "bodies": {},
+        **sections,
         "requests": requests.all(),
         "run": dict(RUN),
         "notes": [
@@ -64,5 +73,6 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             *requests.notes,
         ],
     }
+    found |= {"bodies": bodies(mechanism), "markers": ground_markers(mechanism)}  # with the markers that formulas need
     found["tables"] = mechanism.tables
     return {key: value for key, value in found.items() if value or key == "bodies"}

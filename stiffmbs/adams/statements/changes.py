@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from .arguments import Arguments
-from .fault import DatasetFault
+from .fault import CommandFault
 from .keywords import READERS, keyword
 from .text import Statement
 
@@ -72,7 +72,7 @@ class Changes:
         for key, line in (*((key, c[0].line) for key, c in self.altered.items()), *self.inactive.items()):
             if key not in known and key != GRAVITY:
                 label = f"{key[0]}/{key[1]}"
-                raise DatasetFault(line, label, "found a command for it, expected a statement that the dataset has")
+                raise CommandFault(line, label, "found a command for it, expected a statement that the dataset has")
         found = [
             (name, self._changed(statement)) for name, statement in named if key_of(statement) not in self.inactive
         ]

@@ -78,7 +78,7 @@ def read_commands(text: str) -> Commands:
     changes, settings = Changes(), dict[str, float]()
     left_out = []
     for command in commands(text):
-        name = _full(command.word)
+        name = full_name(command.word)
         if name in ENDING:
             break
         if name == "SIMULATE":
@@ -100,7 +100,7 @@ def read_commands(text: str) -> Commands:
     return Commands(tuple(segments), changes, notes)
 
 
-def _full(word: str) -> str | None:
+def full_name(word: str) -> str | None:
     """The full name of a command, which an abbreviation of three letters or more stands for."""
     names = (*FOLLOWED, *ENDING, *HARMLESS, *SETTINGS)
     if word in names:

@@ -9,8 +9,9 @@ from typing import Any, TypeVar
 
 from ...errors import InputError
 from .bodies import Marker, Part, read_marker
-from .changes import Changes, Key
+from .changes import Changes, Key, key_of
 from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Numbered
+from .contact import Contact
 from .elastic import Beam, Elastic, SpringDamper
 from .fault import DatasetFault, raise_all
 from .forces import SingleForce, VectorForce, read_gravity
@@ -42,6 +43,8 @@ class Dataset:
         What was left out, a sentence each.
     inactive : frozenset of (str, int)
         Names and numbers of statements that commands have deactivated, which are not among the others.
+    graphics : mapping of int to Statement
+        Of which contacts need some.
     """
 
     title: str
@@ -50,6 +53,7 @@ class Dataset:
     statements: Mapping[str, Mapping[int, Any]] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     inactive: frozenset[Key] = frozenset()
+    graphics: Mapping[int, Statement] = field(default_factory=dict)
 
     def _all(self, kind: type[Any]) -> tuple[Any, ...]:
         return tuple(x for numbered in self.statements.values() for x in numbered.values() if isinstance(x, kind))
@@ -94,6 +98,10 @@ class Dataset:
         return self._all(Force)  # type: ignore[arg-type]
 
     @property
+    def contacts(self) -> Mapping[int, Contact]:
+        return self.statements.get("CONTACT", {})
+
+    @property
     def requests(self) -> Mapping[int, Request]:
         return self.statements.get("REQUEST", {})
 
@@ -118,24 +126,50 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     InputError
         When a statement cannot be read, or holds mass, force or constraint of a kind that is not.
     """
-    title, found, ended = statements(text)
-    without_title = _is_statement(title)
-    if without_title:
-        title, (found, ended) = "", untitled(text)
+    title, found, ended = all_statements(text)
     named = changes.applied([(keyword(statement.word), statement) for statement in found])
-    _refuse(named)
+    unread = _unread(named)
+    units, gravity = _single(named)
+    data, faults = _data(named, units)
+    if unread:
+        raise InputError("; ".join([unread, *map(str, faults[:MOST_LISTED])]))
+    raise_all(faults)
+    graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
+    notes = tuple(_notes(named, ended, title is None))
+    return Dataset(title or "", units, gravity, data, notes, frozenset(changes.inactive), graphics)
+
+
+def all_statements(text: str) -> tuple[str | None, tuple[Statement, ...], bool]:
+    """The title, None where the first line reads as a statement; the statements, and whether END was found."""
+    title, found, ended = statements(text)
+    return (None, *untitled(text)) if _is_statement(title) else (title, found, ended)
+
+
+def faults_of(text: str) -> list[DatasetFault]:
+    """What is wrong with single statements of a dataset, those aside that are not read."""
+    named = [(keyword(statement.word), statement) for statement in all_statements(text)[1]]
+    try:
+        units, _ = _single(named)
+    except DatasetFault as fault:
+        return [fault]
+    return _data(named, units)[1]
+
+
+def _single(named: list[tuple[str | None, Statement]]) -> tuple[Units, tuple[float, float, float]]:
+    """Units and gravity."""
     units = Units()
     for statement in _once("UNITS", named):
         units = read_units(statement)
     gravity = (0.0, 0.0, 0.0)
     for statement in _once("ACCGRAV", named):
         gravity = read_gravity(statement, units)
-    data = _data(named, units)
-    return Dataset(title, units, gravity, data, tuple(_notes(named, ended, without_title)), frozenset(changes.inactive))
+    return units, gravity
 
 
-def _data(named: list[tuple[str | None, Statement]], units: Units) -> dict[str, dict[int, Any]]:
-    """The data of all statements by full name and number; what is wrong with any of them is told at once."""
+def _data(
+    named: list[tuple[str | None, Statement]], units: Units
+) -> tuple[dict[str, dict[int, Any]], list[DatasetFault]]:
+    """The data of all statements by full name and number, and what is wrong with any of them."""
     data: dict[str, dict[int, Any]] = {}
     part: Part | None = None
     faults = []
@@ -151,8 +185,7 @@ def _data(named: list[tuple[str | None, Statement]], units: Units) -> dict[str, 
             data[name][one.ident] = one
         except DatasetFault as fault:
             faults.append(fault)
-    raise_all(faults)
-    return data
+    return data, faults
 
 
 def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statement]:
@@ -162,18 +195,18 @@ def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statem
     return found
 
 
-def _refuse(named: list[tuple[str | None, Statement]]) -> None:
-    """Refuse what would be missing from the mechanism, all of it at once."""
+def _unread(named: list[tuple[str | None, Statement]]) -> str:
+    """What would be missing from the mechanism, all of it in one sentence; nothing where all is read."""
     unread = [
         (f"{name or statement.word}/{statement.ident}".rstrip("/"), statement.line)
         for name, statement in named
         if name is None or name in REFUSED
     ]
     if not unread:
-        return
+        return ""
     listed = ", ".join(f"{label} (line {line})" for label, line in unread[:MOST_LISTED])
     more = f" and {len(unread) - MOST_LISTED} more" if len(unread) > MOST_LISTED else ""
-    raise InputError(
+    return (
         f"found statements that are not read here: {listed}{more}; expected {', '.join((*SINGLE, *READERS))}, or "
         "graphics, output and analysis settings, which are left out"
     )

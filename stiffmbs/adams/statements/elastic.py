@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 from ..functions.function import read_function
 from .arguments import Arguments
@@ -40,6 +41,12 @@ class Elastic(Numbered):
     damping: Matrix
     length: Six
     preload: Six
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether both matrices are symmetric, but for what rounding leaves."""
+        pairs = [(m[i][j], m[j][i]) for m in (self.stiffness, self.damping) for i, j in combinations(range(6), 2)]
+        return all(abs(a - b) <= 1e-12 * max(abs(a), abs(b)) for a, b in pairs)
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeVar
 
 from ...errors import InputError
 
 MOST_TOLD = 8
+Thing = TypeVar("Thing")
 
 
 class DatasetFault(InputError):
@@ -15,6 +17,23 @@ class DatasetFault(InputError):
     def __init__(self, line: int, label: str, reason: str) -> None:
         super().__init__(f"line {line}, {label}: {reason}")
         self.line, self.label, self.reason = line, label, reason
+
+
+class CommandFault(DatasetFault):
+    """The same of a command, with its line in the command file."""
+
+
+def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, Any]]) -> dict[str, Any]:
+    """What is made of each thing, all in one; the faults of all of them are raised as one."""
+    found: dict[str, Any] = {}
+    faults = []
+    for thing in things:
+        try:
+            found |= make(thing)
+        except DatasetFault as fault:
+            faults.append(fault)
+    raise_all(faults)
+    return found
 
 
 def raise_all(faults: Sequence[DatasetFault]) -> None:

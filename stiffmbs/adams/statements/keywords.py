@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from . import bodies, constraints, elastic, forces, outputs
+from . import bodies, constraints, contact, elastic, forces, outputs, systems
 from .text import Statement
 from .units import Units
 
@@ -32,6 +32,11 @@ READERS: dict[str, Reader] = {
     "VARIABLE": outputs.read_variable,
     "SPLINE": outputs.read_spline,
     "ARRAY": outputs.read_array,
+    "CONTACT": contact.read_contact,
+    "DIFF": systems.read_differential,
+    "LSE": systems.read_linear_system,
+    "TFSISO": systems.read_transfer_function,
+    "MATRIX": systems.read_matrix,
 }
 """What makes data of a statement, by its name.  UNITS and ACCGRAV have no number and are read apart."""
 
@@ -51,23 +56,46 @@ LEFT_OUT = {
     "KINEMATICS": "analysis settings",
     "LSOLVER": "analysis settings",
     "PREFERENCES": "analysis settings",
-    "SENSOR": "analysis settings",
+    "SENSOR": "where it would end or change a run in Adams, a run goes on here",
     "PINPUT": "analysis settings",
     "POUTPUT": "analysis settings",
     "PSTATE": "analysis settings",
     "STRING": "data that nothing here uses",
-    "MATRIX": "data that nothing here uses",
     "CURVE": "data that nothing here uses",
     "SURFACE": "data that nothing here uses",
     "TITLE": "text",
 }
 """Statements without mass, force or constraint, and what they hold."""
-REFUSED = (
-    "FLEX_BODY", "FE_PART", "FE_NODE", "FE_LOAD", "EXTERNAL_SYSTEM", "CONTACT", "CLEARANCE", "FRICTION", "NFORCE",
-    "MFORCE", "MODAL", "PTCV", "CVCV", "PTSF", "CVSF", "SFSF", "UCON", "DIFF", "GSE", "LSE", "TFSISO", "TIRE", "PFORCE",
-    "DEACTIVATE", "ACTIVATE", "NONLINEAR_BEAM",
-)  # fmt: skip
-"""Statements with mass, force, constraint or states of their own that are not read."""
+FLEXIBLE, ROUTINE, CURVED = (
+    "flexible bodies are not solved for",
+    "it needs a user's own subroutine",
+    "curves and surfaces in space are not read",
+)
+REFUSED = {
+    "FLEX_BODY": FLEXIBLE,
+    "FE_PART": FLEXIBLE,
+    "FE_NODE": FLEXIBLE,
+    "FE_LOAD": FLEXIBLE,
+    "NONLINEAR_BEAM": FLEXIBLE,
+    "MFORCE": FLEXIBLE,
+    "MODAL": FLEXIBLE,
+    "EXTERNAL_SYSTEM": FLEXIBLE,
+    "PTCV": CURVED,
+    "CVCV": CURVED,
+    "PTSF": CURVED,
+    "CVSF": CURVED,
+    "SFSF": CURVED,
+    "CLEARANCE": "distances between surfaces are not computed",
+    "FRICTION": "Adams' friction with stiction has no counterpart; joint_friction of a scene is smooth",
+    "NFORCE": "fields between more than two markers are not read",
+    "UCON": ROUTINE,
+    "GSE": ROUTINE,
+    "TIRE": "tyres belong to Adams' own libraries; a scene has tyres of its own",
+    "PFORCE": "it is none of the forces that are read",
+    "DEACTIVATE": "it is a command, which belongs into a command file",
+    "ACTIVATE": "it is a command, which belongs into a command file",
+}
+"""Statements with mass, force, constraint or states of their own that are not read, and why."""
 
 _ALL = (*SINGLE, *READERS, *LEFT_OUT, *REFUSED)
 

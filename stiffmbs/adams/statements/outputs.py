@@ -46,9 +46,10 @@ class Request(Numbered):
 
 @dataclass(frozen=True)
 class Variable(Numbered):
-    """A named expression."""
+    """A named expression, and where its value is sought from if it depends on itself."""
 
     function: Function
+    start: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,9 +63,10 @@ class Spline(Numbered):
 
 @dataclass(frozen=True)
 class Array(Numbered):
-    """A list of numbers."""
+    """A list of numbers, or of variables that are the inputs of a system."""
 
     numbers: tuple[float, ...]
+    variables: tuple[int, ...] = ()
 
 
 _REQUEST = (
@@ -99,13 +101,14 @@ def _of_variable(found: Arguments, ident: int) -> tuple[str, Function]:
 
 
 def read_variable(statement: Statement, units: Units) -> Variable:
-    """A named expression; its initial value is needed by an iteration that has no place here."""
+    """A named expression."""
     found = Arguments(statement, "VARIABLE", ("IC", "FUNCTION", "ROUTINE"), ("FUNCTION",))
     if is_subroutine(found, "FUNCTION"):
         function = read_any_function(found, "FUNCTION")
     else:
         function = required_function(found, "FUNCTION")
-    return Variable(found.ident(), statement.line, statement.alias, "VARIABLE", function)
+    start = found.number("IC") or 0.0
+    return Variable(found.ident(), statement.line, statement.alias, "VARIABLE", function, start)
 
 
 def read_spline(statement: Statement, units: Units) -> Spline:
@@ -122,6 +125,13 @@ def read_spline(statement: Statement, units: Units) -> Spline:
 
 
 def read_array(statement: Statement, units: Units) -> Array:
-    """A list of numbers; arrays of states, inputs and outputs belong to statements that are not read."""
+    """A list of numbers, or the states, inputs or outputs of a system."""
     found = Arguments(statement, "ARRAY", ("IC", "SIZE", "NUMBERS", "X", "Y", "U", "VARIABLES"))
-    return Array(found.ident(), statement.line, statement.alias, "ARRAY", found.numbers("NUMBERS") or ())
+    return Array(
+        found.ident(),
+        statement.line,
+        statement.alias,
+        "ARRAY",
+        found.numbers("NUMBERS") or (),
+        found.idents("VARIABLES"),
+    )

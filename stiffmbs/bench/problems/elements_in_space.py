@@ -32,7 +32,7 @@ def compile_first(element: str) -> float:
 
     scene = usual_elements(3).data()
     begun = time.process_time()
-    kind, _ = sorted_out({**scene.joints, **scene.forces}[element].at_initial_pose(scene), scene)
+    kind, _ = sorted_out(element, {**scene.joints, **scene.forces}[element].at_initial_pose(scene), scene)
     compile_usual(kind)
     return time.process_time() - begun
 

@@ -54,7 +54,7 @@ def kernel_seconds(job: Job, trajectory: Trajectory) -> float:
 
 def _least(table: np.ndarray, term_set: int, t: float) -> float:
     """The shortest time of an evaluation of a term set, s."""
-    evaluate, times = TERMS.load(), []
+    evaluate, times = TERMS.call, []
     for _ in range(EVALUATIONS):
         begun = time.perf_counter()
         evaluate(t, term_set, table.ctypes.data)

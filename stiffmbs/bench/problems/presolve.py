@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ...jobs.load_scene import load_scene
-from ...jobs.presolve_report import unknowns
 from ...jobs.run import prepare, run
+from ...structure.messages.presolve_report import unknowns
 from ..benchmark import Row
 
 ROUNDS = 21

@@ -39,7 +39,6 @@ def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
 
     def of(x: Enclosure) -> Enclosure:
         """The enclosure of the function at an enclosed argument."""
-        """The function of an enclosure."""
 
         def outer(k: int) -> Range:
             """The range of the k-th Taylor coefficient."""
@@ -191,6 +190,7 @@ def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure
     tree = parse(function.derivative)
 
     def of(x: Enclosure) -> Enclosure:
+        """The enclosure of the function at an enclosed argument."""
         low, high = x.value
         own = Enclosure.of_time(low, high, max(x.order - 1, 0))  # x as its own variable
         names = {"x": own, "pi": np.pi}

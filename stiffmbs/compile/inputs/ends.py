@@ -81,7 +81,7 @@ def first_input_end(system: System, start: float, end: float) -> InputEnd | None
         s.
     """
     found = [
-        each for group in system.groups for name, element in zip(group.names, group.elements, strict=True)
+        each for group in system.groups if group.has_inputs for name, element in zip(group.names, group.elements, strict=True)
         for each in _of_element(name, element, start, end)
     ]  # fmt: skip
     return min(found, key=lambda each: each.t, default=None)

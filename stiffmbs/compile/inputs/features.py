@@ -95,6 +95,8 @@ class InputFeatures:
 
 INSTANTS = 8
 """Instants that show a narrow feature."""
+NO_FEATURES = InputFeatures()
+"""Of a system without formulas and tables of time."""
 
 
 def input_features(system: System, start: float, end: float) -> InputFeatures:

@@ -132,7 +132,7 @@ def inputs_of(system: System) -> list[Input]:
         return known.setdefault(id(table), known.get(id(table)) or TableRanges(table))
 
     for group in system.groups:
-        for element in group.elements:
+        for element in group.elements if group.has_inputs else ():
             for written, text, values, tables in _expressions(element):
                 tree = _WithoutRoots().visit(copy.deepcopy(written))
                 key = (

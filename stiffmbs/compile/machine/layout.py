@@ -2,17 +2,34 @@
 
 A layout lists names and types once; `packed` makes the table on the Python side, and native code reads it through
 a view with the same names (`stiffmbs.compile.machine.native.access`).  A column holds the address of an array, a number
-that stays, or a cell: a number that both sides read and set, here through `cells`.
+that stays, or a cell: a number that both sides read and set.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-Layout = Mapping[str, str]
+
+class Layout(dict[str, str]):
+    """The columns of a table, each with its kind.
+
+    Attributes
+    ----------
+    cells : dtype
+        A table seen by it has its cells by name: ``table.view(layout.cells)[0]["steps"]`` is read and set in the table.
+    """
+
+    @cached_property
+    def cells(self) -> np.dtype[np.void]:
+        columns = {name: column for column, name in enumerate(self) if self[name] in CELLS}
+        formats = ["f8" if self[name] == FLOAT_CELL else "i8" for name in columns]
+        offsets = [8 * column for column in columns.values()]
+        return np.dtype({"names": list(columns), "formats": formats, "offsets": offsets, "itemsize": 8 * len(self)})
+
 
 INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
 FLOAT_CELL, INT_CELL = "float cell", "int cell"
@@ -25,56 +42,66 @@ POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_IN
 """Kinds of arrays in compiled code.  Compiled code itself asks for the memory of those of its own, as their size is known
 only on the way (`stiffmbs.compile.machine.native.memory`)."""
 
-STATE: Layout = {
+STATE = Layout({
     "n_q": INT, "n_pose": INT, "n_u": INT, "n_c": INT, "spatial": INT,
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS, "n_turned": INTS, "turned": INTS,
     "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS, "left_open": FLOATS,
-}  # fmt: skip
+    "followed": FLOATS,
+})  # fmt: skip
 """A system's state and kernels: the number of coordinates, and of those of bodies, which come first; whether its bodies are spatial; q, u and accelerations a with the ground's at their end;
 what kernels share of each body's orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first
 coordinate) for which that is read, the number of its kernel calls, the address of their arguments (rows of `CALL`) and
-the address of its values; the first row of each joint; what each equation may be off by."""
+the address of its values; the first row of each joint; what each equation may be off by;
+0 for each velocity that no coordinate follows, else 1."""
 
 CALL = ("kernel", "count", "index", "number", "place")
 """The arguments of one kernel call, as 64-bit numbers."""
 
-EQUATIONS: Layout = {
+DIRECTION = Layout({
+    "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS,
+    "n_turned": INT, "turned": INTS, "n_calls": INT, "calls": INTS, "values": FLOATS,
+})  # fmt: skip
+"""A direction in which the terms of one set change (`stiffmbs.compile.directional`): how the state changes, with the ground's
+numbers at their ends; bodies whose orientation is shared, the arguments of the calls of kernels (rows of `CALL` and, last,
+the address of how the elements' numbers change); the derivatives of the values."""
+
+EQUATIONS = Layout({
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
     "r_row": INDICES, "r_source": INDICES, "r_operand": INDICES, "r_factor": FLOATS,
     "n_slots": INT, "n_entries": INT, "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
-    "at_mu": INTS, "at_lam": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
-}  # fmt: skip
+    "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
+})  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
-FACTORS: Layout = {
+FACTORS = Layout({
     "n": INT, "expected_entries": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS,
     "order": INTS, "l_start": INTS, "l_row": OWN_INTS, "l": OWN_FLOATS, "u_start": INTS, "u_row": OWN_INTS, "u": OWN_FLOATS,
     "pivot": INTS, "work": FLOATS, "b": FLOATS, "previous": FLOATS, "stack": INTS, "x": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """A sparse matrix by columns, its factors and work space (`stiffmbs.compile.machine.native.factors`).  `expected_entries` is the number of
 entries that each factor is expected to have at the most, `capacity` the number for which there is memory."""
 
-FIXED_ORDER: Layout = {
+FIXED_ORDER = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
     "ready": INT_CELL, "n_lower": INT_CELL, "n_upper": INT_CELL,
     "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES, "mark": INTS, "x": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """A linear solver of IDA's along fixed pivots (`stiffmbs.solve.native.fixed_order`); it begins as the content of the
 solver of SUNDIALS whose place it takes: number of unknowns, pivots, last flag.  `ready` says whether pivots are known;
 `n_lower` and `n_upper` count the entries beside the diagonal.  Its long lists are of 32-bit numbers: a long
 chain's solutions wait for memory."""
 
-PAIRED_COLUMNS: Layout = {
+PAIRED_COLUMNS = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
     "ready": INT_CELL, "n_lower": INT_CELL, "n_items": INT_CELL,
     "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "place": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES,
     "item_start": INTS, "item_end": INTS, "side": INTS, "mark": INTS, "x": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """The same with its columns in pairs, `n_items` in all (`stiffmbs.solve.native.paired_columns`)."""
 
-BLOCK_LU: Layout = {
+BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
     "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
@@ -82,30 +109,31 @@ BLOCK_LU: Layout = {
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
     "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS, "pivot": FLOATS, "tried": FLOATS,
     "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
 of columns in pairs that takes over where those cannot be trusted.  `ready` says whether the counts are of this run: whether the factors at
 hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, and trials that were failed."""
 
-DYNAMICS: Layout = {
+DYNAMICS = Layout({
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
     "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
-}  # fmt: skip
+    "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
+})  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
 `behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
-depends on multipliers."""
+depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values."""
 
 
-IDA: Layout = {
+IDA = Layout({
     "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array.  They
 note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
 
 
-ELIMINATED: Layout = {
+ELIMINATED = Layout({
     "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "ready": INT_CELL,
     "f_source": INDICES, "f_row": INDICES, "gamma_source": INDICES, "gamma_row": INDICES,
     "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "at_lam": INTS,
@@ -113,28 +141,28 @@ ELIMINATED: Layout = {
     "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
     "scale": FLOATS, "j_scale": FLOATS, "j": FLOATS,
     "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
-}  # fmt: skip
+})  # fmt: skip
 """J M^-1 J^T and its factors by flat lists (`stiffmbs.solve.linear.eliminated`)."""
 
 
-SCHEME: Layout = {
+SCHEME = Layout({
     "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
     "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
-}  # fmt: skip
+})  # fmt: skip
 """The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
 
-STEP_BOUND: Layout = {"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS}
+STEP_BOUND = Layout({"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS})
 """The longest steps that see what the inputs do (`stiffmbs.solve.events.step_bound`); n is 0 where nothing bounds a step."""
 
-LONG_STEPS: Layout = {
+LONG_STEPS = Layout({
     "n_nodes": INT, "node": FLOATS, "width": INT, "ratio": FLOAT_CELL, "remembered": FLOAT_CELL, "room": INT_CELL, "count": INT_CELL, "usual": FLOAT_CELL, "row": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """Where steps far longer than those before are kept (`stiffmbs.solve.native.long_steps`): one row each of the step's two ends and its
 states, of `width` numbers, at the nodes.  Cells: times the usual step beyond which a step is long, and of how many steps the usual one
 is the mean; rows there is room for (0 where none is kept), rows kept, the usual step."""
 
-EXPLICIT: Layout = {
+EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
@@ -144,12 +172,12 @@ EXPLICIT: Layout = {
     "long_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
 event functions' values there, the stages k, the counters, the output times (none: every step), and memory for the rows and ends
 of steps that one call stores."""
 
-NATIVE_IDA: Layout = {
+NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
     "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
@@ -160,37 +188,66 @@ NATIVE_IDA: Layout = {
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
     "long_steps": INTS,
-}  # fmt: skip
+    "trace": INT_CELL, "traced": INT_CELL,
+})  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
 
 Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
 last step, size of the one that it will try next; output points served, tiny steps in succession, whether the last event
-was found by the search within the step; steps in the history, steps since the last sample, place of the next one."""
+was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
+of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call."""
 MOST_STEPS, HISTORY_WIDTH = 2048, 3
 """Steps of any one call, and rows of the history: time of the end, order, size."""
 SAMPLES = 16
 """Rows of the samples: the time and what is reported."""
 
-OUTPUT_CORRECTION: Layout = {
+OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
     "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
+    "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
-    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS,
-}  # fmt: skip
+    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
+})  # fmt: skip
 """Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors.
 
 Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
 beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
-grows by in a second from there (below 0: not known), and states corrected since that was measured."""
+grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
+force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
+equations of motion: those of forces, then those of moments, and where either end."""
 
-ITERATION: Layout = {
+VARIATIONS = Layout({
+    "state": INTS, "equations": INTS, "n": INT, "n_directions": INT, "n_slots": INT,
+    "row": INDICES, "column": INDICES, "place": INDICES, "constant": FLOATS, "rate": FLOATS,
+    "n_share": INT, "share": INTS, "parts": INTS, "by_time": INTS, "shift": FLOATS, "shifted": INT_CELL, "of_time": FLOATS,
+    "clear": INT, "setup": INT, "solve": INT, "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
+    "at_defect": INT, "defect": FLOATS, "at_correction": INT, "correction": FLOATS, "s": FLOATS, "rates": FLOATS,
+    "history": FLOATS, "times": FLOATS, "weight": FLOATS, "slope": FLOATS, "newest": INT_CELL, "cj": FLOAT_CELL,
+})  # fmt: skip
+"""The variational equations along a run (`stiffmbs.solve.native.variations`): rows and columns of the matrix' slots, their place
+in the linear solver, and their parts by y and by y'; addresses of the tables of `PART`; linear solver and vectors; a
+direction's s and s'; the last `DEPTH` s of all directions with their times, and the coefficients of a step.
+
+`by_time` is the `PART` of r_t, `shift` the time by which each direction's s is shifted.
+
+Cells: whether any is, which row of the history is the last, and cj of the step."""
+DEPTH = 8
+"""Steps that are remembered; order 5 needs six before the present one."""
+
+PART = Layout({
+    "direction": INTS, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
+    "row": INDICES, "source": INDICES, "operand": INDICES, "factor": FLOATS,
+})  # fmt: skip
+"""dr/dp of one direction: its `DIRECTION`, and lines as those of a residual."""
+
+ITERATION = Layout({
     "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
     "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
     "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL,
-}  # fmt: skip
+})  # fmt: skip
 """What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`).
 
 Cells: cj, that of the matrix, size of the first correction, the part of the rate by the change of cj, what the rest grows by
@@ -198,13 +255,13 @@ in a time (below 0: not known), and the time since the matrix was made, by the s
 of 1 to 2.3; corrections before this one, steps since the matrix was made, steps since a rate was measured, whether the
 matrix is to be made anew."""
 
-ERROR_NORM: Layout = {
+ERROR_NORM = Layout({
     "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
     "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
     "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL,
     "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
-}  # fmt: skip
+})  # fmt: skip
 """What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`).
 
 Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
@@ -213,13 +270,13 @@ which estimates are filtered; the order of the last step; the step up to which s
 which the test must let them grow else."""
 
 
-EVENT_SEARCH: Layout = {
+EVENT_SEARCH = Layout({
     "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
-}  # fmt: skip
+})  # fmt: skip
 """What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
 edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes.
 
@@ -240,7 +297,7 @@ def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
 
 def fill(table: np.ndarray, layout: Layout, values: Mapping[str, Any]) -> None:
     """Fill a table; cells for which no value is given keep theirs."""
-    own = cells(table, layout)
+    own = table.view(layout.cells)[0]
     for column, (name, kind) in enumerate(layout.items()):
         if kind in CELLS and name in values:
             own[name] = values[name]
@@ -253,12 +310,3 @@ def fill(table: np.ndarray, layout: Layout, values: Mapping[str, Any]) -> None:
             assert isinstance(value, np.ndarray) and value.flags.c_contiguous, name
             assert value.dtype == DTYPES[kind], name
             table[column] = value.__array_interface__["data"][0]
-
-
-def cells(table: np.ndarray, layout: Layout) -> Any:
-    """The cells of a table by name: ``cells(table, layout)["steps"]`` is read and set where it stands in the table."""
-    columns = {name: column for column, name in enumerate(layout) if layout[name] in CELLS}
-    formats = ["f8" if layout[name] == FLOAT_CELL else "i8" for name in columns]
-    offsets = [8 * column for column in columns.values()]
-    structure = {"names": list(columns), "formats": formats, "offsets": offsets, "itemsize": 8 * len(layout)}
-    return table.view(np.dtype(structure))[0]  # type: ignore[call-overload]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from .compiler import Compiled, compiled_routines
@@ -20,24 +21,29 @@ class Routine:
     module, name, signature : str
     others : tuple of (name, signature)
         Functions of the module that are compiled with it, as what they share is the most of each of them.
+    unrolled : bool
+        Whether its loops are unrolled, which is worth its time where they run over dense blocks.
     """
 
     module: str
     name: str
     signature: str
     others: Signatures = ()
+    unrolled: bool = False
 
-    def load(self) -> Callable[..., Any]:
+    @cached_property
+    def call(self) -> Callable[..., Any]:
         """The function, for calls from Python; pointers are passed as addresses."""
         return self._compiled().call
 
+    @cached_property
     def address(self) -> int:
         """The function's address, for calls from compiled code."""
         return self._compiled().address
 
     def _compiled(self) -> Compiled:
         together = tuple(sorted(((self.name, self.signature), *self.others)))
-        return compiled_routines(self.module, together)[self.name]
+        return compiled_routines(self.module, together, self.unrolled)[self.name]
 
 
 def together(module: str, **signatures: str) -> tuple[Routine, ...]:

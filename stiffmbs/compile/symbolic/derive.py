@@ -113,9 +113,9 @@ def derive(kind: Kind) -> Derived:
 def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     e, stated = symbols.element, stated_by_joint(kind, symbols)
     C, rates = sp.Matrix(stated.position), sp.Matrix(stated.velocity)
-    C_q = e.by_coordinates(C)
     V = sp.Matrix([*(e.rate(equation) for equation in C), *rates])
     J = e.by_velocities(V)
+    _refuse_rates_by_velocities(e, C)
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
             raise InputError(
@@ -136,7 +136,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     turning = e.rate(V)
     power = power_of_joint(e, V, lam)
     terms = {
-        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": C_q, "V": V, "J": J, "V_q": e.by_coordinates(V),
+        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": e.by_coordinates(C), "V": V, "J": J, "V_q": e.by_coordinates(V),
         "gamma": -turning,
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_velocities(turning),
@@ -145,6 +145,10 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "argument": _arguments(symbols),
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    first_state = e.n_coordinates - len(e.states)  # states are given: reactions and projections do not act on them
+    entries["C_x"] = [entry for entry in entries["C_q"] if entry.column >= first_state]
+    entries["C_q"] = [entry for entry in entries["C_q"] if entry.column < first_state]
+    entries["G_mu"] = [entry for entry in entries["G_mu"] if entry.row < first_state]
     entries["A_q"] = [
         LateEntry(partial(e.by_coordinate, row, column), r, column)
         for r, row in enumerate(J * e.a + turning)
@@ -157,8 +161,18 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         V.rows, C.rows, symbols, entries, [] if power == 0 else None,
         [variation.summands(entry.expression) for entry in entries["C_q"]],
         [variation.removable(C[r], [entry.column for entry in entries["C_q"] if entry.row == r]) for r in range(C.rows)],
-        [e.depends(equation, [e.t]) for equation in (*C, *rates)],
+        [e.depends(equation, [e.t, *e.states]) for equation in (*C, *rates)],
     )  # fmt: skip
+
+
+def _refuse_rates_by_velocities(e: SymbolicElement, C: sp.Matrix) -> None:
+    """Refuse constraints of positions with states whose rates follow velocities: J u' would not be what the reactions act on."""
+    for state, rate in zip(e.states, e.state_rates, strict=False):
+        if any(e.depends(equation, [state]) for equation in C) and e.depends(rate, e.velocities):
+            raise InputError(
+                "found a state whose rate follows velocities in a constraint of positions, expected one whose rate follows "
+                "positions, time and other states"
+            )
 
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
@@ -175,23 +189,42 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
-    return Derived(0, 0, symbols, {name: _entries(matrix) for name, matrix in terms.items()}, losses)
+    entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
+    entries |= _rates(e, sp.Matrix(stated.rates), e.own, joint_lam)
+    for name, of in (("f_alg", "f_q"), ("rate_alg", "rate_q")):
+        entries[name] = _of_algebraic(kind, e, entries[of])
+    return Derived(0, 0, symbols, entries, losses)
+
+
+def _rates(
+    e: SymbolicElement, rates: sp.Matrix, states: Sequence[sp.Symbol], joint_lam: Sequence[sp.Symbol]
+) -> dict[str, Sequence[Entry | LateEntry]]:
+    """The rates of states and their derivatives, in the rows of the states."""
+    rows = [e.n_coordinates - len(e.states) + e.states.index(state) for state in states]
+    terms = {"rate": rates, "rate_q": e.by_coordinates(rates), "rate_u": e.by_velocities(rates)}
+    terms["rate_lam"] = e.by(rates, joint_lam) if joint_lam else sp.zeros(0, 0)
+    return {name: [replace(entry, row=rows[entry.row]) for entry in _entries(matrix)] for name, matrix in terms.items()}
 
 
 def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
     """The rate of a state, in the row of that state, and what is reported of it."""
-    e, (formula,) = symbols.element, (symbols.element.formula,)
+    e, element = symbols.element, kind.element
+    formula = sp.sympify(element.rate(e) if issubclass(element, StateEquation) else e.formula)
     value = sp.Matrix([formula])
     joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
     terms = {"signal": value, "event_function": sp.Matrix(symbols.event_functions), "argument": _arguments(symbols)}
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
-    entries["signal"] = [Entry(sp.sympify(formula), 0)]
-    if issubclass(kind.element, StateEquation):
-        row = e.n_coordinates - len(e.states) + e.states.index(e.state)
-        rates = {"rate": value, "rate_q": e.by_coordinates(value), "rate_u": e.by_velocities(value)}
-        rates["rate_lam"] = e.by(value, joint_lam) if joint_lam else sp.zeros(0, 0)
-        entries |= {name: [replace(entry, row=row) for entry in _entries(matrix)] for name, matrix in rates.items()}
+    entries["signal"] = [Entry(formula, 0)]
+    if issubclass(element, StateEquation):
+        entries |= _rates(e, value, [e.state], joint_lam)
+        entries["rate_alg"] = _of_algebraic(kind, e, entries["rate_q"])
     return Derived(0, 0, symbols, entries, [])
+
+
+def _of_algebraic(kind: Kind, e: SymbolicElement, entries: Sequence[Entry | LateEntry]) -> list[Entry | LateEntry]:
+    """Those entries of a matrix that stand in the columns of algebraic states."""
+    first = e.n_coordinates - len(e.states)
+    return [entry for entry in entries if entry.column - first in kind.algebraic]
 
 
 def _arguments(symbols: Symbols) -> sp.Matrix:
@@ -203,7 +236,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
     """Z of p' = Z w, in the rows and columns of a body's coordinates and velocities, and d(Z w)/dq."""
     (body,) = e.frames
     Z, rates = sp.zeros(len(body.q), len(body.u)), sp.zeros(len(body.q), 1)
-    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:]))
+    Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:])) * sp.Matrix(body.followed).jacobian(body.u[3:])
     rates[3:, :] = Z[3:, 3:] * sp.Matrix(body.u[3:])
     return {"Z": Z, "Z_q": e.by_coordinates(rates)}
 

@@ -24,6 +24,8 @@ OF_ELEMENTS = (
     "frames",
     "angles",
     "states",
+    "own",
+    "state_rates",
     "breakpoints",
     "derivatives",
     "_rotations",
@@ -48,7 +50,11 @@ class SymbolicElement:
     frames : list of BodyFrame or of SpatialBodyFrame
         The bodies, in the order of `Element.bodies`.
     states : list of Symbol
-        States of the user's own, by slot.
+        States that it reads or determines, by slot.
+    own : list of Symbol
+        Those of the element's own, the first of them.
+    state_rates : tuple of Expr
+        Their rates, in the equations of joints.
     angles : list of expressions
         Those that count whole turns, in the order of their counters.
     breakpoints : list of expressions
@@ -60,10 +66,16 @@ class SymbolicElement:
     t = sp.Symbol("t", real=True)
 
     def __init__(
-        self, frames: list[Any], fields: dict[str, object], derivatives: Derivatives, states: list[sp.Symbol]
+        self,
+        frames: list[Any],
+        fields: dict[str, object],
+        derivatives: Derivatives,
+        states: list[sp.Symbol],
+        n_own: int = 0,
     ) -> None:
         self.frames = frames
-        self.states = states
+        self.states, self.own = states, states[:n_own]
+        self.state_rates: tuple[sp.Expr, ...] = ()
         self.angles: list[sp.Expr] = []
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
@@ -104,15 +116,16 @@ class SymbolicElement:
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
         x = self.read(x)
-        if self.depends(x, self.states):
+        if self.depends(x, self.states) and not self.state_rates:
             raise InputError("found a state in an expression whose rate is needed, expected coordinates and time alone")
         partial = self.derivatives.partial
+        own = (rate * partial(x, symbol) for symbol, rate in zip(self.states, self.state_rates, strict=False))
         moving = (
             rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
             for frame in self.frames
             for symbol, rate in frame.motion
         )
-        return sp.Add(*moving) + partial(x, self.t)
+        return sp.Add(*moving, *own) + partial(x, self.t)
 
     def named(self, x: Any) -> Any:
         """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
@@ -134,7 +147,7 @@ class SymbolicElement:
 
     @property
     def _state(self) -> list[sp.Symbol]:
-        return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, self.t]
+        return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, *self.states, self.t]
 
     def relative_rotation(self, i: Any, j: Any) -> RelativeRotation:
         """How a marker is turned against another one, of another body in space."""

@@ -31,11 +31,12 @@ TURNS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 class SpatialBodyFrame:
     """The coordinates q = (r, p), velocities u = (r', w) and accelerations a of one spatial body as symbols.
 
-    w is the angular velocity in the body's principal axes.
+    w is the angular velocity in the body's principal axes, and `spin` that one of these, if any, about which p doesn't follow it.
     """
 
     slot: int
     derivatives: Derivatives = field(compare=False)
+    spin: str = ""
     _carried: dict[tuple[sp.Expr, ...], sp.Matrix] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
@@ -126,9 +127,16 @@ class SpatialBodyFrame:
     @cached_property
     def motion(self) -> list[tuple[sp.Symbol, sp.Expr]]:
         """By what a function of the pose changes in time, and how fast: its rate is the sum of derivative times rate."""
-        p, w = sp.Matrix(self.q[3:]), sp.Matrix(self.u[3:])
-        turning = list(zip(self.q[3:], self.quaternion_rates(p) * w, strict=True))
-        return [*zip(self.q[:3], self.u[:3], strict=True), *zip(self.phi, self.omega, strict=True), *turning]
+        turning = list(
+            zip(self.q[3:], self.quaternion_rates(sp.Matrix(self.q[3:])) * sp.Matrix(self.followed), strict=True)
+        )
+        about_axes = zip(self.phi, self.carried(self.followed), strict=True)
+        return [*zip(self.q[:3], self.u[:3], strict=True), *about_axes, *turning]
+
+    @property
+    def followed(self) -> list[sp.Expr]:
+        """The angular velocity that the quaternion follows, in the principal axes."""
+        return [sp.Integer(0) if axis == self.spin else w for axis, w in zip("xyz", self.u[3:], strict=True)]
 
     @staticmethod
     def quaternion_rates(p: sp.Matrix) -> sp.Matrix:
@@ -153,10 +161,18 @@ class SpatialBodyFrame:
         """The same for each velocity: what moves with the body has the angular velocity in ground axes."""
         straight = [[(v, sp.Integer(1))] for v in self.u[:3]]
         turning = [
-            [*((omega, self.rotation[k, j]) for k, omega in enumerate(self.omega)), (w, sp.Integer(1))]
+            [
+                *((part, self.rotation[k, j]) for parts in self._turning_with(w) for k, part in enumerate(parts)),
+                (w, sp.Integer(1)),
+            ]
             for j, w in enumerate(self.u[3:])
         ]
         return straight + turning
+
+    def _turning_with(self, w: sp.Symbol) -> list[sp.Matrix]:
+        """The vectors in ground axes that have an angular velocity as a part in the principal axes."""
+        vectors = [self.omega, *([self.carried(self.followed)] if self.spin else [])]
+        return vectors if w in self.followed else vectors[:1]
 
     @property
     def pose(self) -> tuple[sp.Symbol, ...]:
@@ -166,7 +182,7 @@ class SpatialBodyFrame:
     @property
     def velocities(self) -> tuple[sp.Symbol, ...]:
         """By what functions of the velocities are differentiated."""
-        return (*self.u, *self.omega)
+        return (*self.u, *self.omega, *(self.carried(self.followed) if self.spin else ()))
 
     @property
     def vectors(self) -> dict[sp.Symbol, tuple[sp.Expr, ...]]:

@@ -31,6 +31,8 @@ class Stated:
     potential : Expr
     limits : tuple of Expr
     measured : tuple of Expr
+    rates : tuple of Expr
+        Of a force's own states.
     """
 
     point: tuple[sp.Expr, ...]
@@ -41,6 +43,7 @@ class Stated:
     potential: sp.Expr = sp.S.Zero
     limits: tuple[sp.Expr, ...] = ()
     measured: tuple[sp.Expr, ...] = ()
+    rates: tuple[sp.Expr, ...] = ()
 
 
 def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
@@ -79,8 +82,13 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
             f"{kind.element.__name__}.measured: found {len(measured)} expressions, expected one for each of its channels "
             f"({', '.join(kind.element.channels) or 'none'})"  # type: ignore[attr-defined]
         )
+    rates = asked.column("rates")
+    if len(rates) != kind.n_own:
+        raise InputError(
+            f"{kind.element.__name__}.rates: found {len(rates)} expressions, expected {kind.n_own}, one for each of its own_states"
+        )
     point, events = asked.column("point"), asked.event_functions()
-    found = Stated(point, events, powers=powers, potential=potential, limits=limits, measured=measured)
+    found = Stated(point, events, powers=powers, potential=potential, limits=limits, measured=measured, rates=rates)
     return asked.known(found)
 
 
@@ -102,6 +110,7 @@ def text_of(kind: Kind) -> str:
             stated.potential,
             stated.limits,
             stated.measured,
+            stated.rates,
         )
     ]
     powers = [(sp.srepr(effort), sp.srepr(rate)) for effort, rate in stated.powers]
@@ -150,6 +159,7 @@ class _Asked:
             (stated.potential,),
             stated.limits,
             stated.measured,
+            stated.rates,
         )
         parts = [x for column in (*columns, *stated.powers) for x in column]
         meant = self.symbols.known()

@@ -109,10 +109,12 @@ def symbols_of(kind: Kind) -> Symbols:
     frames = (
         [planar_frames.BodyFrame(slot) for slot in slots]
         if kind.dimensions == 2
-        else [spatial_frames.SpatialBodyFrame(slot, derivatives) for slot in slots]
+        else [
+            spatial_frames.SpatialBodyFrame(slot, derivatives, kind.spins[slot] if kind.spins else "") for slot in slots
+        ]
     )
     states = [sp.Symbol(f"{STATE}{slot}", real=True) for slot in range(kind.n_states)]
-    symbols = Symbols(SymbolicElement(frames, {}, derivatives, states))
+    symbols = Symbols(SymbolicElement(frames, {}, derivatives, states, kind.n_own))
     builder = _Builder(kind.dimensions, symbols)
     symbols.element.__dict__.update({name: builder.made(name, shape) for name, shape in kind.fields})
     return symbols

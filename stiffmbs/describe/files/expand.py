@@ -57,6 +57,16 @@ def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
         raise InputError(f"--set {path}: found no such place in the scene")
 
 
+def unshared(found: Any) -> Any:
+    """A copy in which what aliases of YAML stand for is there several times, so that a change of one changes no other."""
+    match found:
+        case dict():
+            return {key: unshared(value) for key, value in found.items()}
+        case list():
+            return [unshared(value) for value in found]
+    return found
+
+
 def _keys(place: Any, path: str) -> list[str]:
     """The keys of a path; what a mapping has under a name with dots is one key."""
     keys: list[str] = []

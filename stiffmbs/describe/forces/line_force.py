@@ -34,6 +34,9 @@ class ForceAlongLine(Force, Generic[M]):
         if model.at_one_place(self.i, self.j):
             yield "found both of its points at one place, where its force has no direction, expected them apart"
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point", "j": "point"}
+
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         """The force on the distance of the points."""

@@ -46,6 +46,9 @@ class LineSpring(Spring, Generic[M]):
                 "neither free_length nor preload"
             )
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point", "j": "point"}
+
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         length = e.distance(e.i.point, e.j.point)

@@ -22,6 +22,9 @@ class Weight(Force):
     mass: si.Mass
     gravity: tuple[si.Acceleration, ...]
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "body"}
+
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
         return [(e.mass * g, x) for g, x in zip(e.gravity, e.i.body.origin, strict=True)]
@@ -34,4 +37,5 @@ class Weight(Force):
 def weights(bodies: Mapping[str, Any], gravity: tuple[float, ...]) -> Iterator[tuple[str, Weight]]:
     """The weights of bodies, of the plane or of space, by the bodies' names, if there is gravity."""
     for name, body in bodies.items() if any(gravity) else ():
-        yield name, Weight(i=MarkerReference(body=name), mass=body.mass, gravity=gravity)
+        marker = MarkerReference.model_construct(body=name)
+        yield name, Weight.model_construct(i=marker, mass=body.mass, gravity=gravity)  # checked already

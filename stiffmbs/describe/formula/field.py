@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Collection, Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
@@ -226,8 +226,9 @@ class FormulaOf:
         Their dimensions, of `stiffmbs.describe.units.units.DIMENSIONS`.
     dimension : str
         That of the value; `ANY` where every one will do.
-    time, coordinates, velocities, table : bool
-        Whether t, body coordinates and measures, and their rates may occur, and a table may stand in its place.
+    time, coordinates, velocities, table, states : bool
+        Whether t, body coordinates and measures, and their rates may occur, a table may stand in its place, and states may
+        occur where coordinates may not.
     """
 
     variables: tuple[str, ...] = ()
@@ -237,6 +238,7 @@ class FormulaOf:
     coordinates: bool = False
     velocities: bool = False
     table: bool = False
+    states: bool = False
 
     def read(self, found: Any, info: ValidationInfo) -> Formula | Table:
         """The checked formula or table of what stands in the scene."""
@@ -250,8 +252,8 @@ class FormulaOf:
         context = info.context or {}
         parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
         names = names_of(info)
-        if (
-            info.context is None and self.coordinates
+        if info.context is None and (
+            self.coordinates or self.states
         ):  # built in Python, where the model that it will belong to is not known
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
         formula = self._made(found, parameters, tables, variables, names)
@@ -291,7 +293,7 @@ class FormulaOf:
         return (*MEASURES, *(REACTIONS if self.velocities else ())) if self.coordinates else ()
 
     def quantities(
-        self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Container[str] = ()
+        self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Collection[str] = ()
     ) -> Iterator[tuple[str, Quantity]]:
         """The parameters, units and constants in a tree, in which other names may be states.
 
@@ -307,16 +309,20 @@ class FormulaOf:
                         raise FormulaError(f"found '{name}' after a number in '{quoted(text)}', expected a unit")
                     yield f"{UNIT}.{name}", UNITS[name]
                 case ast.Name(name) if name != TIME and name not in self.variables and name not in states:
-                    yield name, self._quantity(name, text, tree, known)
+                    yield name, self._quantity(name, text, tree, known, states)
 
-    def _quantity(self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Quantity:
+    def _quantity(
+        self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Collection[str]
+    ) -> Quantity:
         stated = not self.variables or any(map(is_unit, ast.walk(tree)))
         units = UNITS if stated else {}  # a lone s in a law of v would be a second
         if name in known or name in units or name in CONSTANTS:
             return of_name(name, text, tree, known, units)
         meanings = [*self.variables, *(["t"] if self.time else [])]
         meanings += ["a body's coordinate such as cart.x"] if self.coordinates else []
-        expected = ", ".join([*meanings, "a parameter of the scene"])
+        meanings += ["a parameter of the scene"]
+        meanings += [f"a state or input ({', '.join(states)})"] if states and (self.coordinates or self.states) else []
+        expected = ", ".join(meanings)
         raise FormulaError(f"found the unknown name '{name}' in '{quoted(text)}', expected {expected}")
 
     def dimension_of(
@@ -348,7 +354,7 @@ class FormulaOf:
             raise FormulaError(
                 f"found {reactions[0]} in '{formula.text}', expected a formula without reactions of joints"
             )
-        used += [name for name in formula.states if name not in inputs]
+        used += [name for name in formula.states if name not in inputs and not self.states]
         if used and not self.coordinates:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
         check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)
@@ -365,6 +371,8 @@ class FormulaOf:
 
 OfTime = Annotated[Formula | Table, FormulaOf(table=True)]
 """A formula or a table of time."""
+OfTimeAndStates = Annotated[Formula | Table, FormulaOf(table=True, states=True)]
+"""The same with states in it."""
 OfPosition = Annotated[Formula, FormulaOf(coordinates=True)]
 """A formula of coordinates and time."""
 OfMotion = Annotated[Formula, FormulaOf(coordinates=True, velocities=True)]

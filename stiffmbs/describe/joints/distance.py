@@ -24,6 +24,9 @@ class Rod(Joint, Generic[M]):
     j: M = Field(description="marker of the second body")
     length: Annotated[float, Measured("length", above=0)] = Field(description="L, from point to point, m")
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point", "j": "point"}
+
     @staticmethod
     def position(e: Symbolic) -> Any:
         d = e.i.point - e.j.point

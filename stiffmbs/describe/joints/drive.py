@@ -12,7 +12,7 @@ from ..element import Joint, JointReference, Symbolic
 from ..exactly_one import exactly_one
 from ..files.quoted import quoted
 from ..formula.dimension import UNKNOWN, Known, measured_in, product
-from ..formula.field import Formula, OfPosition, OfTime
+from ..formula.field import Formula, OfPosition, OfTimeAndStates
 from ..formula.text import FormulaError
 from ..joint_reference import unfit_joints
 from ..marker import MarkerReference
@@ -26,10 +26,11 @@ ANGULAR_VELOCITY = measured_in("angular velocity")
 
 
 class Drive(Joint):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time prescribes.
+    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes.
 
     With a position s(t): coordinate - s(t) = 0; with a velocity v(t): d(coordinate)/dt - v(t) = 0, an equation that has
-    no position form, so that the coordinate starts where it is drawn.  Haug, Computer Aided Kinematics and Dynamics of
+    no position form, so that the coordinate starts where it is drawn.  Both may follow states; the rate of one in a position must
+    not follow velocities.  Haug, Computer Aided Kinematics and Dynamics of
     Mechanical Systems (1989), section 3.5.
 
     The reaction is what the motor does to its first body: ``motor.torque`` on an angle, ``motor.fx motor.fy`` along a
@@ -65,10 +66,12 @@ class Drive(Joint):
     driven: OfPosition | None = Field(
         None, alias="coordinate", description="what is driven, in place of a joint: crank.angle, dm(bar.end, ground)"
     )
-    prescribed_position: OfTime | None = Field(
+    prescribed_position: OfTimeAndStates | None = Field(
         None, alias="position", description="angle, rad, or displacement, m, over time"
     )
-    prescribed_velocity: OfTime | None = Field(None, alias="velocity", description="rate over time, rad/s or m/s")
+    prescribed_velocity: OfTimeAndStates | None = Field(
+        None, alias="velocity", description="rate over time, rad/s or m/s"
+    )
 
     @field_validator("driven")
     @classmethod

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import copy
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from pydantic import ValidationError as PydanticError
-
 from ...errors import InputError
 from ..body import check_names
-from ..fields import sentence
 from ..files.expand import repeat_entries, set_value
 from ..files.quoted import written
 from ..units.units import Quantity
+from .definitions import NAMED, Definitions, definition_in_components
+from .mounts import mounts_of
 from .names import MOUNT, beginnings
+from .options import OPTIONS, refuse_unknown_choices, with_chosen
 from .parameters import parameters_of
 from .use import Use
+from .vectors import Vectors, parameters_in_components, vectors_of
 
-NAMED = ("bodies", "states", "joints", "forces", "requests")
-"""What a part holds by names that formulas and other entries may use."""
 REPEATED = ("bodies", "states", "joints", "forces")
-KEYS = ("parameters", "markers", *NAMED, "use")
 MOST_NESTED = 10
 """Parts within parts."""
 MOST_INSTANCES = 10_000
@@ -50,6 +46,10 @@ class Instance:
         The instance that it stands in.
     inner : tuple of str
         The names of instances that stand in it, as it calls them.
+    mounts : mapping of str to str
+        Further bodies that it connects to: what it calls each, and the body where the part stands.
+    words : mapping of str to str
+        The words that were chosen for it and for what stands in it, by choice.
     """
 
     name: str
@@ -59,6 +59,8 @@ class Instance:
     parameters: Mapping[str, Quantity]
     outer: Instance | None = None
     inner: tuple[str, ...] = ()
+    mounts: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def where(self) -> str:
@@ -81,17 +83,16 @@ class Instances:
 
     Attributes
     ----------
-    parts : mapping
-        The definitions.
-    kind : type of Use
-        Of the plane or of space.
+    definitions : Definitions
     changes : list of (path, value)
         What is set in instances from outside; what is found is taken out of the list.
+    words : mapping of str to str
+        What the scene chooses, by choice.
     """
 
-    parts: Any
-    kind: type[Use]
+    definitions: Definitions
     changes: list[tuple[str, Any]]
+    words: Mapping[str, str]
     values: int = 0
     found: list[Instance] = field(default_factory=list)
 
@@ -110,61 +111,51 @@ class Instances:
             raise InputError(f"{where}: found {written(used)}, expected a mapping of names to parts")
         for name, entry in repeat_entries(where, used, parameters).items():
             _check_name(where, name)
-            use = self._use(f"{where}.{name}", entry, parameters)
+            use, own = self.definitions.use(f"{where}.{name}", entry, parameters)
             above = [*_above(outer)]
             if use.part in (one.part for one in above):
                 raise InputError(f"{where}.{name}: found '{use.part}', which it stands in, expected another part")
             if depth >= MOST_NESTED:
                 raise InputError(f"{where}.{name}: found parts nested deeper than {MOST_NESTED}, expected fewer")
-            self._add(f"{outer.name}.{name}" if outer else name, use, f"{where}.{name}", parameters, outer, depth)
+            words = {**(outer.words if outer else self.words), **own}
+            self._add(
+                f"{outer.name}.{name}" if outer else name, use, words, f"{where}.{name}", parameters, outer, depth
+            )
 
-    def _use(self, where: str, entry: Any, parameters: Mapping[str, Quantity]) -> Use:
-        if not isinstance(entry, dict):
-            raise InputError(f"{where}: found {written(entry)}, expected a mapping with 'part'")
-        try:
-            use = self.kind.model_validate(entry, context={"parameters": parameters})
-        except PydanticError as error:
-            message = sentence(error)
-            raise InputError(
-                f"{where}{'' if message.startswith('found') else '.'}{': ' if message.startswith('found') else ''}{message}"
-            ) from None
-        if not isinstance(self.parts, dict) or use.part not in self.parts:
-            known = ", ".join(map(str, self.parts)) if isinstance(self.parts, dict) else ""
-            raise InputError(f"{where}.part: found '{use.part}', expected one of parts ({known or 'none'})")
-        return use
+    def refuse_unknown_choices(self, known: Iterable[str]) -> None:
+        """Refuse what the scene chooses where neither it nor any part in it has that choice."""
+        of_parts = {choice for one in self.found for choice in self.definitions.choices(one.part)}
+        refuse_unknown_choices(self.words, of_parts | set(known))
 
     def _add(
-        self, name: str, use: Use, where: str, parameters: Mapping[str, Quantity], outer: Instance | None, depth: int
-    ) -> None:
+        self, name: str, use: Use, words: Mapping[str, Any], where: str, parameters: Mapping[str, Quantity],
+        outer: Instance | None, depth: int,
+    ) -> None:  # fmt: skip
         if len(self.found) >= MOST_INSTANCES:
             raise InputError(f"{where}: found more than {MOST_INSTANCES} parts in their places, expected fewer")
-        definition = self._definition(use.part)
-        own = parameters_of(use, where, definition.get("parameters"), parameters)
+        found = self.definitions.of(use.part)
+        self._count(where, found)
+        definition = with_chosen(found, words, f"parts.{use.part}.{OPTIONS}")
         self._set(name, definition)
+        vectors = vectors_of(definition.get("parameters"), f"parts.{use.part}.parameters")
+        use = use.model_copy(
+            update={"parameters": parameters_in_components(use.parameters, vectors, f"{where}.parameters")}
+        )
+        definition = definition_in_components(definition, vectors, f"parts.{use.part}")
+        own = parameters_of(use, where, definition.get("parameters"), parameters)
         sections = {
             section: repeat_entries(f"parts.{use.part}.{section}", definition[section], own) if section in REPEATED else definition[section]
             for section in (*NAMED, "markers") if definition.get(section) is not None
         }  # fmt: skip
         used = definition.get("use") or {}
         inner = tuple(repeat_entries(f"parts.{use.part}.use", used, own)) if isinstance(used, dict) else ()
-        _check_sections(use.part, sections, inner)
+        _check_sections(use.part, sections, inner, vectors)
+        mounts = mounts_of(definition.get("mounts"), use, where)
         self._count(where, sections)
-        instance = Instance(name, use.part, use, sections, own, outer, inner)
+        instance = Instance(name, use.part, use, sections, own, outer, inner, mounts, words)
         self.found.append(instance)
         if used:
             self.read(used, own, instance, depth + 1)
-
-    def _definition(self, part: str) -> dict[str, Any]:
-        found = self.parts[part]
-        if not isinstance(found, dict):
-            raise InputError(f"parts.{part}: found {written(found)}, expected a mapping with 'bodies'")
-        for key in found:
-            if key not in KEYS:
-                raise InputError(
-                    f"parts.{part}: found the unknown key {written(key)}, expected one of {', '.join(KEYS)}"
-                )
-        self._count(f"parts.{part}", found)
-        return copy.deepcopy(found)
 
     def _count(self, where: str, found: Any) -> None:
         self.values += _size(found, MOST_VALUES)
@@ -183,19 +174,6 @@ class Instances:
                 self.changes.remove(change)
 
 
-def set_in_instances(path: str, used: Any) -> bool:
-    """Whether a path leads to an entry of an instance, which is not written in the scene: ``bodies.front.left.arm.mass``."""
-    section, _, rest = path.partition(".")
-    if section not in (*NAMED, "markers") or not isinstance(used, dict):
-        return False
-    return any(re.match(rf"{_any_number(str(name))}\.", rest) for name in used)
-
-
-def _any_number(name: str) -> str:
-    """A name of a repeated entry as a regular expression."""
-    return ".+?".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", name))
-
-
 def _above(instance: Instance | None) -> Iterator[Instance]:
     while instance is not None:
         yield instance
@@ -211,8 +189,8 @@ def _check_name(where: str, name: Any) -> None:
         raise InputError(f"{where}.{name}: found the name of what a part is placed on, expected another")
 
 
-def _check_sections(part: str, sections: Mapping[str, Any], inner: Sequence[str]) -> None:
-    seen = dict.fromkeys(inner, "use")
+def _check_sections(part: str, sections: Mapping[str, Any], inner: Sequence[str], vectors: Vectors) -> None:
+    seen = {**dict.fromkeys(inner, "use"), **dict.fromkeys(vectors, "parameters")}
     for section, entries in sections.items():
         where = f"parts.{part}.{section}"
         if not isinstance(entries, dict):

@@ -7,6 +7,7 @@ sign would be a wrong number.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,15 +36,18 @@ class Mirror:
         Of the part, in ground axes.
     part
         Its sections, validated, with their short names, as they are without the mirror.
+    mounts : collection of str
+        What the part calls the bodies that it is placed on.
     """
 
     name: str
     frame: Any
     part: Any
+    mounts: Collection[str]
 
     def inside(self, marker: MarkerReference) -> bool:
         """Whether a marker is on a body of the part, or on its mount as a marker of the part."""
-        own = f"{marker.marker}.".startswith(f"{self.name}.") if marker.marker else marker.body == MOUNT
+        own = f"{marker.marker}.".startswith(f"{self.name}.") if marker.marker else marker.body in self.mounts
         return own or f"{marker.body}.".startswith(f"{self.name}.")
 
     def mirrored(self, element: Element, where: str) -> Element:
@@ -66,6 +70,22 @@ class Mirror:
                 alias = type(element).model_fields[name].alias or name
                 raise InputError(f"{where}.{alias}: {error} (in {self.name})") from None
         return element.model_copy(update=changed)
+
+    def mirrored_state(self, state: Any, where: str) -> Any:
+        """A state, or a system of such, that has the same value in the mirror image: its formulas see mirrored coordinates.
+
+        Raises
+        ------
+        InputError
+            For a formula whose mirror image is not known.
+        """
+        changed = {}
+        for name in type(state).model_fields:
+            try:
+                changed[name] = self._image(getattr(state, name), 1.0, law=False)
+            except FormulaError as error:
+                raise InputError(f"{where}.{name}: {error} (in {self.name})") from None
+        return state.model_copy(update=changed)
 
     def _field(self, element: Element, name: str, where: str) -> Any:
         value, way = getattr(element, name), (element.reflected or {}).get(name, "same")
@@ -116,7 +136,7 @@ class Mirror:
         return signs, turned
 
     def _own(self, marker: MarkerReference) -> bool:
-        return marker.body == MOUNT or self.inside(marker)
+        return marker.body in self.mounts or self.inside(marker)
 
     def _coordinate(self, joint: JointName | None) -> float:
         """The sign of a joint's coordinate."""
@@ -142,15 +162,17 @@ class Mirror:
                 return tuple(self._image(x, sign, law) for x, sign in zip(value, each, strict=True))
             case Formula() | Table():
                 return mirrored_law(value, MirroredNames(self.frame, self._own), signs, signs if law else 1.0)
+            case bool():
+                return value
             case int() | float():
-                return signs * value or 0.0
+                return value if signs == 1.0 else signs * value or 0.0
         return value
 
     def _marker(self, marker: MarkerReference, way: str) -> Any:
         """A marker on the part's own bodies in its mirror image; `way` is the axis whose direction matters, if any."""
         if way in ("x", "y", "z") and self._own(marker) and self.frame.signs["xyz".index(way)] < 0:
             marker = self.frame.half_turned(self._placed(marker), way)
-        if marker.body in (MOUNT, GROUND) or marker.marker is not None or not self.inside(marker):
+        if marker.body in (*self.mounts, GROUND) or marker.marker is not None or not self.inside(marker):
             return marker
         return marker if marker.placement() is None else self.frame.mirror().placed(marker)
 

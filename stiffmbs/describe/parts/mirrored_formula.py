@@ -95,7 +95,7 @@ def _signed(node: ast.expr, sign: float) -> ast.expr:
 
 
 def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, argument: float) -> Formula | Table:
-    """value * f(argument * x), with the mirror images of coordinates, of a formula or table f.
+    """value * f(argument * x), with the mirror images of coordinates, of a formula or table f; states keep their values.
 
     Parameters
     ----------
@@ -111,8 +111,6 @@ def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, arg
         raise FormulaError(
             f"found '{name}({joint})' in a mirrored part, expected a formula without reactions of joints"
         )
-    if found.states:
-        raise FormulaError(f"found the state '{found.states[0]}' in a mirrored part, expected a formula without states")
     tree = names.visit(copy.deepcopy(found.tree))
     if argument < 0:
         tree = _Negated(found.variables).visit(tree)

@@ -33,6 +33,8 @@ class Names:
         All states and inputs of the scene, by their full names, and what is known of their dimensions.
     inputs : frozenset of str
         The inputs among them, which formulas of time may use too.
+    mounts : frozenset of str
+        Within a part: what it calls the bodies that it is placed on.
     """
 
     bodies: frozenset[str] = frozenset()
@@ -40,6 +42,7 @@ class Names:
     values: Mapping[str, ast.expr] = field(default_factory=dict)
     states: Mapping[str, Known] = field(default_factory=dict)
     inputs: frozenset[str] = frozenset()
+    mounts: frozenset[str] = frozenset()
 
     @cached_property
     def dotted(self) -> bool:

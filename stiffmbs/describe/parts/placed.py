@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import functools
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pydantic import ValidationError as PydanticError
@@ -23,8 +24,9 @@ from ..formula.variables import meant_within
 from ..marker import MarkerReference
 from ..states.inputs import dimension_of_input
 from ..states.section import dimensions_of_entry, refuse_other_meanings
-from ..units.units import in_text
-from .instances import NAMED, Instance, Instances
+from ..units.units import Quantity, in_text
+from .definitions import NAMED, Definitions
+from .instances import Instance, Instances
 from .mirrored import Mirror
 from .names import GROUND, MOUNT, Names
 
@@ -55,9 +57,10 @@ def with_parts(
     raw = {key: dict(value) if isinstance(value, dict) else value for key, value in raw.items()}
     parts, used = raw.pop("parts", None), raw.pop("use", None)
     left = list(changes)
-    instances = Instances(parts, _frame_kind(scene)[0], left)
+    instances = Instances(Definitions(parts, _frame_kind(scene)[0]), left, context["words"])
     if used is not None:
         instances.read(used, context["parameters"])
+    instances.refuse_unknown_choices(context["choices"])
     for path, _ in left:
         raise InputError(f"--set {path}: found no such place in the scene")
     bodies = [*_keys(raw.get("bodies")), *(name for one in instances.found for name in one.names("bodies"))]
@@ -112,6 +115,22 @@ def _sections(scene: Any) -> Any:
     return create_model("Part", __base__=Described, **fields)
 
 
+class _Values(Mapping[str, ast.expr]):
+    """Parameters as the numbers with units that stand in their places, each read when a formula has it."""
+
+    def __init__(self, found: Mapping[str, Quantity]) -> None:
+        self._found = found
+
+    def __getitem__(self, name: str) -> ast.expr:
+        return parse(str(in_text(self._found[name])))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+
 @dataclass
 class _Placed:
     raw: dict[str, Any]
@@ -124,31 +143,27 @@ class _Placed:
         """Put all entries of an instance into the scene."""
         on, frame = self._mount(instance)
         self.mounts[instance.name] = on, frame
-        self._add_markers(on, {instance.name: frame.placed(self.scene.origin)})
-        local = instance.local() | {MOUNT: f"{on}.{instance.name}"}
-        own = {
-            name: parse(str(in_text(value)))
-            for name, value in instance.parameters.items()
-            if self.context["parameters"].get(name) != value
-        }
-        names = Names(
-            self.context["names"].bodies, local, own, self.context["names"].states, self.context["names"].inputs
-        )
+        in_ground = self._pose(on).then(frame)
+        mounts = {MOUNT: (on, frame), **self._further_mounts(instance, in_ground)}
+        for body, own_frame in mounts.values():
+            self._add_markers(body, {instance.name: own_frame.placed(self.scene.origin)})
+        local = instance.local() | {name: f"{body}.{instance.name}" for name, (body, _) in mounts.items()}
+        outside = self.context["parameters"]
+        own = _Values({name: value for name, value in instance.parameters.items() if outside.get(name) != value})
+        names = replace(self.context["names"], local=local, values=own, mounts=frozenset(mounts))
         found = self._read(instance, names)
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
-        in_ground = self._pose(on).then(frame)
         for name, body in found.bodies.items():
             self._put("bodies", instance, name, in_ground.placed_body(body))
-        mirror = Mirror(instance.name, in_ground, found) if -1.0 in frame.signs else None
+        mirror = Mirror(instance.name, in_ground, found, tuple(mounts)) if -1.0 in frame.signs else None
         for section in ("joints", "forces"):
             for name, element in getattr(found, section).items():
                 where = f"{instance.where}.{section}.{name}"
                 moved = mirror.mirrored(element, where) if mirror else element
-                self._put(section, instance, name, _on_mount(moved, instance.name, on, frame))
-        if mirror and found.states:
-            raise InputError(f"{instance.where}.states: found states in a mirrored part, expected a part without")
+                self._put(section, instance, name, _on_mounts(moved, instance.name, mounts))
         for name, state in found.states.items():
-            self._put("states", instance, name, state)
+            where = f"{instance.where}.states.{name}"
+            self._put("states", instance, name, mirror.mirrored_state(state, where) if mirror else state)
         for name, request in found.requests.items():
             self._put("requests", instance, name, request)
 
@@ -181,6 +196,29 @@ class _Placed:
                 "the part, or one of a part above"
             )
         return body, frame.mirror().then(own)
+
+    def _further_mounts(self, instance: Instance, in_ground: Any) -> dict[str, tuple[str, Any]]:
+        """The other bodies that an instance connects to, by what it calls them, and the part's frame in their axes."""
+        inside = Names(local=instance.outer.local()) if instance.outer else Names()
+        found = {}
+        for name, given in instance.mounts.items():
+            body = self._named(given, instance, inside)
+            if body != GROUND and body not in self._entries("bodies"):
+                raise InputError(
+                    f"use.{instance.name}.mounts.{name}: found '{given}', expected mount, ground, a body of the scene, or one of a "
+                    "part above"
+                )
+            found[name] = body, self._pose(body).inverse().then(in_ground)
+        return found
+
+    def _named(self, given: str, instance: Instance, inside: Names) -> str:
+        """The full name of the body that a use gives for a further mount."""
+        if given == MOUNT:
+            return self.mounts[instance.name][0]
+        if instance.outer and given in instance.outer.mounts:
+            outer = instance.outer
+            return self._named(outer.mounts[given], outer, Names(local=outer.outer.local()) if outer.outer else Names())
+        return inside.full(given)
 
     def _pose(self, on: str) -> Any:
         frame = _frame_kind(self.scene)[1]
@@ -220,13 +258,13 @@ class _Placed:
         return entries
 
 
-def _on_mount(element: Element, name: str, on: str, frame: Any) -> Element:
-    """An element of a part with its markers on ``mount`` on the body that the part is placed on."""
+def _on_mounts(element: Element, name: str, mounts: Mapping[str, tuple[str, Any]]) -> Element:
+    """An element of a part with its markers on what it calls its mounts on the bodies that these are."""
     moved = {}
     for field_name in type(element).model_fields:
         value = getattr(element, field_name)
-        if isinstance(value, MarkerReference) and value.body == MOUNT:
-            moved[field_name] = _marker_on(value, name, on, frame)
+        if isinstance(value, MarkerReference) and value.body in mounts:
+            moved[field_name] = _marker_on(value, name, *mounts[value.body])
     return element.model_copy(update=moved) if moved else element
 
 

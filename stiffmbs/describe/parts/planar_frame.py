@@ -59,6 +59,11 @@ class PlanarFrame:
         """The mirror alone, which is what points and axes on a mirrored body undergo in that body's own axes."""
         return type(self)(signs=self.signs)
 
+    def inverse(self) -> Self:
+        """What takes points outside back into this frame, which must not be mirrored."""
+        x, y = type(self)(angle=-self.angle).turned(self.point)
+        return type(self)((-x, -y), -self.angle)
+
     def then(self, inner: PlanarFrame) -> Self:
         """The frame within this one of a part within the part."""
         signs = self.signs[0] * inner.signs[0], self.signs[1] * inner.signs[1]

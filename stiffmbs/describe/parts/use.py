@@ -21,11 +21,16 @@ class Use(Described):
         The body that it is placed on, its ``mount``: ground, and within a part that part's own mount, unless given.
     parameters : mapping
         Values of the part's parameters that differ from its own; formulas of the parameters where the entry stands.
+    mounts : mapping
+        Bodies in place of those that the part connects to besides its mount.
     """
 
     part: str = Field(description="which of the parts")
     on: str | None = Field(None, description="the body that it is placed on; ground unless given")
     parameters: dict[str, Any] = Field(default_factory=dict, description="values of the part's parameters")
+    mounts: dict[str, str] = Field(
+        default_factory=dict, description="further bodies that the part connects to, by what it calls them"
+    )
 
 
 class PlanarUse(Use):

@@ -102,9 +102,11 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
 
 def channels_of_states(model: Any) -> set[str]:
     """What is reported of states: their values and rates."""
-    values = {full for name, state in model.states.items() for full, _ in state.values(name)}
+    values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
-    return values | outputs | {f"{name}.rate" for name in values}
+    return (
+        set(model.state_values()) | outputs | {f"{name}.rate" for name, value in values.items() if not value.algebraic}
+    )
 
 
 def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:

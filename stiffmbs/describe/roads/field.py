@@ -17,6 +17,7 @@ from ..files.quoted import quoted, written
 from .cosine_bump import CosineBump
 from .flat import FlatRoad
 from .formula import FormulaRoad
+from .grid import GridRoad
 from .iso8608 import Iso8608Road
 from .profile import TableRoad
 from .road import Road
@@ -24,7 +25,10 @@ from .sine_sweep import SineSweep
 from .step import StepRoad
 
 ROADS: Mapping[str, type[Road]] = MappingProxyType(
-    {road.kind: road for road in (FlatRoad, FormulaRoad, TableRoad, StepRoad, CosineBump, SineSweep, Iso8608Road)}
+    {
+        road.kind: road
+        for road in (FlatRoad, FormulaRoad, TableRoad, GridRoad, StepRoad, CosineBump, SineSweep, Iso8608Road)
+    }
 )
 """The kinds of roads."""
 

@@ -10,6 +10,7 @@ from ..element import Symbolic
 from ..table import Table
 from ..units import si
 from .road import Road, clipped
+from .rolling_filter import through_filter
 
 
 class TableRoad(Road):
@@ -25,6 +26,9 @@ class TableRoad(Road):
     left: Table | None = Field(None, description="height over x at y = track/2 and beyond")
     right: Table | None = Field(None, description="height over x at y = -track/2 and beyond")
     track: si.PositiveLength | None = Field(None, description="distance of the tracks left and right, m")
+    filter_radius: si.PositiveLength | None = Field(
+        None, description="of a disc, m: the heights are those that it rolls on; those of the profile by default"
+    )
 
     @field_validator("profile", "left", "right", mode="before")
     @classmethod
@@ -43,6 +47,11 @@ class TableRoad(Road):
         if (self.profile is None) == (None in two) or (self.profile is not None and two != (None, None, None)):
             raise ValueError("found neither or both, expected a 'profile', or 'left', 'right' and 'track'")
         return self
+
+    def in_equations(self) -> dict[str, Any]:
+        own = dict(super().in_equations())
+        filtered = {name: own[name] for name in ("profile", "left", "right") if own[name] is not None}
+        return {**own, **{name: through_filter(table, own["filter_radius"]) for name, table in filtered.items()}}
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

@@ -29,7 +29,7 @@ def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     if min(angle, 180 - angle) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found the z axes of its markers drawn {angle:.4g} degrees apart, expected less than {FARTHEST:g} or more "
-            f"than {180 - FARTHEST:g} (the joint holds them parallel, in one sense or the other)"
+            f"than {180 - FARTHEST:g} (the joint holds them parallel or opposite)"
         )
 
 
@@ -78,7 +78,7 @@ def initially_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) ->
     if min(twist, 180 - twist) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found its shafts drawn {twist:.4g} degrees twisted against each other, expected less than {FARTHEST:g} or "
-            f"more than {180 - FARTHEST:g} (the joint holds their x axes parallel where the shafts are in line)"
+            f"more than {180 - FARTHEST:g} (the joint holds their x axes parallel)"
         )
 
 
@@ -88,7 +88,7 @@ def initially_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     if min(_angle(turned @ half) for half in HALF_TURNS) >= FARTHEST - ANGLE_ROUNDING:
         yield (
             f"found the axes of its markers drawn {_angle(turned):.4g} degrees apart, expected less than {FARTHEST:g}, "
-            "from no turn or from half a turn about one of the axes (the joint holds each along its namesake)"
+            "from no turn or from half a turn about an axis (the joint holds each along its namesake)"
         )
 
 

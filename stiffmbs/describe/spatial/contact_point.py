@@ -108,16 +108,13 @@ def _motion(e: Symbolic, centre: Any, axis: Any, arm: Any) -> tuple[Any, Any]:
     return spin, e.named(v + (omega - spin * axis).cross(arm))
 
 
-def slips(e: Symbolic, contact: ContactPoint, rolling_radius: Any, slow: Any) -> tuple[Any, Any, Any]:
-    """Longitudinal slip, slip angle and the speed that they refer to.
+def slips(e: Symbolic, contact: ContactPoint, sliding: Any, slow: Any) -> tuple[Any, Any, Any]:
+    """Longitudinal slip, tangent of the slip angle, and the speed that they refer to, in the steady state.
 
-    kappa = (Re Omega - Vx)/V and alpha = atan(Vy/V), with V = abs(Vx), below the speed `slow` (slow^2 + Vx^2)/(2 slow): smooth
-    through a standstill.
+    kappa = -Vsx/V and tan(alpha) = Vy/V, with the sliding velocity Vsx = Vx - Re Omega and V = abs(Vx), below the speed `slow`
+    (slow^2 + Vx^2)/(2 slow): smooth through a standstill.
     """
-    from sympy import atan
-
     forward = magnitude(contact.vx)
     missing = above_zero(e.named(slow - forward))
     speed = e.named(forward + missing**2 / (2 * slow))
-    slip = e.named((rolling_radius * contact.spin - contact.vx) / speed)
-    return slip, e.named(atan(contact.vy / speed)), speed
+    return e.named(-sliding / speed), e.named(contact.vy / speed), speed

@@ -70,4 +70,4 @@ class Marker(MarkerReference):
 
     def placement(self) -> Placement:
         """Where it sits on its body, as given on the spot."""
-        return Placement(point=self.point, orientation=self.orientation)
+        return Placement.model_construct(point=self.point, orientation=self.orientation)  # checked already

@@ -12,7 +12,7 @@ from pydantic import Field
 from ..parts.use import Use
 from .body import Body
 from .marker import ORIGIN, Point
-from .orientation import AXES, IDENTITY, Orientation, Quaternion, about, matrix, product, rotated
+from .orientation import AXES, IDENTITY, Orientation, Quaternion, about, conjugate, matrix, product, rotated
 
 STRAIGHT = 1e-12
 """Entries of a rotation matrix below which axes are at right angles."""
@@ -81,6 +81,11 @@ class SpatialFrame:
     def mirror(self) -> Self:
         """The mirror alone, which is what points and axes on a mirrored body undergo in that body's own axes."""
         return type(self)(signs=self.signs)
+
+    def inverse(self) -> Self:
+        """What takes points outside back into this frame, which must not be mirrored."""
+        back = conjugate(self.orientation)
+        return type(self)(tuple(-float(part) for part in rotated(back, self.point)), back)
 
     def then(self, inner: SpatialFrame) -> Self:
         """The frame within this one of a part within the part."""

@@ -12,8 +12,9 @@ from ..roads.field import AnyRoad
 from ..roads.flat import FlatRoad
 from ..roads.road import above_zero
 from ..units import si
-from .contact_point import contact_point, slips
+from .contact_point import ContactPoint, contact_point, slips
 from .marker import Marker
+from .relaxation import lagged
 from .wrench import Pairs, velocity
 
 CHANNELS = (
@@ -52,6 +53,20 @@ class Rolling:
     friction: Any
 
 
+@dataclass(frozen=True)
+class _Touch:
+    """A tyre on a road: the contact, the radial deflection (m), the load (N), slip, tangent of the slip angle, the speed that
+    these refer to (m/s), and the rates of the tyre's own states."""
+
+    contact: ContactPoint
+    deflection: Any
+    load: Any
+    slip: Any
+    tangent: Any
+    speed: Any
+    rates: tuple[Any, ...] = ()
+
+
 class Tyre(Force):
     """Base of tyres in space (it has no kind).  A subclass is its fields, its `law`, and perhaps how it carries its load.
 
@@ -74,12 +89,20 @@ class Tyre(Force):
         FlatRoad(), description="the name of a road of the scene, or a road; level at z = 0 by default"
     )
     slow: si.PositiveVelocity = Field(
-        1.0, description="speed below which slips refer to (slow^2 + Vx^2)/(2 slow) in place of abs(Vx), m/s"
+        1.0, description="speed below which slips are not the textbook's, m/s: see the guide on tyres"
     )
+
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "y"}
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
         """Fx, Fy, Mx, My, Mz on the tyre at the point of contact, along the ISO axes, N and N m."""
+        raise NotImplementedError
+
+    @classmethod
+    def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
+        """Longitudinal and lateral relaxation length, m, of a tyre that has `own_states`, `DEFLECTIONS`."""
         raise NotImplementedError
 
     @staticmethod
@@ -100,19 +123,38 @@ class Tyre(Force):
         return cls.unloaded_radius(e) - deflection * Rational(1, 3)
 
     @classmethod
-    def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
-        """The contact, what the law depends on, the deflection, and the law's forces and torques."""
+    def _touching(cls, e: Symbolic) -> _Touch:
+        """How the tyre touches the road, and how it slips there."""
         from sympy import Max, Piecewise
 
         contact = contact_point(e)
         closed = e.named(cls.unloaded_radius(e) - contact.radius)
         deflection = e.named(above_zero(closed))
-        load = Piecewise((Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True))
-        slip, slip_angle, speed = slips(e, contact, e.named(cls.rolling_radius(e, deflection)), e.slow)
-        of = (load, slip, slip_angle, contact.camber, speed, contact.vx / speed, contact.friction)
+        load = e.read(Piecewise((Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True)))
+        sliding = e.named(contact.vx - e.named(cls.rolling_radius(e, deflection)) * contact.spin)
+        slip, tangent, speed = slips(e, contact, sliding, e.slow)
+        if not e.own:
+            return _Touch(contact, deflection, load, slip, tangent, speed)
+        lag = lagged(e, contact, sliding, cls.relaxation_lengths(e, e.named(load), contact.camber))
+        return _Touch(contact, deflection, load, lag.slip, lag.tangent, speed, lag.rates)
+
+    @classmethod
+    def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
+        """The contact, what the law depends on, the deflection, and the law's forces and torques."""
+        from sympy import atan
+
+        touch = cls._touching(e)
+        contact, angle = touch.contact, e.named(atan(touch.tangent))
+        direction = contact.vx / touch.speed
+        of = (touch.load, touch.slip, angle, contact.camber, touch.speed, direction, contact.friction)
         rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))
         variables = [x for x in vars(rolling).values() if e.in_state(x)]
-        return contact, rolling, deflection, e.composed(cls.law(e, rolling), variables)
+        return contact, rolling, touch.deflection, e.composed(cls.law(e, rolling), variables)
+
+    @classmethod
+    def rates(cls, e: Symbolic) -> Any:
+        """Of the deflections along the road of a tyre with relaxation lengths."""
+        return cls._touching(e).rates
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from ..element import Element
+from ..element import Element, Symbolic
 from ..formula.field import OfMotion
 from .name import StateName
 
 
 class StateEquation(Element):
-    """The rate of a state: x' = formula."""
+    """The equation of a state: what its rate is, or what is zero for an algebraic one."""
 
     kind: ClassVar[str] = ""
 
     state: StateName
+
+    @staticmethod
+    def rate(e: Symbolic) -> Any:
+        """x' of the state x, or what is zero in place of it."""
+        raise NotImplementedError
+
+
+class FormulaOfRate(StateEquation):
+    """The equation of a state by a formula: x' = formula, or 0 = formula of an algebraic one."""
+
     formula: OfMotion
+
+    @staticmethod
+    def rate(e: Symbolic) -> Any:
+        return e.formula
 
 
 class Reported(Element):

@@ -13,6 +13,7 @@ from ..formula.field import Formula, OfMotion
 from ..given import Law, Laws, Number, Numbers
 from ..given import Matrix as GivenMatrix
 from ..units import si
+from .algebraic_state import AlgebraicState
 from .combined import Weighted, combined
 from .state import State, StateValue
 
@@ -228,7 +229,7 @@ class PID(Described):
         yield name, self._sum(self.kp + derivative, *others)
 
 
-StateEntry = State | TransferFunction | LinearSystem | PID
+StateEntry = State | AlgebraicState | TransferFunction | LinearSystem | PID
 
 
 def _trimmed(coefficients: Sequence[float]) -> list[float]:

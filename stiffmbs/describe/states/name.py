@@ -5,6 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 
+def own_state(element: str, state: str) -> str:
+    """The full name of an element's own state."""
+    return f"{element}.{state}"
+
+
 class StateName(str):
     """The full name of a state."""
 

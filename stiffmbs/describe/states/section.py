@@ -18,11 +18,12 @@ from ..formula.field import Formula
 from ..formula.names import FormulaNames
 from ..marker import GROUND
 from ..units.units import CONSTANTS, UNITS
+from .algebraic_state import AlgebraicState
 from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
 from .state import State, dimension_of_state
 
 KINDS: dict[str, type[StateEntry]] = {
-    "rate": State, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
+    "rate": State, "zero": AlgebraicState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
 }  # fmt: skip
 """The kinds of entries, by a key that only they have."""
 
@@ -172,5 +173,5 @@ def check_states_of(where: str, formula: Formula, states: Collection[str]) -> No
         if state not in states:
             raise ValueError(
                 f"{where}: found the unknown name '{state}' in '{formula.text}', expected t, a body's coordinate such as "
-                "cart.x, a parameter or a state"
+                f"cart.x, a parameter or a state ({', '.join(sorted(states)) or 'there is none'})"
             )

@@ -24,17 +24,20 @@ class StateValue:
 
     Attributes
     ----------
-    rate : Formula
-        Of its rate of change.
+    rate : Formula or None
+        Of its rate of change; of an algebraic state what is zero in place of it.  None where an element has it.
     start : float
-        Initial value, SI units.
+        Initial value, SI units; of an algebraic state where it is sought from.
     scale : float
         A size of it that matters: its absolute tolerance is that of an angle times this.
+    algebraic : bool
+        Whether it has no rate: 0 = formula.
     """
 
-    rate: Formula
+    rate: Formula | None
     start: float
     scale: float
+    algebraic: bool = False
 
 
 class State(Described):
@@ -90,8 +93,8 @@ def dimension_of_state(entry: Any, parameters: Any) -> Known:
     from ..formula.text import FormulaError
     from ..units.quantity import quantity
 
-    start = getattr(entry, "start", None) if isinstance(entry, State) else None
-    if start is not None:
+    start = getattr(entry, "start", None)
+    if isinstance(start, Amount):
         return start.dimension
     text = entry.get("start") if isinstance(entry, dict) else None
     try:

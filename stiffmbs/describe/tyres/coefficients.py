@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, model_validator
 from pydantic_core import core_schema
@@ -12,7 +12,7 @@ from pydantic_core import core_schema
 from ...errors import InputError
 from ..element import Component
 from ..files.quoted import quoted, written
-from .names import COEFFICIENTS, COMBINED, DIMENSIONS, KNOWN_UNUSED, REQUIRED, SCALES
+from .names import COEFFICIENTS, COMBINED, DIMENSIONS, KNOWN_UNUSED, REQUIRED, SCALES, TEXTS
 from .property_file import PropertyFile, read_property_file
 
 if TYPE_CHECKING:
@@ -23,9 +23,14 @@ UNLIMITED = 1e12
 """N, the largest load where a file has no FZMAX."""
 DEFAULTS = {
     **dict.fromkeys(COEFFICIENTS, 0.0), **dict.fromkeys(SCALES, 1.0), "VERTICAL_DAMPING": 0.0, "BREFF": 0.0, "DREFF": 0.0,
-    "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED,
+    "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
 }  # fmt: skip
 """FREFF: a rolling radius of the unloaded one less a third of the deflection."""
+WITH_LENGTHS = 10
+"""What USE_MODE is greater by where slips lag by relaxation lengths."""
+MODES = frozenset((*range(5), *range(10, 15)))
+"""USE_MODE without its sign."""
+SIDES = ("left", "right", "symmetric")
 FORMATS = ("PAC2002", "MF_05", "MF-TYRE", "MF_52", "52", "MF52")
 
 
@@ -39,6 +44,8 @@ class TyreProperties(Component):
     """
 
     coefficients: dict[str, float] = Field(description="by name, SI units")
+    use_mode: int | None = Field(None, description="USE_MODE of PAC2002; 4, or 14 with relaxation lengths, by default")
+    side: Literal["", "left", "right", "symmetric"] = Field("", description="TYRESIDE, that the tyre was measured on")
     remarks: tuple[str, ...] = ()
 
     @model_validator(mode="after")
@@ -53,6 +60,11 @@ class TyreProperties(Component):
                 raise ValueError(f"found no {name}, expected one")
             if not self.coefficients[name]:
                 raise ValueError(f"found {name} = 0, expected a number other than zero")
+        if self.use_mode is not None and abs(self.use_mode) not in MODES:
+            raise ValueError(
+                f"found USE_MODE = {self.use_mode}, expected 0 to 4 for steady slip, 10 to 14 for slip with relaxation "
+                "lengths, or one of these below zero for a mirrored tyre"
+            )
         for name in ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS"):
             if self.coefficients[name] < 0:
                 raise ValueError(f"found {name} = {self.coefficients[name]:g}, expected a number above zero")
@@ -66,11 +78,30 @@ class TyreProperties(Component):
         """Whether there are weights of combined slip."""
         return any(self.coefficients.get(name, 0.0) for name in COMBINED)
 
+    @property
+    def has_lengths(self) -> bool:
+        """Whether there are relaxation lengths."""
+        return any(self.coefficients.get(name, 0.0) for name in ("PTX1", "PTY1"))
+
+    @property
+    def is_transient(self) -> bool:
+        """Whether slips are to lag by relaxation lengths: as USE_MODE says, and without it where there are lengths."""
+        return self.has_lengths and (self.use_mode is None or abs(self.use_mode) > WITH_LENGTHS)
+
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether USE_MODE is below zero."""
+        return self.use_mode is not None and self.use_mode < 0
+
     def in_equations(self) -> dict[str, Any]:
-        return {**DEFAULTS, **self.coefficients, "is_combined": self.is_combined}
+        mode = 4 if self.use_mode is None else abs(self.use_mode) % WITH_LENGTHS
+        own = {"is_combined": self.is_combined, "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side}
+        return {**DEFAULTS, **self.coefficients, **own}
 
     def notes(self) -> Iterator[str]:
         yield from self.remarks
+        if self.use_mode is not None and abs(self.use_mode) > WITH_LENGTHS and not self.has_lengths:
+            yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none (PTX1, PTY1): slips are those of the steady state"
         if not self.is_combined:
             yield "there are no coefficients of combined slip (RBX1, RCX1, RBY1, RCY1): forces are held on the friction ellipse"
 
@@ -134,12 +165,36 @@ def _of_file(file: PropertyFile) -> TyreProperties:
         for name in NUMBERS
         if name in file.entries or name in REQUIRED
     }
-    unknown = [name for name in file.entries if name not in NUMBERS and name not in KNOWN_UNUSED]
+    unknown = [name for name in file.entries if name not in (*NUMBERS, *KNOWN_UNUSED, *TEXTS)]
     remarks = [f"{file.source}: the keys {', '.join(unknown)} are not used"] if unknown else []
     try:
-        return TyreProperties(coefficients=found, remarks=tuple(remarks))
+        return TyreProperties(coefficients=found, use_mode=_mode(file), side=_side(file), remarks=tuple(remarks))
     except InputError as error:
         raise InputError(f"{file.source}: {str(error).removeprefix('TyreProperties: ')}") from None
+
+
+def _mode(file: PropertyFile) -> int | None:
+    """USE_MODE, if there is one."""
+    if "USE_MODE" not in file.entries:
+        return None
+    mode, line = file.number("USE_MODE"), file.entries["USE_MODE"].line
+    if abs(mode) not in MODES:
+        raise InputError(
+            f"{file.source}, line {line}: found USE_MODE = {mode:g}, expected 0 to 4 for steady slip, 10 to 14 for slip with "
+            "relaxation lengths, or one of these below zero for a mirrored tyre"
+        )
+    return int(mode)
+
+
+def _side(file: PropertyFile) -> Any:
+    """TYRESIDE, in small letters."""
+    side = file.text("TYRESIDE").lower()
+    if side and side not in SIDES:
+        line = file.entries["TYRESIDE"].line
+        raise InputError(
+            f"{file.source}, line {line}: found TYRESIDE = '{quoted(side)}', expected one of {', '.join(SIDES)}"
+        )
+    return side
 
 
 class _PropertiesField:

@@ -9,7 +9,7 @@ its text has the adapted one, as MF-Tyre 5.2 and MSC Adams/Tire (PAC2002) have i
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sympy import Expr, Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
@@ -19,6 +19,11 @@ from ..roads.road import above_zero, magnitude
 Name = Callable[[Any], Any]
 NOTHING = Float("1e-12")
 """N, beside loads that are divided by: in the air nothing is divided by zero, and on the road it is below rounding."""
+
+
+COMBINED_MODE = "4"
+OF_MODES = {"0": (), "1": (0, 3), "2": (1, 2, 4), "3": (0, 1, 2, 3, 4)}
+"""Which of Fx, Fy, Mx, My, Mz the last digit of USE_MODE asks for, where slips are not combined."""
 
 
 @dataclass(frozen=True)
@@ -153,16 +158,48 @@ def wrench(p: Any, s: Slip, f: Name, is_combined: bool = True) -> tuple[Any, Any
     is_combined : bool
         Whether the coefficients have the weights of combined slip; without them Fx and Fy are held on the friction ellipse.
     """
-    nominal = p.FNOMIN * p.LFZO
-    dfz = f((s.load - nominal) / nominal)
+    dfz = increment(p, s.load, f)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
     forces = combined(p, s, x, y, dfz, f) if is_combined else on_ellipse(s, x, y, f)
-    fx, fy, _ = forces
+    return (*forces[:2], *torques(p, s, forces[0], forces[1], f), aligning(p, s, x, y, forces, dfz, f))
+
+
+def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
+    """The same of each slip by itself: Fx and My by the longitudinal one, Fy, Mx and Mz by the slip angle."""
+    dfz, none = increment(p, s.load, f), Rational(0)
+    x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
+    mx, my = torques(p, s, x.force, y.force, f)
+    return x.force, y.force, mx, my, aligning(p, replace(s, kappa=none), x, y, (none, y.force, none), dfz, f)
+
+
+def of_mode(mode: str, p: Any, s: Slip, f: Name, is_combined: bool) -> tuple[Any, Any, Any, Any, Any]:
+    """The forces and torques that the last digit of USE_MODE asks for; the others are zero."""
+    if mode == COMBINED_MODE:
+        return wrench(p, s, f, is_combined)
+    fx, fy, mx, my, mz = uncombined(p, s, f)
+    return tuple(x if number in OF_MODES[mode] else Rational(0) for number, x in enumerate((fx, fy, mx, my, mz)))  # type: ignore[return-value]
+
+
+def relaxation_lengths(p: Any, load: Any, gamma: Any, f: Name) -> tuple[Any, Any]:
+    """Longitudinal and lateral relaxation length, m, by the equations of MF-Tyre 5.2."""
+    dfz, R = increment(p, load, f), p.UNLOADED_RADIUS
+    along = load * (p.PTX1 + p.PTX2 * dfz) * exp(-p.PTX3 * dfz) * R / p.FNOMIN * p.LSGKP
+    by_load = sin(2 * atan(load / (p.PTY2 * p.FNOMIN * p.LFZO)))
+    return along, p.PTY1 * by_load * (1 - p.PKY3 * magnitude(gamma)) * R * p.LFZO * p.LSGAL
+
+
+def increment(p: Any, load: Any, f: Name) -> Any:
+    """dfz, the load over the nominal one, less 1."""
+    nominal = p.FNOMIN * p.LFZO
+    return f((load - nominal) / nominal)
+
+
+def torques(p: Any, s: Slip, fx: Any, fy: Any, f: Name) -> tuple[Any, Any]:
+    """The overturning and the rolling torque."""
     R = p.UNLOADED_RADIUS
     mx = R * s.load * (p.QSX1 * p.LVMX + (-p.QSX2 * s.gamma + p.QSX3 * fy / p.FNOMIN) * p.LMX)
     resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4
-    my = -R * s.load * resistance * p.LMY * s.direction
-    return fx, fy, mx, my, aligning(p, s, x, y, forces, dfz, f)
+    return mx, -R * s.load * resistance * p.LMY * s.direction
 
 
 def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:

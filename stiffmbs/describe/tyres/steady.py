@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+CHOICES = ("is_combined", "mode", "is_mirrored", "side")
+"""What is no number among the properties; of these forces and torques without a model see `is_combined`."""
 OUTPUTS = ("longitudinal", "lateral", "overturning", "rolling", "aligning")
 
 
@@ -16,7 +18,7 @@ def steady_wrench(
     numbers: Mapping[str, Any], load: Any, slip: Any, slip_angle: Any, camber: Any, speed: Any, friction: Any
 ) -> dict[str, np.ndarray]:
     """Forces and torques by the names of a tyre's channels; arguments may be arrays that broadcast."""
-    values = {name: value for name, value in numbers.items() if name != "is_combined"}
+    values = {name: value for name, value in numbers.items() if name not in CHOICES}
     states = [np.asarray(x, dtype=float) for x in (np.minimum(load, values["FZMAX"]), slip, slip_angle, camber)]
     function = _function(tuple(values), bool(numbers["is_combined"]))
     found = function(*values.values(), *states, np.asarray(speed) / values["LONGVL"], friction)

@@ -27,7 +27,7 @@ def drawing_json(drawing: Drawing) -> dict[str, Any]:
         Lengths in metres, in the axes of bodies from their centres of mass; ready for `json.dumps`.
     """
     return {
-        "name": drawing.name, "dimensions": drawing.dimensions, "size": drawing.size, "bodies": list(drawing.bodies),
+        "name": drawing.name, "dimensions": drawing.dimensions, "size": drawing.size, "unit": drawing.unit, "bodies": list(drawing.bodies),
         "gravity": _numbers(drawing.gravity, drawing.size),
         "parts": [_part(part, drawing) for part in drawing.parts],
         "links": [_link(link, drawing) for link in drawing.links],

@@ -84,12 +84,13 @@ def _with_edges(solid: Solid) -> Shapes:
     return (solids.edged(solid),), ()
 
 
-def derived_shape(name: str, body: Any, dimensions: int, points: Sequence[np.ndarray], size: float) -> Part:
+def derived_shape(
+    name: str, body: Any, dimensions: int, points: Sequence[np.ndarray], size: float, thick: float
+) -> Part:
     """A shape that tells where a body's points are: a bar, a plate or a hull; a block where there is one point alone."""
     found = _distinct(points, NEAR * size)
     if len(found) == 1 and np.linalg.norm(found[0]) > NEAR * size:
         found = [found[0], _far_end(body, dimensions, found[0])]
-    thick = 0.02 * size
     if len(found) < 2:
         shapes = _block(body, dimensions, size)
     elif dimensions == 2:

@@ -19,8 +19,10 @@ from .palette import body_colors
 from .poses import Poses, described_poses, placed
 from .scene_graph import Anchor, Drawing, Mark, Name, Part
 
-UNIT = 0.024
-"""The unit of symbols over the mechanism's size."""
+UNIT, CROWDED = 0.024, 10
+"""The unit of symbols over the mechanism's size, and the number of elements from which on symbols become smaller."""
+THICK = 5 / 6
+"""Half the thickness of bars over the unit."""
 FRONT = 2.0
 """Units that symbols of the plane lie before bodies."""
 Joints = dict[str, tuple[Any, Site | None, Site | None]]
@@ -47,25 +49,27 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
     shaped = {name: given_shapes(name, body, data.dimensions, 1.0) for name, body in data.bodies.items()}
     size = _size(data, sites, shaped)
     colors = body_colors(data.bodies)
-    drafts = [_drawn(name, element, data, sites, size, colors, scale) for name, element in _elements(data)]
+    unit = scale * UNIT * size * math.sqrt(min(1.0, CROWDED / max(1, len(data.joints) + len(data.forces))))
+    drafts = [_drawn(name, element, data, sites, size, colors, unit) for name, element in _elements(data)]
     parts = [part for draft in drafts for part in draft.parts]
     having = {part.body for part in parts if part.role == "body"}
     points = sites.on_bodies()
     for name, body in data.bodies.items():
         if not shaped[name] and not (name in having and len(_apart(points[name], 1e-3 * size)) <= 1):
-            shaped[name] = [derived_shape(name, body, data.dimensions, points[name], size)]
+            shaped[name] = [derived_shape(name, body, data.dimensions, points[name], size, THICK * unit / scale)]
     bodies = [part for found in shaped.values() for part in found]
     gravity = np.zeros(3)
     gravity[: data.dimensions] = data.gravity
     weight = sum(body.mass for body in data.bodies.values()) * (float(np.linalg.norm(gravity)) or 1.0)
+    heaviest = max(data.bodies, key=lambda name: data.bodies[name].mass, default="")
     loads = {
         draft.owner: draft.i.anchor
         for draft in drafts
         if draft.i is not None and not _is_reported_elsewhere(draft.element)
     }
     return Drawing(
-        data.name, data.dimensions, size, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
-        tuple(_names(data, drafts)), loads, gravity, weight, marks or {},
+        data.name, data.dimensions, size, unit, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
+        tuple(_names(data, drafts)), loads, heaviest, gravity, weight, marks or {},
     )  # fmt: skip
 
 
@@ -87,6 +91,7 @@ class _Sites:
         self.used: dict[str, list[np.ndarray]] = {name: [] for name in (*data.bodies, GROUND)}
 
     def of(self, marker: MarkerReference) -> Site:
+        """Where a marker is on its body and in ground axes."""
         point, axes = placed(self.data, marker)
         origin, turned = self.poses.pose(marker.body, 0)
         self.used[marker.body].append(point)
@@ -146,7 +151,7 @@ def _own_size(data: ModelData) -> float:
 
 
 def _drawn(
-    name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str], scale: float
+    name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str], unit: float
 ) -> Draft:
     """The symbol of one element."""
     joints: Joints = {
@@ -162,7 +167,6 @@ def _drawn(
     down[: data.dimensions] = data.gravity
     length = float(np.linalg.norm(down))
     fallback = np.array([0.0, -1.0, 0.0]) if data.dimensions == 2 else np.array([0.0, 0.0, -1.0])
-    unit = UNIT * size * scale
     below = down / length if length else fallback
     front = FRONT * unit if data.dimensions == 2 else 0.0
     draft = Draft(name, element, unit, size, i, j, joints, front, below, dict(colors))

@@ -14,8 +14,9 @@ import numpy as np
 
 from ...errors import InputError
 from ..style import COLORS
+from .following import followed_body, seen_from, way_of
 from .painted import Patch, extent, largest_force, painted
-from .picture import Shown, empty_sheet, explain, paint, write_names
+from .picture import Shown, empty_sheet, explain, paint, prepare, write_names
 from .poses import Poses
 from .scene_graph import Anchor, Drawing
 from .view import View
@@ -104,7 +105,11 @@ def pictures(
     first = next(iter(known.values()))
     instants = pace.instants(first.time[0], max(poses.time[-1] for poses in known.values()))
     largest = largest_force(drawing, first) if shown.forces else 0.0
-    corners = [extent(drawing, poses, view, largest if poses is first else 0.0) for poses in known.values()]
+    body = followed_body(drawing, first)
+    corners = [
+        extent(drawing, seen_from(body, poses) if body else poses, view, largest if poses is first else 0.0)
+        for poses in known.values()
+    ]
     low, high = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
     margin = 0.05 * float(np.linalg.norm(high - low))
     low, high = _wide(low - margin, high + margin)
@@ -123,6 +128,9 @@ def pictures(
         if shown.names:
             artists += write_names(axes, drawing, samples[0], k, view)
         clock.set_text(f"t = {instants[k]:.3f} s")
+        if body:
+            along = view.seen(way_of(body, samples[0])[k][None])[0]
+            prepare(axes, low + along[:2], high + along[:2])
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
         for artist in artists:

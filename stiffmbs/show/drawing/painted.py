@@ -24,6 +24,8 @@ NEGLIGIBLE = 1e-9
 """Of the weight of all bodies: a force below it is rounding."""
 LONGEST = 0.22
 """The longest force arrow over the size."""
+HEAD = 1.25
+"""The longest head of an arrow over the unit of symbols."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,14 +157,14 @@ def _loads(drawing: Drawing, poses: Poses, k: int, view: View, longest: float) -
         start = view.seen((origin + axes @ anchor.point)[None])[0]
         way = view.seen(force[None] / np.linalg.norm(force))[0][:2]
         color = LOAD_NOT_UNIQUE if drawing.marks.get(name) else LOAD
-        yield from _arrow(start[:2], way * length, color, drawing.size)
+        yield from _arrow(start[:2], way * length, color, drawing.size, drawing.unit)
 
 
-def _arrow(start: np.ndarray, way: np.ndarray, color: str, size: float) -> Iterator[Patch]:
+def _arrow(start: np.ndarray, way: np.ndarray, color: str, size: float, unit: float) -> Iterator[Patch]:
     length = float(np.linalg.norm(way))
     if length < 1e-6 * size:
         return
-    head = min(0.35 * length, 0.03 * size)
+    head = min(0.35 * length, HEAD * unit)
     along = way / length
     side = np.array([-along[1], along[0]])
     tip, neck = start + way, start + way - along * head

@@ -22,6 +22,8 @@ WIDTH = 8.0
 """Of a picture, inch."""
 MOST_NAMES = 60
 """With more, elements are not named."""
+MANY_NAMES, SMALLEST = 15, 0.6
+"""Number from which on names are written smaller, and the smallest against the usual ones."""
 MARK_WORDS = {"redundant": "redundant equations", "not unique": "force not unique"}
 
 
@@ -136,7 +138,8 @@ def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) 
     names = drawing.names if len(drawing.names) <= MOST_NAMES else [n for n in drawing.names if n.role == "body"]
     taken: list[np.ndarray] = []
     artists = []
-    unit = 0.016 * float(np.diff(axes.get_xlim())[0])
+    smaller = max(SMALLEST, min(1.0, (MANY_NAMES / len(names)) ** 0.5)) if names else 1.0
+    unit = 0.016 * smaller * float(np.diff(axes.get_xlim())[0])
     for name in sorted(names, key=lambda name: name.role != "body"):
         origin, turned = poses.pose(name.anchor.body, k)
         point = view.seen((origin + turned @ name.anchor.point)[None])[0][:2]
@@ -146,7 +149,7 @@ def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) 
         color = MARKS[drawing.marks[name.text]] if name.text in drawing.marks else EDGES[name.role]
         artists.append(
             axes.text(
-                place[0], place[1], name.text, ha="center", va="center", fontsize=7.5, color=color, parse_math=False, zorder=9,
+                place[0], place[1], name.text, ha="center", va="center", fontsize=7.5 * smaller, color=color, parse_math=False, zorder=9,
                 style="normal" if name.role == "body" else "italic", weight="bold" if name.role == "body" else "normal",
                 bbox={"boxstyle": "round,pad=0.1", "facecolor": PAPER, "alpha": 0.72, "edgecolor": "none"}, clip_on=False,
             )

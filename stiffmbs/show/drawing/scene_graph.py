@@ -133,12 +133,16 @@ class Drawing:
     dimensions : int
         2: drawn as seen along z.
     size : float
-        Of the mechanism, m, to which symbols and arrows are scaled.
+        Of the mechanism, m, to which arrows are scaled.
+    unit : float
+        To which symbols are scaled, m.
     bodies : mapping of str to str
         Bodies with their colors.
     parts, links, names : tuples
     loads : mapping of str to Anchor
         Where the force of each joint and force acts on its first body.
+    heaviest : str
+        The body with the largest mass; empty without bodies.
     gravity : ndarray, shape (3,)
     weight : float
         Of all bodies, N (at 1 m/s^2 without gravity).
@@ -149,11 +153,13 @@ class Drawing:
     name: str
     dimensions: int
     size: float
+    unit: float
     bodies: Mapping[str, str]
     parts: tuple[Part, ...]
     links: tuple[Link, ...]
     names: tuple[Name, ...]
     loads: Mapping[str, Anchor]
+    heaviest: str
     gravity: np.ndarray
     weight: float
     marks: Mapping[str, Mark] = field(default_factory=dict)

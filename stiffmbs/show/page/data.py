@@ -13,6 +13,7 @@ import numpy as np
 
 from ...results.solution import Solution
 from ..drawing.as_json import drawing_json
+from ..drawing.following import followed_body
 from ..drawing.painted import LONGEST, largest_force
 from ..drawing.poses import Poses
 from ..drawing.scene_graph import Anchor, Drawing
@@ -82,6 +83,7 @@ def page_data(
         "drawing": drawing_json(drawing),
         "longest": {"force": largest_force(drawing, first), "length": LONGEST * drawing.size},
         "runs": [{"name": name, **_motion(poses, packed, most)} for name, poses in runs.items()],
+        "follow": followed_body(drawing, first),
         "traces": [{"body": anchor.body, "point": anchor.point.tolist()} for anchor in traces],
         "channels": _channels(solution, packed, shown) if solution is not None else None,
     }

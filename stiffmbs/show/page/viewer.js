@@ -158,17 +158,17 @@ const MOVING = (() => {
     return found;
   }
 
-  function arrow(color, size) {
+  function arrow(color, unit) {
     const found = new THREE.Group(), paint = new THREE.MeshBasicMaterial({ color, depthTest: false, transparent: true });
-    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.0035 * size, 0.0035 * size, 1, 8).translate(0, 0.5, 0), paint);
-    const head = new THREE.Mesh(new THREE.ConeGeometry(0.012 * size, 0.035 * size, 12).translate(0, -0.0175 * size, 0), paint);
+    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.15 * unit, 0.15 * unit, 1, 8).translate(0, 0.5, 0), paint);
+    const head = new THREE.Mesh(new THREE.ConeGeometry(0.5 * unit, 1.5 * unit, 12).translate(0, -0.75 * unit, 0), paint);
     shaft.renderOrder = head.renderOrder = 300;
     found.add(shaft, head);
     found.pointTo = (way, length) => {
-      const neck = Math.max(length - 0.035 * size, 0.2 * length);
+      const neck = Math.max(length - 1.5 * unit, 0.2 * length);
       shaft.scale.y = neck;
       head.position.y = length;
-      head.scale.setScalar(Math.min(1, length / (0.05 * size)));
+      head.scale.setScalar(Math.min(1, length / (2 * unit)));
       found.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), way);
     };
     return found;
@@ -211,7 +211,8 @@ const MOVING = (() => {
         }
       }
     };
-    throughout((root) => box.expandByObject(root, true));
+    const framed = data.follow ? (act) => machines.forEach((machine) => { machine.update(time.start); machine.root.updateMatrixWorld(true); act(machine.root); }) : throughout;
+    framed((root) => box.expandByObject(root, true));
     const middle = box.getCenter(new THREE.Vector3()), reach = box.getSize(new THREE.Vector3()).length() || size;
     const home = () => {
       controls.target.copy(middle);
@@ -223,7 +224,7 @@ const MOVING = (() => {
     home();
     camera.updateMatrixWorld();
     const half = new THREE.Vector3(), corner = new THREE.Vector3(), level = camera.quaternion.clone().invert();
-    throughout((root) => root.traverse((part) => {  // half of the width and height of the whole motion, as it is seen first
+    framed((root) => root.traverse((part) => {  // half of the width and height of the whole motion, or of the start, as it is seen first
       if (!part.geometry) return;
       part.geometry.computeBoundingBox();
       const own = part.geometry.boundingBox;
@@ -235,14 +236,14 @@ const MOVING = (() => {
     }));
 
     const loads = drawing.loads.map((load) => {
-      const found = arrow(drawing.marks[load.name] ? "#e69f00" : drawing.load_color, size);
+      const found = arrow(drawing.marks[load.name] ? "#e69f00" : drawing.load_color, drawing.unit);
       scene.add(found);
       return { load, found };
     });
     const names = drawing.names.map((name) => ({
       name, label: make("span", place, { textContent: name.text, className: name.role === "body" ? "name" : "name element" }, { "aria-hidden": "true" }),
     }));
-    const state = { forces: data.longest.force > 0, names: drawing.names.length <= 40, follow: "", traces: [] };
+    const state = { forces: data.longest.force > 0, names: drawing.names.length <= 40, follow: data.follow, traces: [] };
     const addTrace = (anchor) => data.runs.forEach((run, k) => {
       const found = trace(machines[k], run, anchor, COLORS[(state.traces.length + 1) % COLORS.length]);
       state.traces.push(found);
@@ -454,7 +455,7 @@ const MOVING = (() => {
     time.speed = length >= 3 && length <= 20 ? 1 : usual;
     pick("Speed", speeds.map((s) => [s, `${s} x`]), (s) => { time.speed = Number(s); }).value = time.speed;
     if (shown) {
-      pick("Follow", [["", "nothing"], ...data.drawing.bodies.map((b) => [b, b])], (body) => { shown.state.follow = body; shown.stale = true; });
+      pick("Follow", [["", "nothing"], ...data.drawing.bodies.map((b) => [b, b])], (body) => { shown.state.follow = body; shown.stale = true; }).value = data.follow;
       pick("Trace", [["", "choose"], ["clear", "none"], ...data.drawing.names.map((n, k) => [k, n.text])], (k, select) => {
         if (k === "clear") shown.clearTraces();
         else if (k !== "") shown.addTrace(data.drawing.names[k]);

@@ -47,9 +47,9 @@ class ErrorControl:
 
     def tolerances(self, equations: Equations, settings: RunSettings) -> tuple[float, np.ndarray]:
         """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts those in the error test."""
-        tested = self._tested(equations)
+        tested, of_independent = self._tested(equations), independent_tolerances(equations, settings)
         atol = np.full(equations.n, self.multipliers)
-        atol[equations.independent[tested]] = independent_tolerances(equations, settings)[tested]
+        atol[equations.independent[tested]] = of_independent[tested]
         correction = self.margin * np.sqrt(equations.n / max(int(tested.sum()), 1))
         return settings.rtol * correction, atol * correction
 
@@ -63,11 +63,15 @@ class ErrorControl:
 
     @staticmethod
     def _tested(equations: Equations) -> np.ndarray:
-        """Which of the independent coordinates and velocities the error test counts."""
+        """Which of the independent coordinates and velocities the error test counts; algebraic states that follow multipliers
+        are left out as these are."""
         independent, tested = equations.coordinates, equations.formulation.tested
-        return np.repeat(
+        counted = np.repeat(
             ["q" in tested, "u" in tested], [independent.independent.sum(), independent.independent_u.sum()]
         )
+        pressed = np.isin(np.flatnonzero(independent.independent), equations.system.following_reactions)
+        counted[: len(pressed)] &= ~pressed
+        return counted
 
 
 CHOSEN = {2: ErrorControl(), 3: ErrorControl(margin=0.12, growth=1.6)}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...compile.system import Term
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 
@@ -62,10 +63,11 @@ class Stiffness:
 
 def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:
     """That of the state at hand."""
-    state, mass = dynamics.state, dynamics.system.mass
+    state, system = dynamics.state, dynamics.system
     state.evaluate("tangent", t)
+    f_q, f_u, values = system.term("tangent", "f_q"), system.term("tangent", "f_u"), state.values["tangent"]
     with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
-        return Stiffness(*(_largest_row_sum(dynamics, term, mass) for term in ("f_q", "f_u")))
+        return Stiffness(_largest_row_sum(f_q, values, system.mass), _largest_row_sum(f_u, values, system.mass))
 
 
 def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
@@ -73,8 +75,7 @@ def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
     return max(min(LOOSEST, stiffness.allowed_residual), TIGHTEST, NUMBERS_END / settings.rtol)
 
 
-def _largest_row_sum(dynamics: Dynamics, name: str, mass: np.ndarray) -> float:
-    """The largest sum of magnitudes in a row of M^-1 times a term of the tangent set."""
-    term = dynamics.system.term("tangent", name)
-    sums = np.bincount(term.row, np.abs(dynamics.state.values["tangent"][term.source]), minlength=len(mass))
+def _largest_row_sum(term: Term, values: np.ndarray, mass: np.ndarray) -> float:
+    """The largest sum of magnitudes in a row of M^-1 times a term, from the values of its set."""
+    sums = np.bincount(term.row, np.abs(values[term.source]), minlength=len(mass))
     return float((sums / mass).max()) if len(mass) else 0.0

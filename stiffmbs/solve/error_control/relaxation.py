@@ -28,11 +28,11 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
     state, system = dynamics.state, dynamics.system
     if not system.n_c:
         return
+    lightness = dynamics.kept("relaxation", None, lambda: 1 / _heaviest(system))
     state.evaluate("motion", t)
     factor = min(max(settings.rtol / 1e-8, TIGHTEST), LOOSEST)
-    lightness = dynamics.kept("relaxation", None, lambda: 1 / _heaviest(system))
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
-    C_q, J = (state.values["motion"][term.source] for term in (positions, velocities))
+    C_q, J = state.values["motion"][positions.source], state.values["motion"][velocities.source]
     of_positions = np.bincount(positions.row, C_q * C_q, minlength=system.n_c)
     of_velocities = np.bincount(velocities.row, J * J * lightness[velocities.column], minlength=system.n_c)
     along = min(1.0, (SHORT / len(system.bodies)) ** 2)

@@ -6,12 +6,14 @@ they never come out of its periods.  Order 2 damps it.  CVODE looks for such gro
 nothing of the kind, and what shows here is simpler: many steps in a row follow a cubic but for some tolerances.
 
 Order 2 has larger errors in the slow motion.  So the order is held only where its steps become much longer: the third derivative of
-that cubic tells how long a step of order 2 may be.
+that cubic tells how long a step of order 2 may be.  A vibration of a few tolerances is damped within a hundred steps; the
+order is free again then, before the errors of order 2 count.
 """
 
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -25,23 +27,29 @@ order 3 to 5 do resolve is some thousands of tolerances away from it."""
 NEGLIGIBLE = 150.0
 """Distance from it, in units of the tolerance, up to which a vibration is not worth following: the orders that follow it
 damp it too (from 64 to 44 in 1000 steps of order 5).  A smaller tolerance keeps it."""
-STUCK, STEADY = 4.0, 3.0
+STUCK, STEADY = 0.5, 3.0
 """Steps whose states are nearer to it are short for another reason, and so are those much shorter than since the last look."""
+FAINT, DAMPED_AWAY = 4.0, 100
+"""Distance from it up to which so many steps of order 2 damp the vibration away.  The half car at 1e-7 takes 3445 steps with
+100 of them and errors of 3.4e-7, 3569 and 8.2e-7 with 300, 5079 and 1.2e-7 with none."""
 WITHIN_PERIODS = 30.0
 """Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
 start with longer ones would stir up vibrations that have long been damped."""
-FIRST_LOOK, RELAPSE, STRETCH, LONGER = 2000, 2000, 2000, 4
-"""Steps before the first look, each later one after twice as many; steps between looks at a held order, in
-which the vibration dies away (250 are too few to see what is gained); steps with the order held at first, and how many times as many
-after each relapse."""
+FIRST_LOOK, LATER = 2000, 1.5
+"""Steps before the first look, and how many times as many before each later one."""
+RELAPSE, STRETCH, LONGER = 2000, 2000, 4
+"""Steps between looks at a held order, in which the vibration dies away (250 are too few to see what is gained); steps with
+the order held at first, and how many times as many after each relapse."""
 GAIN = 3.0
 """How much longer steps must become with the order held: foreseen from the slow motion before it is, and seen after that.  The errors of order 2
 are larger at the same tolerance.  On a car on bushings of 1e7 N/m 1.4 to 1.9 is foreseen; steps were then as long as before, and errors ten
 times as large.  On a bar on one bushing, where the order is held, steps become 3 to 40 times as long."""
+NO_LOSS = 1.5
+"""The same, foreseen, where a faint vibration is damped away: longer steps come after that."""
 MARGIN, ERROR_CONSTANT = 0.1, 2 / 9
 """Error of a step that an integrator aims at, relative to the tolerance; that of order 2, over the third derivative times the cube of the step."""
 TIGHTEST = 1e-7
-"""Relative tolerance below which the order is left alone: who asks for less wants to see the vibration, and order 2 would
+"""Relative tolerance below which the order is not held for long: who asks for less wants to see the vibration, and order 2 would
 cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
 HELD, HIGHEST = 2, 5
 """Orders: the highest that is stable for every vibration, and the highest of all."""
@@ -63,15 +71,20 @@ class StabilityLimitDetection:
 
     def __init__(self, equations: Equations, settings: RunSettings) -> None:
         self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
-        self._watches = settings.rtol >= TIGHTEST and settings.max_order is None
-        self._atol = independent_tolerances(equations, settings)
+        self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST
+        self._equations, self._settings = equations, settings
         self.forget()
+
+    @cached_property
+    def _atol(self) -> np.ndarray:
+        return independent_tolerances(self._equations, self._settings)
 
     def forget(self) -> None:
         """Begin a new run."""
         self.order, self._next, self._stretch = self._highest, FIRST_LOOK, STRETCH
         self._held: list[tuple[float, int]] = []
         self._held_steps = 0
+        self._briefly = False
         self._mark, self._pace, self._fastest = (0.0, 0), 0.0, 0.0
 
     @property
@@ -110,22 +123,26 @@ class StabilityLimitDetection:
         local = float(samples[-1, 0] - samples[0, 0]) / (STEPS_APART * (len(samples) - 1))
         steady = pace < STEADY * local and local * self._fastest < WITHIN_PERIODS
         distance, longer = self._fit(samples) if steady else (0.0, 0.0)
-        creeping = STUCK < distance < NEGLIGIBLE and longer > GAIN
-        self._next = steps + RELAPSE if creeping else 2 * steps
-        if creeping:
-            self.order, self._pace = HELD, pace
-            self._held.append((t, steps))
-        return creeping
+        faint = distance < FAINT
+        creeping = STUCK < distance < NEGLIGIBLE and (longer > (NO_LOSS if faint else GAIN)) and (faint or self._holds)
+        if not creeping:
+            self._next = int(LATER * steps)
+            return False
+        self.order, self._pace, self._briefly = HELD, pace, faint
+        self._next = steps + (DAMPED_AWAY if faint else RELAPSE)
+        self._held.append((t, steps))
+        return True
 
     def _frees(self, pace: float, t: float, steps: int) -> bool:
         """Whether the order held has not paid, or has been held for long enough."""
-        self._next = steps + RELAPSE
-        pays = pace > GAIN * self._pace
+        pays = not self._briefly and pace > GAIN * self._pace
         if pays and steps < self._held[-1][1] + self._stretch:
+            self._next = steps + RELAPSE
             return False
-        self._stretch *= LONGER
+        if not self._briefly:
+            self._stretch *= LONGER
         self._held_steps += steps - self._held[-1][1]
-        self.order, self._next = self._highest, steps + (RELAPSE if pays else steps)
+        self.order, self._next = self._highest, steps + (RELAPSE if pays or self._briefly else steps)
         return True
 
     def _fit(self, samples: np.ndarray) -> tuple[float, float]:
@@ -162,7 +179,7 @@ class StabilityLimitDetection:
         held = self._held_steps + (steps - self._held[-1][1] if self.held else 0)
         first, before = self._held[0]
         return (
-            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: with orders 3 to 5, "
-            f"{before} steps up to there, it crept along a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, "
-            "which is now damped away, also in forces; a smaller rtol, or max_order: 5, keeps it"
+            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: orders 3 to 5 had crept along "
+            f"a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, {before} steps up to there; it is now damped "
+            "away, also in forces; a smaller rtol, or max_order: 5, keeps it"
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.law_zones import edges_of
-from ...compile.machine.layout import EVENT_SEARCH, cells, fill
+from ...compile.machine.layout import EVENT_SEARCH, fill
 from ...compile.state import State
 
 NODES = 8
@@ -18,8 +18,6 @@ class EventSearch:
     Parameters
     ----------
     state : State
-    masked : ndarray of int, shape (n_event_functions,), optional
-        An event function that waits (above zero) is not looked at.
 
     Attributes
     ----------
@@ -27,11 +25,15 @@ class EventSearch:
         Addresses for compiled code (`stiffmbs.compile.machine.layout.EVENT_SEARCH`).
     n : int
         Number of event functions, with those of laws.
+    n_event_functions : int
+        Number of event functions without those of laws.
+    masked : ndarray of int, shape (n_event_functions,)
+        An event function that waits (above zero) is not looked at.
     found : ndarray of int, shape (n,)
         1 for the functions of the last event, 0 for others.
     """
 
-    def __init__(self, state: State, masked: np.ndarray | None = None) -> None:
+    def __init__(self, state: State) -> None:
         system = state.system
         state.load("event_function")
         n, n_event_functions, n_state = (
@@ -40,8 +42,9 @@ class EventSearch:
             system.n_q + system.n_u,
         )
         self.n, self.found = n, np.zeros(n, dtype=np.int64)
+        self.n_event_functions, self.masked = n_event_functions, np.zeros(n_event_functions, dtype=np.int64)
         self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
-        self._cells = cells(self.table, EVENT_SEARCH)
+        self._cells = self.table.view(EVENT_SEARCH.cells)[0]
         if not n:
             return  # nothing to search for: none of its arrays is read
         first_edge, edges, period = edges_of(system)
@@ -51,7 +54,7 @@ class EventSearch:
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high")  # fmt: skip
         self._arrays = {
-            "n": n, "n_event_functions": n_event_functions, "masked": np.zeros(n_event_functions, dtype=np.int64) if masked is None else masked,
+            "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": first_edge, "edges": edges, "period": period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
             "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebvander
 
-from ...compile.callbacks import callbacks
-from ...compile.laws import has_laws
-from ...compile.machine.layout import LONG_STEPS, cells, packed
+from ...compile.machine.layout import LONG_STEPS, packed
 from ...compile.system import System
 from ..dynamics import Dynamics
 
@@ -100,14 +98,13 @@ class LongStepLog:
     """
 
     def __init__(self, system: System, width: int) -> None:
-        calls = next(callbacks(system), None) is not None
-        places, (ratio, remembered) = (WHOLE, LONG_FOR_FUNCTIONS) if calls else (MIDDLE, LONG)
+        places, (ratio, remembered) = (WHOLE, LONG_FOR_FUNCTIONS) if system.has_functions else (MIDDLE, LONG)
         row = 2 + len(places) * width
-        room = min(MOST_STEPS, MOST_VALUES // row) if has_laws(system) else 0
+        room = min(MOST_STEPS, MOST_VALUES // row) if system.has_laws else 0
         self._rows, self._shape = np.empty((room, row)), (len(places), width)
         self._arrays = {"n_nodes": len(places), "node": places, "width": width, "row": self._rows}
         self.table = packed(LONG_STEPS, {**self._arrays, "ratio": ratio, "remembered": remembered, "room": room})
-        self._cells = cells(self.table, LONG_STEPS)
+        self._cells = self.table.view(LONG_STEPS.cells)[0]
 
     def forget(self) -> None:
         """Drop all steps."""

@@ -6,8 +6,8 @@ import numpy as np
 
 from ...compile.state import LEFT_OPEN
 from ...errors import SolverError
+from ..algebraic_states import failure
 from ..dynamics import Dynamics
-from ..failures import FAILURES
 from ..initial import InitialValues
 
 INDISTINCT = 4 * float(np.finfo(float).eps)
@@ -44,17 +44,19 @@ def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, projec
     state.q[:], state.u[:] = q, u
     if project and dynamics.system.n_c:
         status = dynamics.assemble(t)
-        _go_on(status, t, "" if status >= 0 else _no_longer_redundant(dynamics, t, q))
-        _go_on(dynamics.correct_velocities(t), t)
+        _go_on(dynamics, status, t, "" if status >= 0 else _no_longer_redundant(dynamics, t, q))
+        _go_on(dynamics, dynamics.correct_velocities(t), t)
     state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
-    _go_on(status, t)
+    _go_on(dynamics, status, t)
     return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), ())
 
 
-def _go_on(status: int, t: float, clause: str = "") -> None:
+def _go_on(dynamics: Dynamics, status: int, t: float, clause: str = "") -> None:
     if status < 0:
-        raise SolverError(f"no consistent values were found to start anew at t = {t:.9g} s: {FAILURES[status]}{clause}")
+        raise SolverError(
+            f"no consistent values were found to start anew at t = {t:.9g} s: {failure(dynamics, status, t)}{clause}"
+        )
 
 
 def _no_longer_redundant(dynamics: Dynamics, t: float, q: np.ndarray) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
+from ..algebraic_states import no_value_ahead
 from ..dynamics import Dynamics
 from ..events.chattering import Chattering
 from ..events.divergence import refuse_beyond_sense
@@ -17,7 +18,7 @@ from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
-from ..native.statuses import AT_END, AT_EVENT, PAUSED
+from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
@@ -91,8 +92,7 @@ class AdaptiveRun:
             self._store_rows()
         if status < 0:
             self.left = True
-            likely = suspect(self._dynamics, work.t, work.q.copy(), work.u.copy())
-            ending.stop(f"stopped at t = {work.t:.9g} s: {REASONS[status]}{likely}")
+            ending.stop(f"stopped at t = {work.t:.9g} s: {self._reason(status)}")
         elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
             ending.message = f"{ending.message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
@@ -108,9 +108,15 @@ class AdaptiveRun:
             long_steps=self.work.long_steps(),
         )
 
+    def _reason(self, status: int) -> str:
+        """Why the run cannot go on."""
+        state = self.work.t, self.work.q.copy(), self.work.u.copy()
+        missing = no_value_ahead(self._dynamics, *state) if status == NO_STATE else ""
+        return missing or REASONS[status] + suspect(self._dynamics, *state)
+
     def _segment(self, stop: float, leaving: Leaving | None) -> int:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
-        work, advance, status = self.work, ADVANCE.load(), PAUSED
+        work, advance, status = self.work, ADVANCE.call, PAUSED
         most = min(leaving.first, work.capacity) if leaving else work.capacity
         work.h = first_step(self._scheme, self._dynamics, self._start, work.t, self._grid.end, self._tolerances)
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
@@ -158,7 +164,7 @@ class AdaptiveRun:
         """Store what is asked for up to the time reached."""
         work, status = self.work, PAUSED
         while status == PAUSED:
-            status = ADVANCE.load()(work.t, 1, 1, self._grid.times is None, work.at)
+            status = ADVANCE.call(work.t, 1, 1, self._grid.times is None, work.at)
             work.collect(self._rows)
 
     def _statistics(self) -> dict[str, int | float | str]:

@@ -59,7 +59,7 @@ class Stepper:
 
 def euler_cromer(dynamics: Dynamics, start: InitialValues, settings: RunSettings) -> Stepper:
     """Semi-implicit Euler: u_{n+1} = u_n + h u'(q_n, u_n), q_{n+1} = q_n + h u_{n+1}, then both projections."""
-    state, table, steps_of = dynamics.state, dynamics.table.ctypes.data, EULER_CROMER.load()
+    state, table, steps_of = dynamics.state, dynamics.table.ctypes.data, EULER_CROMER.call
     state.q[:], state.u[:] = start.q, start.u
 
     def take(t: float, h: float, steps: int) -> int:
@@ -70,7 +70,7 @@ def euler_cromer(dynamics: Dynamics, start: InitialValues, settings: RunSettings
 
 def runge_kutta(scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> Stepper:
     """A Runge-Kutta scheme, then both projections."""
-    work, steps_of = Integration(scheme, dynamics, start, grid, settings), FIXED_STEPS.load()
+    work, steps_of = Integration(scheme, dynamics, start, grid, settings), FIXED_STEPS.call
 
     def take(t: float, h: float, steps: int) -> int:
         return steps_of(t, h, steps, work.at)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import EXPLICIT, cells, packed
+from ...compile.machine.layout import EXPLICIT, packed
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
@@ -66,7 +66,7 @@ class Integration:
             "longest": settings.max_step or np.inf, "step_bound": self.step_bound.table,
             "shortest": SHORTEST_PART * (grid.end - grid.start),
             "t": grid.start, "t_before": grid.start, "h": settings.step,
-            "n_event_functions": n_event_functions, "end_at_event": END_AT_EVENT.address() if self._watch.n else 0, "signs": np.zeros(n_event_functions),
+            "n_event_functions": n_event_functions, "end_at_event": END_AT_EVENT.address if self._watch.n else 0, "signs": np.zeros(n_event_functions),
             "watch": self._watch.table,
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
@@ -75,7 +75,7 @@ class Integration:
             "ends": np.empty(self.capacity),
         }  # fmt: skip
         self._table = packed(EXPLICIT, self._arrays)
-        self._cells = cells(self._table, EXPLICIT)
+        self._cells = self._table.view(EXPLICIT.cells)[0]
         self.begin(start)
 
     @property

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.machine.layout import MOST_STEPS, NATIVE_IDA, SAMPLES, cells, packed
+from ...compile.machine.layout import MOST_STEPS, NATIVE_IDA, SAMPLES, packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ..events.event_functions import EventSearch
@@ -30,6 +30,12 @@ LOOK_AT_START, LOOK_WITHIN = together(
     "stiffmbs.solve.native.event_search.ida_events", look_at_start="int32(float64, int64*)", look_within="int32(int64*)"
 )
 SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
+
+FUNCTIONS = {
+    "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
+    "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
+}  # fmt: skip
+"""What compiled code calls of SUNDIALS, by its names in the table."""
 
 
 class Connection:
@@ -76,54 +82,51 @@ class Connection:
         self.history, self.long_steps = StepLog(), LongStepLog(equations.system, len(self.reported))
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self.output_correction, self.iteration, self.step_bound = OutputCorrection(n), Iteration(n), StepBound()
+        self.output_correction, self.iteration, self.step_bound = OutputCorrection(equations), Iteration(n), StepBound()
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
-        self.n_event_functions = equations.system.n_event_functions
-        self.signs, self.masked = np.zeros(self.n_event_functions), np.zeros(self.n_event_functions, dtype=np.int64)
-        self.watch = EventSearch(state, self.masked)
-        for term_set in (equations.formulation.residual_set, equations.formulation.matrix_set, "event_function"):
-            state.load(term_set)
+        self.watch = EventSearch(state)
+        self.n_event_functions, self.masked = self.watch.n_event_functions, self.watch.masked
+        self.signs = np.zeros(self.n_event_functions)
         self._table = self._packed()
-        self.table, self.cells = self._table.ctypes.data, cells(self._table, NATIVE_IDA)
+        self.table, self.cells = self._table.ctypes.data, self._table.view(NATIVE_IDA.cells)[0]
         self.error_norm = ErrorNorm(n)
         tables = self._state_table, self._equations_table
         self.error_norm.take_place(session, self.memory, self.y_vector, tables, self._assembled, self.iteration.table)
         self._initialise()
 
     def _packed(self) -> np.ndarray:
-        address = self._session.libraries.address
+        functions = {name: self._session.libraries.address(function) for name, function in FUNCTIONS.items()}
+        history, formulation = self.history.rows(MOST_STEPS), self._equations.formulation
+        for term_set in (formulation.residual_set, formulation.matrix_set):
+            self._state.load(term_set)
         self._equations_table, self._slots = self._equations.table(self._assembled.slots)
         self._state_table, self._calls = self._state.restricted(self._equations.used())
         return packed(
             NATIVE_IDA,
             {
                 "state": self._state_table, "equations": self._equations_table,
-                "array_of": address("N_VGetArrayPointer"),
+                **functions,
                 "matrix": self._assembled.values, "pattern": self._assembled.pattern,
                 "n_event_functions": self.n_event_functions, "signs": self.signs, "masked": self.masked,
                 "memory": self.memory, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
                 "n_reported": len(self.reported), "reported": self.reported,
-                "solve": address("IDASolve"), "interpolate": address("IDAGetDky"),
-                "time_of": address("IDAGetCurrentTime"), "order_of": address("IDAGetLastOrder"),
-                "step_of": address("IDAGetLastStep"), "stop_at": address("IDASetStopTime"),
-                "next_step_of": address("IDAGetCurrentStep"), "step_bound": self.step_bound.table,
-                "history": self.history.rows(MOST_STEPS), "samples": self.samples,
+                "step_bound": self.step_bound.table, "history": history, "samples": self.samples,
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
-                "look_at_start": LOOK_AT_START.address() if self.watch.n else 0, "look_within": LOOK_WITHIN.address() if self.watch.n else 0,
+                "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
                 "probe": self._probe, "long_steps": self.long_steps.table,
             },
         )  # fmt: skip
 
     def _initialise(self) -> None:
-        self.ask("IDAInit", RESIDUAL.address(), 0.0, self.y_vector, self.yp_vector)
+        self.ask("IDAInit", RESIDUAL.address, 0.0, self.y_vector, self.yp_vector)
         self.ask("IDASetUserData", self.table)
         self.ask("IDASetLinearSolver", self._assembled.solver, self._assembled.matrix)
-        self.ask("IDASetJacFn", JACOBIAN.address())
+        self.ask("IDASetJacFn", JACOBIAN.address)
         self.ask("IDASetMaxNumSteps", -1)  # a call of IDASolve is of one step
         if self.n_event_functions:
-            self.ask("IDARootInit", self.n_event_functions, SWITCHES.address())
+            self.ask("IDARootInit", self.n_event_functions, SWITCHES.address)
             self.ask("IDASetNoInactiveRootWarn")
 
     def ask(self, function: str, *arguments: Any) -> None:
@@ -167,13 +170,14 @@ class Connection:
         self.signs[:] = 0.0
         self.watch.begin()
         self.iteration.begin()
+        self.output_correction.begin()
         self.history.begin(t)
 
-    def correct_outputs(self, long_step: float, part: float) -> None:
-        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
+    def correct_outputs(self, long_step: float, part: float, balanced: float) -> None:
+        """Have states within long steps brought back to the equations, as `OutputCorrection.limit` has it."""
         if long_step < np.inf and not self.output_correction.ready:
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector)
-        self.output_correction.limit(long_step, part)
+        self.output_correction.limit(long_step, part, balanced)
 
     def suppress(self, suppressed: np.ndarray) -> None:
         """Leave unknowns out of the error test."""
@@ -190,6 +194,6 @@ class Connection:
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and keep the history of the call; returns IDA's last flag."""
         with self._session.libraries.on_one_thread():
-            flag = loop.load()(*arguments, self.table)
+            flag = loop.call(*arguments, self.table)
         self.history.add(int(self.cells["recorded"]))
         return flag

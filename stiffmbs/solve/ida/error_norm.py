@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import ERROR_NORM, cells, fill
+from ...compile.machine.layout import ERROR_NORM, fill
 from ...compile.machine.routines import Routine
 from .libraries import Unavailable
 from .matrices import Assembled
@@ -25,7 +25,7 @@ class ErrorNorm:
 
     def __init__(self, n: int) -> None:
         self._table = np.zeros(len(ERROR_NORM), dtype=np.int64)
-        self._cells = cells(self._table, ERROR_NORM)
+        self._cells = self._table.view(ERROR_NORM.cells)[0]
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
@@ -66,7 +66,7 @@ class ErrorNorm:
             },
         )  # fmt: skip
         try:
-            take_norm(session, y_vector, NORM.address(), self._table)
+            take_norm(session, y_vector, NORM.address, self._table)
         except Unavailable:
             return
 

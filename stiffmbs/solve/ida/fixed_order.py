@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...compile.machine.layout import FACTORS, FIXED_ORDER, Layout, cells
+from ...compile.machine.layout import FACTORS, FIXED_ORDER, Layout
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.elimination_order import EliminationOrder
@@ -72,21 +72,21 @@ class FixedOrder:
         matrix = session.keep(s.SUNBandMatrix(self.n, 0, 0, session.context), s.SUNMatDestroy, "a matrix")
         solver = session.keep(s.SUNLinSol_Band(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
         memory = self.memory(s.address("N_VGetArrayPointer"))
-        functions = {"SUNLinSolSetup_Band": self.setup.address(), "SUNLinSolSolve_Band": self.solve.address()}
+        functions = {"SUNLinSolSetup_Band": self.setup.address, "SUNLinSolSolve_Band": self.solve.address}
         take_place(session, solver, self.n, functions, memory.content)
         return Assembled(
-            matrix, solver, memory.factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64), (memory,), cells(memory.content, self.layout)
+            matrix, solver, memory.factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64), (memory,), memory.content.view(self.layout.cells)[0]
         )  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
         """What the compiled routines work on, given the address of N_VGetArrayPointer."""
-        factors = factors_of(self.n, self.rows, self.columns, self.order)
+        factors, lists = factors_of(self.n, self.rows, self.columns, self.order), self._lists()
         table = packed_with_memory(FACTORS, factors)
         arrays = {
             "n": self.n, "pivots": 0, "last_flag": 0, "array_of": array_of, "factors": table,
             "slot": np.zeros(len(self.rows), dtype=np.int32),
             "weight": np.zeros(len(self.rows)), "update_start": np.zeros(self.n + 1, dtype=np.int64),
-            "mark": np.zeros(self.n, dtype=np.int64), "x": np.zeros(self.n + 1), **self._lists(),
+            "mark": np.zeros(self.n, dtype=np.int64), "x": np.zeros(self.n + 1), **lists,
         }  # fmt: skip
         return Memory(packed_with_memory(self.layout, arrays), arrays, factors)
 

@@ -114,6 +114,7 @@ class NativeIda:
         self._flag, self._begun = 0, False
         self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
         self._look = self._usual_pace = self._pace
+        self._trace = np.empty((0, 2 + 2 * n))
         ida.set_tolerances(rtol, atol)
         self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
         if suppressed is not None:
@@ -154,6 +155,19 @@ class NativeIda:
         """Have `advance` and `steps` return after so many steps at the latest."""
         self._pace = min(self._usual_pace, steps)
 
+    def keep_steps(self, kept: bool) -> None:
+        """Whether `advance` and `steps` keep time, order, y and y' of each step for `kept_steps`."""
+        width = 2 + 2 * len(self.y)
+        self._trace = np.empty((MOST_STEPS if kept else 0, width))
+        self._ida.cells["trace"] = self._trace.ctypes.data if kept else 0
+        self._ida.cells["traced"] = 0
+
+    def kept_steps(self) -> np.ndarray:
+        """Time, order, y and y' of the steps of the last call, one a row; each is given once."""
+        rows: np.ndarray = self._trace[: int(self._ida.cells["traced"])].copy()
+        self._ida.cells["traced"] = 0
+        return rows
+
     def look_after(self, steps: int) -> None:
         """Have the next call of `advance` or `steps` return after so many steps at the latest."""
         self._look = max(steps, 1)
@@ -170,9 +184,12 @@ class NativeIda:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
         self._ida.ask("IDASetNonlinConvCoef", part)
 
-    def correct_outputs(self, long_step: float, part: float) -> None:
-        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance."""
-        self._ida.correct_outputs(long_step, part)
+    def correct_outputs(self, long_step: float, part: float, balanced: float) -> None:
+        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance.
+
+        They are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest.
+        """
+        self._ida.correct_outputs(long_step, part, balanced)
 
     def filter_always(self, asked: bool) -> None:
         """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""
@@ -180,7 +197,7 @@ class NativeIda:
 
     def forget(self) -> None:
         """Forget counters, history and pivots, as if it had never begun."""
-        self._begun = False
+        self._begun, self._look = False, self._usual_pace
         self._statistics.forget()
         self._ida.forget()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import ITERATION, cells, fill
+from ...compile.machine.layout import ITERATION, fill
 from ...compile.machine.routines import Routine
 from .session import Session
 
@@ -30,7 +30,7 @@ class Iteration:
     def __init__(self, n: int) -> None:
         self._n = n
         self.table = np.zeros(len(ITERATION), dtype=np.int64)
-        self._cells = cells(self.table, ITERATION)
+        self._cells = self.table.view(ITERATION.cells)[0]
         self._cells["cj"] = np.inf
 
     def solver(self, session: Session, memory: int, y_vector: int) -> int:
@@ -54,4 +54,4 @@ class Iteration:
 
     def take_over(self, session: Session, solver: int) -> None:
         """Put the test in place."""
-        session.libraries.SUNNonlinSolSetConvTestFn(solver, CONVERGED.address(), self.table.ctypes.data)
+        session.libraries.SUNNonlinSolSetConvTestFn(solver, CONVERGED.address, self.table.ctypes.data)

@@ -41,19 +41,23 @@ class NativeEngine:
     matrix : Matrix
     settings : RunSettings
     control : ErrorControl
+
+    Attributes
+    ----------
+    matrix : Matrix
     """
 
     def __init__(
         self, equations: Equations, state: State, matrix: Matrix, settings: RunSettings, control: ErrorControl
     ) -> None:
-        reported = equations.independent
+        tolerances, reported = control.tolerances(equations, settings), equations.independent
         self._ida = NativeIda(
-            equations, state, matrix, *control.tolerances(equations, settings), max_step=settings.max_step,
+            equations, state, matrix, *tolerances, max_step=settings.max_step,
             suppressed=control.untested(equations), reported=reported, growth=control.growth,
             predicted_residual=control.predicted_residual,
             renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,
         )  # fmt: skip
-        self._width, self._equations, self._matrix = len(reported), equations, matrix
+        self._width, self._equations, self.matrix = len(reported), equations, matrix
         self._rtol = settings.rtol
         self._order = StabilityLimitDetection(equations, settings)
         self.forget()
@@ -77,7 +81,9 @@ class NativeEngine:
         """Start, or start anew, at consistent values."""
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
-        self._ida.correct_outputs(stiffness.long_step, max(stiffness.allowed_residual, NUMBERS_END / self._rtol))
+        self._ida.correct_outputs(
+            stiffness.long_step, max(stiffness.allowed_residual, NUMBERS_END / self._rtol), self._rtol
+        )
         self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
@@ -151,13 +157,25 @@ class NativeEngine:
         """Report at the latest after so many steps."""
         self._ida.pause_after(steps)
 
+    def keep_steps(self, kept: bool) -> None:
+        """Whether the steps are kept for `kept_steps`."""
+        self._ida.keep_steps(kept)
+
+    def kept_steps(self) -> np.ndarray:
+        """Time, order, y and y' of the steps since this was last asked for, one a row."""
+        return self._ida.kept_steps()
+
+    def present(self) -> np.ndarray:
+        """A row of the same form for where it is."""
+        return np.concatenate([[self._ida.t, 1.0], self._ida.y, self._ida.yp])
+
     def note(self) -> str:
         """What the user should know of the way it went."""
         return self._order.note(self._ida.history.count)
 
     def statistics(self) -> dict[str, int | float | str]:
         """The linear solver, and counters since the first start."""
-        return {"linear_solver": self._matrix.sentence(), **self._ida.statistics()}
+        return {"linear_solver": self.matrix.sentence(), **self._ida.statistics()}
 
     def last_step(self) -> tuple[float, int] | None:
         """Size, s, and order of the last step, where they are known."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import OUTPUT_CORRECTION, cells, fill
+from ...compile.equations import ABSENT, Equations
+from ...compile.machine.layout import OUTPUT_CORRECTION, fill
 from .matrices import Assembled, Matrix
 from .session import Session
 
-VECTORS = "y", "yp", "defect", "correction", "weight"
+VECTORS = "y", "yp", "defect", "correction", "weight", "size"
 
 
 class OutputCorrection:
@@ -16,8 +17,7 @@ class OutputCorrection:
 
     Parameters
     ----------
-    n : int
-        Number of unknowns.
+    equations : Equations
 
     Attributes
     ----------
@@ -25,10 +25,10 @@ class OutputCorrection:
         For compiled code (`stiffmbs.compile.machine.layout.OUTPUT_CORRECTION`); without addresses until `make_ready`.
     """
 
-    def __init__(self, n: int) -> None:
-        self._n = n
+    def __init__(self, equations: Equations) -> None:
+        self._equations = equations
         self.table = np.zeros(len(OUTPUT_CORRECTION), dtype=np.int64)
-        self._cells = cells(self.table, OUTPUT_CORRECTION)
+        self._cells = self.table.view(OUTPUT_CORRECTION.cells)[0]
         self._cells["long"] = np.inf
         self._assembled: Assembled | None = None
         self._vectors: dict[str, np.ndarray] = {}
@@ -53,7 +53,8 @@ class OutputCorrection:
         """
         libraries, assembled = session.libraries, matrix.assembled(session, y_vector)
         libraries.SUNLinSolInitialize(assembled.solver)
-        vectors = {name: np.zeros(self._n) for name in VECTORS}
+        vectors = {name: np.zeros(self._equations.n) for name in VECTORS}
+        force_row, force_end = _rows_of_motion(self._equations)
         functions = {
             "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights",
             "clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
@@ -66,17 +67,32 @@ class OutputCorrection:
                 **{name: libraries.address(function) for name, function in functions.items()},
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "entries": assembled.values, "pattern": assembled.pattern,
-                **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
+                "force_row": force_row, "force_end": force_end, **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
             },
         )  # fmt: skip
-        self._assembled, self._vectors = assembled, vectors
+        self._assembled, self._vectors = assembled, {**vectors, "force_row": force_row, "force_end": force_end}
 
-    def limit(self, long_step: float, part: float) -> None:
-        """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left."""
-        self._cells["long"], self._cells["enough"] = long_step, part
+    def limit(self, long_step: float, part: float, balanced: float) -> None:
+        """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left.
+
+        States are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest.
+        """
+        self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
+
+    def begin(self) -> None:
+        """Look at the first state behind a start."""
+        self._cells["unseen"] = self._cells["next_look"] = 0
 
     def forget(self) -> None:
         """Have the matrix factored anew, with pivots that are sought anew."""
         self._cells["factored"] = 0.0
         if self._assembled is not None and self._assembled.pivots is not None:
             self._assembled.pivots["ready"] = 0
+
+
+def _rows_of_motion(equations: Equations) -> tuple[np.ndarray, np.ndarray]:
+    """The rows of the equations of motion, those of forces and then those of moments, and where either end."""
+    rows = equations.at["u"]
+    straight = equations.system.per_velocity(1.0, 0.0) == 1.0
+    kinds = [rows[of_kind & (rows != ABSENT)] for of_kind in (straight, ~straight)]
+    return np.concatenate(kinds).astype(np.int64), np.cumsum([len(kind) for kind in kinds]).astype(np.int64)

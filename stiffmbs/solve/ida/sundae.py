@@ -11,7 +11,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import IDA, cells, packed
+from ...compile.machine.layout import IDA, packed
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ..error_control.newton import Stiffness
@@ -68,7 +68,7 @@ class Callbacks:
             "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "signs": self._signs, "masked": self.masked,
         }  # fmt: skip
         table = packed(IDA, fields)
-        self._kept, self._cells = (state, equations, slot_of_entry, table), cells(table, IDA)
+        self._kept, self._cells = (state, equations, slot_of_entry, table), table.view(IDA.cells)[0]
         at = table.ctypes.data
         self.residual, self.jacobian, self.event_functions = (
             self._residual(at),
@@ -78,7 +78,7 @@ class Callbacks:
 
     @staticmethod
     def _residual(table: int) -> Any:
-        call = RESIDUAL.load()
+        call = RESIDUAL.call
 
         def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
             call(t, id(y), id(yp), id(r), table)  # asking an array for .ctypes.data costs more than the residual
@@ -87,7 +87,7 @@ class Callbacks:
 
     @staticmethod
     def _jacobian(table: int) -> Any:
-        call = JACOBIAN.load()
+        call = JACOBIAN.call
 
         def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
             call(t, id(y), id(yp), cj, id(a), table)
@@ -96,7 +96,7 @@ class Callbacks:
 
     @staticmethod
     def _event_functions(table: int) -> Any:
-        call = SWITCHES.load()
+        call = SWITCHES.call
 
         def event_functions(t: float, y: np.ndarray, yp: np.ndarray, values: np.ndarray) -> None:
             call(t, id(y), id(yp), id(values), table)

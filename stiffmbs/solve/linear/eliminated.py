@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import DTYPES, ELIMINATED, cells, fill
+from ...compile.machine.layout import DTYPES, ELIMINATED, fill
 from ...compile.state import State
 from .saddle_point import ACCELERATIONS
 
@@ -27,7 +27,7 @@ class Eliminated:
     Attributes
     ----------
     serves : bool
-        Whether the system is of the kind: no force depends on multipliers, and the factors stay sparse.
+        Whether the system is of the kind: no force depends on multipliers or algebraic states, and the factors stay sparse.
     pivots_tell : bool
         Whether pivots tell how near to singular a pose is: it serves, and no inertia is so small that it decides about them.
     table : ndarray of int
@@ -50,11 +50,13 @@ class Eliminated:
         columns = _filled({(a, b) for a, b, *_ in products}, len(rows))
         updates = sum(len(below) * (len(below) + 1) // 2 for below in columns)
         hanging = len(system.term("acceleration", "f_lam").source)
-        self.serves = not hanging and updates <= MOST_UPDATES_PER_ENTRY * max(len(self._j[0]), 1)
+        self.serves = (
+            not hanging and not system.algebraic.any() and updates <= MOST_UPDATES_PER_ENTRY * max(len(self._j[0]), 1)
+        )
         resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
         self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))
         self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
-        self._cells = cells(self.table, ELIMINATED)
+        self._cells = self.table.view(ELIMINATED.cells)[0]
         if self.serves:
             self._arrays = self._packable(state, products, columns)
             fill(self.table, ELIMINATED, self._arrays)

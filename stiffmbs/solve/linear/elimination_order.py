@@ -89,7 +89,7 @@ def _owners(equations: Equations) -> tuple[int, np.ndarray]:
     """The number of bodies, and for each unknown the body or, counted on from there, the joint that it belongs to."""
     system = equations.system
     n_bodies = len(system.bodies)
-    width = {"q": system.of_body.n_q, "u": system.of_body.n_u}
+    width = {"q": system.of_body.n_q, "x": system.of_body.n_q, "u": system.of_body.n_u}
     owner = np.zeros(equations.n, dtype=np.int64)
     joint = n_bodies + np.repeat(np.arange(len(system.joint_start) - 1), np.diff(system.joint_start))
     for name, at in equations.at.items():

@@ -5,9 +5,14 @@ All three are [D J^T; J 0] [x; w] = [a; b], solved by one sparse LU whose patter
 
 from __future__ import annotations
 
+from itertools import repeat
+from typing import Any
+
+import numpy as np
+
 from ...compile.equations import Equations
 from ...compile.formulation import Block, Formulation, Product
-from ...compile.machine.layout import FACTORS, cells
+from ...compile.machine.layout import FACTORS
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.state import State
 from .elimination_order import elimination_order
@@ -24,6 +29,27 @@ ACCELERATIONS = Formulation(
     matrix=(Block("u", "u", "M"), Block("u", "lam", "f_lam", -1), *_SADDLE),
 )
 """[M J^T; J 0] [u'; lam] = [f; gamma]; one Newton step of it where friction makes f depend on lam."""
+
+WITH_ALGEBRAIC_STATES = Formulation(
+    name="accelerations with algebraic states",
+    unknowns=("u", "lam", "x"),
+    residual_set="acceleration",
+    matrix_set="acceleration",
+    residual=(
+        *ACCELERATIONS.residual,
+        Product("u", -1, "f_alg", "x"),
+        Product("x", +1, "rate"),
+        Product("x", -1, "rate_alg", "x"),
+        Product("x", -1, "rate_lam", "lam"),
+    ),
+    matrix=(
+        *ACCELERATIONS.matrix,
+        Block("u", "x", "f_alg", -1),
+        Block("x", "x", "rate_alg", -1),
+        Block("x", "lam", "rate_lam", -1),
+    ),
+)
+"""The same with algebraic states among the unknowns, 0 = z(x, lam): one Newton step of all of them."""
 
 POSITION_STEP = Formulation(
     name="position step",
@@ -55,6 +81,17 @@ VELOCITY_STEP = Formulation(
 """[M J^T; J 0] [du; w] = [0; -V]: the smallest correction in the mass matrix."""
 
 
+def saddle_points(state: State, *formulations: Formulation) -> list[SaddlePoint]:
+    """The block systems of some formulations at one state."""
+    for formulation in formulations:
+        state.load(formulation.residual_set)
+    systems = list(map(Equations, formulations, repeat(state.system)))
+    tables = list(map(Equations.table, systems))
+    factors = [factors_of(each.n, *each.pattern, elimination_order(each)) for each in systems]
+    factors_tables = list(map(packed_with_memory, repeat(FACTORS), factors))
+    return list(map(SaddlePoint, systems, tables, factors_tables, factors))
+
+
 class SaddlePoint:
     """One block system with its factors, ready for compiled code.
 
@@ -64,13 +101,12 @@ class SaddlePoint:
         Addresses (`stiffmbs.compile.machine.layout`).
     """
 
-    def __init__(self, formulation: Formulation, state: State) -> None:
-        self.equations = Equations(formulation, state.system)
-        state.load(formulation.residual_set)
-        self.equations_table, self._slots = self.equations.table()
-        self._arrays = factors_of(self.equations.n, *self.equations.pattern, elimination_order(self.equations))
-        self.factors_table = packed_with_memory(FACTORS, self._arrays)
-        self._cells = cells(self.factors_table, FACTORS)
+    def __init__(
+        self, equations: Equations, table: tuple[np.ndarray, list[np.ndarray]], factors_table: np.ndarray, factors: dict[str, Any]
+    ) -> None:  # fmt: skip
+        self.equations, self.factors_table, self._factors = equations, factors_table, factors
+        self.equations_table, self._slots = table
+        self._cells = self.factors_table.view(FACTORS.cells)[0]
 
     def forget_pivots(self) -> None:
         """Have the pivots sought anew with the next factorisation."""

@@ -6,7 +6,7 @@ from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.solve.native.projection import back_to_constraints
-from stiffmbs.solve.native.stages import copied, load_state, rates, take_stage, weighted
+from stiffmbs.solve.native.stages import copied, keep_algebraic, load_state, rates, take_stage, weighted
 from stiffmbs.solve.native.statuses import NOT_FINITE
 
 
@@ -28,6 +28,7 @@ def arrive(x, c, s, m, t):
         status = rates(x, s, m, c.stages, t)
         if status < 0:
             return status
+        keep_algebraic(s, m, x.y)
     for i in range(x.n):
         if not isfinite(x.y[i]):
             return NOT_FINITE
@@ -44,5 +45,7 @@ def attempt(x, c, s, m, h):
     weighted(x, c, x.y, c.stages, h)
     if c.error_needs_end:
         load_state(s, x.y)
-        return rates(x, s, m, c.stages, x.t_before + h)
+        status = rates(x, s, m, c.stages, x.t_before + h)
+        keep_algebraic(s, m, x.y)
+        return status
     return 0

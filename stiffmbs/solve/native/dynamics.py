@@ -24,7 +24,7 @@ from stiffmbs.compile.machine.native.evaluate import (
 )
 from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
 from stiffmbs.compile.machine.native.orientation import take_unit_length
-from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NOT_FINITE, SINGULAR
+from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NO_STATE, NOT_FINITE, SINGULAR
 
 MOST_MOVES = 20
 """Newton's moves back to the constraints, from a state that was near them."""
@@ -38,6 +38,9 @@ AMPLIFIED, MOVED = 1e6, 1e-6
 pose is singular to rounding, which then decides where the projection leads."""
 ROUNDED_OFF = 1e-9
 """Change that is taken for balance all the same when no iteration brings it further down."""
+STATE_TOLERANCE, STATE_ROUNDED_OFF, SLOW = 1e-12, 1e-7, 0.25
+"""Change of algebraic states, relative to their values or scales, at which Newton's iteration has found them; and the one that
+will do where a move is no shorter than this part of the one before."""
 
 
 @compiled
@@ -135,22 +138,50 @@ def _largest_force(s, e, values):
 
 
 @compiled
-def to_accelerations(s, m, t):
-    """Accelerations (in the factors' `b`) and multipliers (in lam) at the current state.
+def _algebraic_moved(s, m, e, f):
+    """Take over the new values of algebraic states; their largest change, relative to values or scales."""
+    moved = 0.0
+    for k in range(m.n_algebraic):
+        place = m.algebraic[k]
+        new = f.b[e.at_x[place]]
+        moved = max(moved, abs(new - s.q[place]) / max(abs(new), m.algebraic_scale[k]))
+        s.q[place] = new
+    return moved
 
-    One linear solution; Newton's iteration from the lam at hand where forces of friction hang on it.
+
+@compiled
+def _algebraic_back(s, m, status):
+    """The algebraic states as they were before an iteration that has failed, and why it has."""
+    for k in range(m.n_algebraic):
+        s.q[m.algebraic[k]] = m.algebraic_before[k]
+    return NO_STATE if m.n_algebraic > 0 and status != NO_MEMORY else status
+
+
+@compiled
+def to_accelerations(s, m, t):
+    """Accelerations (in the factors' `b`), multipliers (in lam) and algebraic states (in q) at the current state.
+
+    One linear solution; Newton's iteration from the values at hand where there are algebraic states, or forces hang on lam.
     """
     e = equations_view(m.accelerations)
     f = factors_view(m.acceleration_factors)
     iterated = e.n_with_y > e.n_plain
+    for k in range(m.n_algebraic):
+        m.algebraic_before[k] = s.q[m.algebraic[k]]
+    moved = 0.0
     for _ in range(MOST_FRICTION_ITERATIONS):
         for k in range(s.n_c):
             if e.at_lam[k] >= 0:
                 f.previous[e.at_lam[k]] = s.lam[k]
+        for k in range(m.n_algebraic):
+            f.previous[e.at_x[m.algebraic[k]]] = s.q[m.algebraic[k]]
         values = evaluate(s, ACCELERATION, t)
         status = _solved(s, m.accelerations, m.acceleration_factors, values)
         if status < 0:
-            return NO_BALANCE if iterated and status == SINGULAR else status
+            return _algebraic_back(s, m, NO_BALANCE if iterated and status == SINGULAR else status)
+        before = moved
+        moved = _algebraic_moved(s, m, e, f)
+        found = moved <= STATE_TOLERANCE or (moved <= STATE_ROUNDED_OFF and moved >= SLOW * before)
         change = 0.0
         largest = _largest_force(s, e, values) if iterated else 0.0
         for k in range(s.n_c):
@@ -158,11 +189,11 @@ def to_accelerations(s, m, t):
             change = max(change, abs(new - s.lam[k]))
             largest = max(largest, abs(new))
             s.lam[k] = new
-        if not iterated or change <= FRICTION_TOLERANCE * largest:
+        if not iterated or (found and change <= FRICTION_TOLERANCE * largest):
             if m.by_reactions:
                 evaluate(s, ACCELERATION, t)
             return 0
-    return 0 if change <= ROUNDED_OFF * largest else NO_BALANCE
+    return 0 if found and change <= ROUNDED_OFF * largest else _algebraic_back(s, m, NO_BALANCE)
 
 
 def assemble(t, tolerance, most, dynamics):

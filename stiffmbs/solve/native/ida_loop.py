@@ -119,7 +119,23 @@ def _stepped(c, ida, toward, stop):
         flag = int32(ROOT_RETURN)
     if flag >= 0:
         _keep_if_long(c, begun)
+    if flag >= 0 and c.trace:
+        _keep_step(c)
     return flag
+
+
+@compiled
+def _keep_step(c):
+    """Keep where a step has come, as variational equations are integrated along it afterwards."""
+    n = equations_view(c.equations).n
+    row = floats(c.trace + 8 * (2 + 2 * n) * c.traced)
+    row[0] = c.returned
+    row[1] = float(c.order)
+    y, yp = array_of(c, c.y), array_of(c, c.yp)
+    for k in range(n):
+        row[2 + k] = y[k]
+        row[2 + n + k] = yp[k]
+    c.traced += 1
 
 
 @compiled
@@ -199,6 +215,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     c = native_ida_view(ida)
     c.served = 0
     c.recorded = 0
+    c.traced = 0
     flag = _served(c, times, count, y_out, yp_out)
     for _ in range(min(most, MOST_STEPS)):
         if flag != OK:
@@ -215,6 +232,7 @@ def steps(most, stop, t_out, y_out, ida):
     c = native_ida_view(ida)
     c.served = 0
     c.recorded = 0
+    c.traced = 0
     flag = int32(OK)
     while flag == OK and c.served < min(most, MOST_STEPS):
         flag = _stepped(c, ida, stop, stop)

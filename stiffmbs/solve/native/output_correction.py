@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.layout import OUTPUT_CORRECTION
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
-from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, evaluate, load
+from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.statuses import OK
 
@@ -21,6 +21,9 @@ MOST_CORRECTIONS = 8
 """Corrections."""
 SLOWEST = 0.3
 """A correction that is a larger part of the one before asks for new factors, or ends the iteration in vain."""
+
+FAR_BELOW, MOST_UNSEEN = 0.1, 7
+"""Part of the force that may be left below which some states after this one are not looked at, and their number at the most."""
 
 TRUSTED = 10
 """States for which a measured rate serves."""
@@ -57,10 +60,43 @@ def _factored(b, s, e, t):
 
 
 @compiled
-def _corrected(b, s, e, t):
-    """Make one correction; returns its size in units of the tolerance."""
+def _look(b, s, e, t):
+    """What the equations leave at the state at hand."""
     load(s, e, b.y, b.yp)
     add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.defect)
+
+
+@compiled
+def _left(b, s, e):
+    """The largest part that the equations of motion leave of the forces in them, in units of what may be left."""
+    add_sizes(e, floats(s.values[e.residual_set]), b.y, b.yp, b.size)
+    part = 0.0
+    first = 0
+    for kind in range(2):
+        largest = 0.0
+        left = 0.0
+        for k in range(first, b.force_end[kind]):
+            largest = max(largest, b.size[b.force_row[k]])
+            left = max(left, abs(b.defect[b.force_row[k]]))
+        first = b.force_end[kind]
+        if not left <= b.balanced * largest:
+            return 2.0
+        part = max(part, left / (b.balanced * largest) if largest > 0.0 else 0.0)
+    return part
+
+
+@compiled
+def _is_balanced(b, s, e):
+    """Whether the forces of the interpolated state balance well enough; settles how many states after it are not looked at."""
+    part = _left(b, s, e)
+    b.unseen = min(2 * b.unseen + 1, MOST_UNSEEN) if part < FAR_BELOW else 0
+    b.next_look = b.unseen
+    return part <= 1.0
+
+
+@compiled
+def _corrected(b, e):
+    """Make one correction; returns its size in units of the tolerance."""
     call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
     cj = b.factored
     squares = 0.0
@@ -94,7 +130,7 @@ def _settled(b, s, e, t):
     rate = _predicted(b, t)
     before = 0.0
     for k in range(MOST_CORRECTIONS):
-        size = _corrected(b, s, e, t)
+        size = _corrected(b, e)
         if k > 0:
             rate = size / before
             if not rate < SLOWEST:
@@ -103,19 +139,27 @@ def _settled(b, s, e, t):
         if rate * size <= b.enough:
             return True
         before = size
+        _look(b, s, e, t)
     return False
 
 
 @compiled
 def corrected(output_correction, state, equations, t):
-    """Interpolate, and bring the state, held in the table's y and y', back to the equations; False where that does not settle."""
+    """Interpolate, and bring the state, held in the table's y and y', back to the equations; False where it stays as it is interpolated."""
     b = output_correction_view(output_correction)
+    if b.next_look > 0:
+        b.next_look -= 1
+        return False
     s = state_view(state)
     e = equations_view(equations)
-    if call_int(b.weights, (b.memory, b.at_weight)) < OK or not _interpolated(b, t):
+    if not _interpolated(b, t):
+        return False
+    _look(b, s, e, t)
+    if _is_balanced(b, s, e) or call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
     if b.current / APART < b.factored < b.current * APART:
         if _settled(b, s, e, t):
             return True
         _interpolated(b, t)
+        _look(b, s, e, t)
     return _factored(b, s, e, t) and _settled(b, s, e, t)

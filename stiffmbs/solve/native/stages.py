@@ -65,6 +65,13 @@ def add_rates_behind(s, m, factor, target):
 
 
 @compiled
+def keep_algebraic(s, m, y):
+    """Put the algebraic states at hand into a state y = (q, u)."""
+    for k in range(m.n_algebraic):
+        y[m.algebraic[k]] = s.q[m.algebraic[k]]
+
+
+@compiled
 def rates(x, s, m, stage, t):
     """k_stage = (q', u') at the state at hand; 0 or a negative status."""
     k = shifted(x.k, stage * x.n)

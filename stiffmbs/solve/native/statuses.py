@@ -13,6 +13,8 @@ NO_BALANCE = -6
 """Friction and the reactions that press it have no unique common solution, or the iteration does not find it."""
 NO_MEMORY = -7
 """There is too little memory for the factors of a block system."""
+NO_STATE = -8
+"""The equations of algebraic states have no unique solution near their last values, or Newton's iteration does not find it."""
 
 STEP_TOO_SMALL, STIFF = -4, -5
 PAUSED, AT_END, AT_EVENT = 0, 1, 2

@@ -52,18 +52,19 @@ def trial(seed: int) -> Verdict:
     base = random.choice(DATASETS if dataset else SCENES)
     content = base.encode()
     for _ in range(random.choice((1, 1, 1, 2, 3))):
-        content = random.choices(*zip(*_CHANGES, strict=True))[0](content, random)
+        content = random.choices(*zip(*CHANGES, strict=True))[0](content, random)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             return _tried(content, dataset)
     except StiffmbsError as error:
-        return _of_message(str(error))
+        return told(str(error))
     except Exception as error:  # whatever it is, no user should have seen it
         return Verdict(Outcome.WRONG, detail=f"{type(error).__name__}: {str(error)[:200]}")
 
 
-def _of_message(message: str) -> Verdict:
+def told(message: str) -> Verdict:
+    """A message that is one sentence, or what is wrong with it."""
     if not message or "\n" in message or len(message) > LONGEST_MESSAGE:
         return Verdict(Outcome.WRONG, detail=f"no sentence, {len(message)} characters: {message[:200]!r}")
     return Verdict(Outcome.TOLD, detail=message)
@@ -75,11 +76,11 @@ def _tried(content: bytes, dataset: bool) -> Verdict:
     check_as_json("scene", report)
     str(report)
     solution = run(scene, watch=patience(PATIENCE), duration=min(MOMENT, scene.run.duration), points=5)
-    _shown(solution)
+    shown(solution)
     if solution.outcome is not Ending.DONE:
-        return _of_message(solution.message)
-    bad = [name for name, values in solution.channels.items() if not np.all(np.isfinite(values))]
-    unsaid = [name for name in bad if "no finite number" not in " ".join(solution.notes)]
+        return told(solution.message)
+    bad = _without_numbers(solution)
+    unsaid = unsaid_channels(solution)
     if unsaid:
         return Verdict(Outcome.WRONG, detail=f"done, but {bad[0]} is no number at some time; notes: {solution.notes}")
     if bad:
@@ -87,12 +88,22 @@ def _tried(content: bytes, dataset: bool) -> Verdict:
     return Verdict(Outcome.RIGHT, detail="; ".join(solution.notes))
 
 
+def _without_numbers(solution: Solution) -> list[str]:
+    return [name for name, values in solution.channels.items() if not np.all(np.isfinite(values))]
+
+
+def unsaid_channels(solution: Solution) -> list[str]:
+    """Channels without a number somewhere, of which the notes tell nothing."""
+    told_of_all = "no finite number" in " ".join(solution.notes)
+    return [] if told_of_all else _without_numbers(solution)
+
+
 def _read(content: bytes, dataset: bool) -> Scene:
     text = decoded(content, "file", ENCODING if dataset else "")
     return read_adams(text, source="file") if dataset else read_scene(text, source="file")
 
 
-def _shown(solution: Solution) -> None:
+def shown(solution: Solution) -> None:
     """Print a solution in both forms, to nobody."""
     from rich.console import Console
 
@@ -192,7 +203,7 @@ def _bytes(text: str) -> bytes:
     return text.encode(errors="surrogatepass") if "\ud800" in text else text.encode(errors="surrogateescape")
 
 
-_CHANGES = (
+CHANGES = (
     (_number_changed, 30), (_number_scaled, 12), (_word_changed, 10), (_words_swapped, 8), (_byte_changed, 10), (_sign_put_in, 8),
     (_stretch_left_out, 8), (_cut_off, 4), (_line_moved, 8), (_nested, 4), (_encoded_anew, 2),
 )  # fmt: skip

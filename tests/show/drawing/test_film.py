@@ -13,6 +13,7 @@ from stiffmbs.commands.main import main
 from stiffmbs.show.drawing.animate import traced
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.film import Pace, _ffmpeg, pictures
+from stiffmbs.show.drawing.following import followed_body
 from stiffmbs.show.drawing.picture import Shown
 from stiffmbs.show.drawing.poses import Poses, poses_of
 from stiffmbs.show.drawing.view import view_named
@@ -167,6 +168,7 @@ def test_plots_are_written_of_scenes_and_of_results(tmp_path):
     [
         (("hinge.fq", "-o", "x.svg"), "found no channel 'hinge.fq', expected one such as hinge.fx"),
         (("-o", "x.gif"), "found the ending '.gif'"),
+        (("--live", "-o", "x.svg"), "--live: found -o, expected a scene alone"),
         ((), "found no screen for a window, expected -o FILE"),
     ],
 )
@@ -189,3 +191,17 @@ def test_results_cannot_be_solved_again(tmp_path):
 def test_a_film_of_nothing_that_moves_is_refused():
     with pytest.raises(InputError, match="--rate: found nan"):
         stiffmbs.animate(EXAMPLES / "four_bar.yaml", "x.gif", rate=float("nan"))
+
+
+@pytest.mark.parametrize("speed", [0.0, 50.0])
+def test_a_film_goes_with_a_mechanism_that_travels(speed):
+    """At 50 m/s a body of half a metre would be a dot of the film; it fills as much of it as one at rest."""
+    model = stiffmbs.Model(gravity=(0, 0))
+    model.add("box", stiffmbs.Body(mass=1, inertia=0.1, velocity=(speed, 0)))
+    scene = stiffmbs.read_scene(model.to_scene())
+    solution = stiffmbs.run(scene, duration=1.0, points=11)
+    poses = poses_of(scene, solution.time, solution.channels)
+    drawing = drawing_of(scene)
+    assert followed_body(drawing, poses) == ("box" if speed else "")
+    *_, last = pictures(drawing, {"": poses}, view_named("", 2, drawing.gravity), Pace(rate=5), Shown(False, False), [])
+    assert (np.ptp(last.astype(int), axis=2) > 40).sum() > 10_000

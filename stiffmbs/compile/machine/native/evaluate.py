@@ -73,6 +73,19 @@ def add_products(e, values, y, yp, r):
 
 
 @compiled
+def add_sizes(e, values, y, yp, size):
+    """The sum of the magnitudes of what `add_products` adds up in each row."""
+    for k in range(e.n):
+        size[k] = 0.0
+    for k in range(e.n_plain):
+        size[e.r_row[k]] += abs(e.r_factor[k] * values[e.r_source[k]])
+    for k in range(e.n_plain, e.n_with_y):
+        size[e.r_row[k]] += abs(e.r_factor[k] * values[e.r_source[k]] * y[e.r_operand[k]])
+    for k in range(e.n_with_y, e.n_with_yp):
+        size[e.r_row[k]] += abs(e.r_factor[k] * values[e.r_source[k]] * yp[e.r_operand[k]])
+
+
+@compiled
 def add_entries(e, values, cj, a):
     """The matrix: every value, times its constant and its part in cj, in its slot."""
     for k in range(e.n_slots):

@@ -36,14 +36,15 @@ def share_orientation(p, turn):
 
 
 @compiled
-def _turning(p, w, rate, factor):
-    """rate += factor p w / 2."""
+def _turning(p, w, followed, rate, factor):
+    """rate += factor p w / 2, with those parts of w that p follows."""
     half = 0.5 * factor
     p0, p1, p2, p3 = p[0], p[1], p[2], p[3]
-    rate[0] += half * (-p1 * w[0] - p2 * w[1] - p3 * w[2])
-    rate[1] += half * (p0 * w[0] + p2 * w[2] - p3 * w[1])
-    rate[2] += half * (p0 * w[1] + p3 * w[0] - p1 * w[2])
-    rate[3] += half * (p0 * w[2] + p1 * w[1] - p2 * w[0])
+    w0, w1, w2 = followed[0] * w[0], followed[1] * w[1], followed[2] * w[2]
+    rate[0] += half * (-p1 * w0 - p2 * w1 - p3 * w2)
+    rate[1] += half * (p0 * w0 + p2 * w2 - p3 * w1)
+    rate[2] += half * (p0 * w1 + p3 * w0 - p1 * w2)
+    rate[3] += half * (p0 * w2 + p1 * w1 - p2 * w0)
 
 
 @compiled
@@ -57,7 +58,8 @@ def add_rates(s, u, factor, target):
         q, v = N_Q * body, N_U * body
         for k in range(3):
             target[q + k] += factor * u[v + k]
-        _turning(shifted(s.q, q + 3), shifted(u, v + 3), shifted(target, q + 3), factor)
+        w, followed = shifted(u, v + 3), shifted(s.followed, v + 3)
+        _turning(shifted(s.q, q + 3), w, followed, shifted(target, q + 3), factor)
 
 
 @compiled

@@ -60,6 +60,9 @@ class AppliedForce(Applied):
         description="components along x, y and z, N: numbers or formulas"
     )
 
+    def spins_with(self) -> dict[str, str]:
+        return {} if self.axes == "body" else {"i": "point", "j": "body"}
+
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
         """The force on the velocity of i's point, relative to j's body there."""
@@ -90,6 +93,9 @@ class AppliedTorque(Applied):
     torque: tuple[TorqueOfMotion, TorqueOfMotion, TorqueOfMotion] = Field(
         description="components along x, y and z, N m: numbers or formulas"
     )
+
+    def spins_with(self) -> dict[str, str]:
+        return {} if self.axes == "body" else {"i": "body", "j": "body"}
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

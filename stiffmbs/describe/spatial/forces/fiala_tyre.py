@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field
@@ -9,6 +10,7 @@ from pydantic import Field
 from ...element import Symbolic
 from ...roads.road import clipped, magnitude
 from ...units import si
+from ..relaxation import DEFLECTIONS
 from ..tyre import Rolling, Tyre
 
 TINY = 1e-30
@@ -24,11 +26,12 @@ class FialaTyre(Tyre):
     - Fy = -U N (1 - H^3) sign(alpha), H = max(0, 1 - C_alpha abs(tan(alpha))/(3 U N));
     - Mz = U N width (1 - H) H^3 sign(alpha), and My = -rolling_resistance N forward.
 
-    Camber gives no force.  Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979; MSC Adams/Tire,
+    Slips may lag by relaxation lengths.  Camber gives no force.  Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979; MSC Adams/Tire,
     Fiala tire model.
     """
 
     kind: ClassVar[str] = "fiala_tyre"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"relaxation": (0.3, 0.5)})
 
     radius: si.PositiveLength = Field(description="without load, m")
     stiffness: si.Stiffness = Field(description="radial, N/m")
@@ -39,6 +42,18 @@ class FialaTyre(Tyre):
     mu_sliding: si.NumberOrZero = Field(description="friction at full slip")
     width: si.LengthOrZero = Field(0.0, description="of the tyre, for its aligning torque, m")
     rolling_resistance: si.LengthOrZero = Field(0.0, description="torque over load, m")
+    relaxation: tuple[si.PositiveLength, si.PositiveLength] | None = Field(
+        None,
+        description="longitudinal and lateral relaxation length, m; slips are those of the steady state by default",
+    )
+
+    def own_states(self) -> tuple[str, ...]:
+        return DEFLECTIONS if self.relaxation else ()
+
+    @classmethod
+    def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
+        along, across = e.relaxation
+        return along, across
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:

@@ -12,12 +12,14 @@ from ..body import Body
 
 
 class GyroscopicTorque(Force):
-    """The gyroscopic torque -w x (I w) in a body's principal axes; made by the model (hence without a kind).
+    """The gyroscopic torque -n x (I w) in a body's principal axes; made by the model (hence without a kind).
 
-    Euler's equations of motion, I w' + w x (I w) = T; Haug, Computer Aided Kinematics and Dynamics of Mechanical
-    Systems (1989), eq. 11.1.11.  Its power is zero.
+    n = w is what the body's quaternion follows.  Euler's equations of motion, I w' + w x (I w) = T; Haug, Computer Aided
+    Kinematics and Dynamics of Mechanical Systems (1989), eq. 11.1.11.  Where the quaternion doesn't follow the body's spin
+    (`stiffmbs.presolve.spinning_bodies`), n is the part of w across that, as in Euler's modified equations; Meirovitch, Methods
+    of Analytical Dynamics (1970), sec. 4.6.  The power is zero.
 
-    The body's kinematics, p' = Z(p) w, belong to this element too.
+    The body's kinematics, p' = Z(p) n, belong to this element too.
     """
 
     kind: ClassVar[str] = ""
@@ -26,11 +28,15 @@ class GyroscopicTorque(Force):
     i: MarkerReference
     moments: tuple[si.Inertia, si.Inertia, si.Inertia]
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "body"}
+
     @classmethod
     def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
         """The three torques on the body's own angular velocities."""
         (a, b, c), (p, q, r) = e.moments, e.i.body.u[3:6]
-        return [((b - c) * q * r, p), ((c - a) * r * p, q), ((a - b) * p * q, r)]
+        x, y, z = e.i.body.followed
+        return [(z * b * q - y * c * r, p), (x * c * r - z * a * p, q), (y * a * p - x * b * q, r)]
 
 
 def turnings(bodies: Mapping[str, Body]) -> Iterator[tuple[str, GyroscopicTorque]]:

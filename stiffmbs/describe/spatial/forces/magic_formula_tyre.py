@@ -3,38 +3,64 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ...element import Symbolic
 from ...roads.road import above_zero
 from ...tyres.coefficients import AnyProperties, TyreProperties
 from ...tyres.names import SAMPLE
 from ...units import si
+from ..relaxation import DEFLECTIONS
 from ..tyre import Rolling, Tyre
 
 
 class MagicFormulaTyre(Tyre):
     """Pacejka's Magic Formula in the form of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir).
 
-    Longitudinal and lateral force, overturning, rolling and aligning torque, pure and combined slip, camber, load.  Slip angle
-    and camber enter as angles (Pacejka's book has tan(alpha) and sin(gamma) in their places).  The load is
+    Longitudinal and lateral force, overturning, rolling and aligning torque, pure and combined slip, camber, load, relaxation
+    lengths; which of them, USE_MODE says.  Slip angle and camber enter as angles (Pacejka's book has tan(alpha) and sin(gamma) in their places).  The load is
     VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', never below zero; the formula's load is at most FZMAX.  The rolling radius is
-    UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), d0 = FNOMIN/VERTICAL_STIFFNESS.  Forces are those of steady
-    slip.  A file without coefficients of combined slip has the friction ellipse, and a note says so.
+    UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), d0 = FNOMIN/VERTICAL_STIFFNESS.  A file without coefficients of combined slip has the friction ellipse, and a note says so.
 
     Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2; MSC Adams/Tire, PAC2002.
     """
 
     kind: ClassVar[str] = "magic_formula_tyre"
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"properties": TyreProperties(coefficients=SAMPLE)},)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"properties": TyreProperties(coefficients=SAMPLE)},
+        {"properties": TyreProperties(coefficients={**SAMPLE, "PTX1": 1.0, "PTY1": 1.0})},
+    )
     reflected: ClassVar[dict[str, str] | None] = {"j": "z", "hand": "angle"}
 
     properties: AnyProperties = Field(
         description="the name of a property file (.tir) beside the scene, or coefficients"
     )
     hand: si.NumberNotZero = Field(1.0, description="-1 mounts the tyre of the file on the other side of the car")
+    side: Literal["left", "right"] | None = Field(
+        None, description="of the car that the tyre is mounted on: the tyre is mirrored if TYRESIDE is the other one"
+    )
+    transient: bool | None = Field(
+        None, description="whether slips lag by relaxation lengths; as USE_MODE says by default"
+    )
+
+    @model_validator(mode="after")
+    def _has_lengths(self) -> MagicFormulaTyre:
+        if self.transient and not self.properties.has_lengths:
+            raise ValueError("transient: found properties without PTX1 and PTY1, expected relaxation lengths")
+        return self
+
+    def own_states(self) -> tuple[str, ...]:
+        transient = self.properties.is_transient if self.transient is None else self.transient
+        return DEFLECTIONS if transient else ()
+
+    @classmethod
+    def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
+        """By PTX1 to PTX3, and by PTY1, PTY2 and PKY3."""
+        from ...tyres.magic_formula import relaxation_lengths
+
+        return relaxation_lengths(e.properties, load, camber, e.named)
 
     @staticmethod
     def unloaded_radius(e: Symbolic) -> Any:
@@ -54,22 +80,29 @@ class MagicFormulaTyre(Tyre):
         part = e.named(deflection / nominal)
         return p.UNLOADED_RADIUS - nominal * (p.DREFF * atan(p.BREFF * part) + p.FREFF * part)
 
-    @staticmethod
-    def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+    @classmethod
+    def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
         """Forces and moments by the Magic Formula."""
-        from ...tyres.magic_formula import Slip, wrench
+        from ...tyres.magic_formula import Slip, of_mode
 
         p = e.properties
+        hand = e.hand if cls._is_as_measured(e) else -e.hand
         beyond = e.named(rolling.load - p.FZMAX)
         load = e.named(rolling.load - e.named(above_zero(beyond)))
         slip = Slip(
             load,
             rolling.slip,
-            e.named(e.hand * rolling.slip_angle),
-            e.named(e.hand * rolling.camber),
+            e.named(hand * rolling.slip_angle),
+            e.named(hand * rolling.camber),
             e.named(rolling.speed / p.LONGVL),
             rolling.direction,
             rolling.friction,
         )
-        fx, fy, mx, my, mz = wrench(p, slip, e.named, p.is_combined)
-        return fx, e.hand * fy, e.hand * mx, my, e.hand * mz
+        fx, fy, mx, my, mz = of_mode(p.mode, p, slip, e.named, p.is_combined)
+        return fx, hand * fy, hand * mx, my, hand * mz
+
+    @staticmethod
+    def _is_as_measured(e: Symbolic) -> bool:
+        """Whether the tyre is mounted as it was measured, but for `hand`: by its side, and the sign of USE_MODE."""
+        other_side = e.side is not None and e.properties.side in ("left", "right") and e.side != e.properties.side
+        return bool(other_side == e.properties.is_mirrored)

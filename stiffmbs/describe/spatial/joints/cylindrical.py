@@ -38,6 +38,9 @@ class Cylindrical(Joint):
     def invalid_placement(self, model: ModelData) -> Iterator[str]:
         yield from initially_apart(model, self.i, self.j)
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "z", "j": "z"}
+
     @staticmethod
     def position(e: Symbolic) -> Any:
         return [*on_axis(e.i, e.j), *align(e.i, e.j)]

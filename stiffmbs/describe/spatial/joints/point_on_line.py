@@ -29,6 +29,9 @@ class PointOnLine(Joint):
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line")
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point"}
+
     @staticmethod
     def position(e: Symbolic) -> Any:
         return on_axis(e.i, e.j)

@@ -28,6 +28,9 @@ class PointOnPlane(Joint):
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the plane")
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point"}
+
     @staticmethod
     def position(e: Symbolic) -> Any:
         return [along(e.i, e.j, e.j.z)]

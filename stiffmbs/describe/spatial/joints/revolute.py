@@ -37,6 +37,9 @@ class Revolute(Joint):
     def invalid_placement(self, model: ModelData) -> Iterator[str]:
         yield from initially_apart(model, self.i, self.j)
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "z", "j": "z"}
+
     @staticmethod
     def position(e: Symbolic) -> Any:
         return [*coincide(e.i, e.j), *align(e.i, e.j)]

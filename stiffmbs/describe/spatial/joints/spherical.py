@@ -30,6 +30,9 @@ class Spherical(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point", "j": "point"}
+
     @staticmethod
     def position(e: Symbolic) -> Any:
         return coincide(e.i, e.j)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ from ..scene_graph import Line
 from . import profiles
 
 TURN = 2 * math.pi
+FAR_OFF = 0.1
+"""Distance of a torque's marker from its body's centre of mass, over the mechanism's size, from which it says nothing."""
 
 
 def ground(d: Draft) -> None:
@@ -85,9 +88,14 @@ def force(d: Draft) -> None:
 
 
 def torque(d: Draft) -> None:
-    """An arrow around the point."""
+    """An arrow around the point, or around the centre of mass of a body that is far from it: a torque has no point."""
     if d.i is not None:
-        d.put(d.i, "force", *arc_arrow(1.7 * d.u, -0.6 * TURN, 0.12 * TURN, 0.7 * d.u))
+        away = np.linalg.norm(d.i.point) > FAR_OFF * d.size
+        d.put(
+            replace(d.i, point=np.zeros(3)) if away else d.i,
+            "force",
+            *arc_arrow(1.7 * d.u, -0.6 * TURN, 0.12 * TURN, 0.7 * d.u),
+        )
 
 
 def line_force(d: Draft) -> None:

@@ -13,6 +13,7 @@ from stiffmbs.compile.machine.native.access import (
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import int32
+from stiffmbs.solve.native.dynamics import to_accelerations
 from stiffmbs.solve.native.error_estimate import UNTRUSTED, trusted_error
 from stiffmbs.solve.native.event_search.within_step import (
     DIFFERENCE,
@@ -37,8 +38,17 @@ MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT = 1.0, 0.2, 1, 2
 
 
 @compiled
-def _values(x, s, y, t):
+def _load(x, s, y, t):
+    """The state for the kernels, with algebraic states that belong to it."""
     load_state(s, y)
+    m = dynamics_view(x.dynamics)
+    if m.n_algebraic > 0:
+        to_accelerations(s, m, t)
+
+
+@compiled
+def _values(x, s, y, t):
+    _load(x, s, y, t)
     return evaluate(s, SWITCH, t)
 
 
@@ -125,7 +135,7 @@ def _event_within(x, c, s, m, until):
         return float(status)
     for node in range(w.n_nodes):
         interpolated(x, c, w.node[node], x.y_stage)
-        load_state(s, x.y_stage)
+        _load(x, s, x.y_stage, x.t_before + w.node[node] * h)
         keep_row(w, s, node)
     event = first_event(w, s, x.t_before, h)
     return event * h if ROUNDINGS * abs(x.t) < event * h < h else 0.0

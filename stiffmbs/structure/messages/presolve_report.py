@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..compile.coordinates import FIXED, Coordinates
-from ..compile.system import System
-from ..solve.dynamics import Dynamics
-from ..solve.subsystems import Subsystem
-from ..structure.overconstraint import listed
+from ...compile.coordinates import FIXED, Coordinates
+from ...compile.system import System
+from ...solve.dynamics import Dynamics
+from ...solve.subsystems import Subsystem
+from ..overconstraint import listed
 
 
 def unknowns(whole: System, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> tuple[int, int]:
@@ -34,7 +34,7 @@ def presolve_sentences(whole: System, subsystems: Sequence[Subsystem], dynamics:
     if redundant:
         yield f"redundant equations left out: {listed([_equation(whole, row) for row in redundant])}"
     for subsystem in subsystems:
-        yield from _merged(whole, subsystem)
+        yield from _of_bodies(whole, subsystem)
     for part in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
         yield from _left_out(part)
     if len(subsystems) > 1:
@@ -45,11 +45,15 @@ def presolve_sentences(whole: System, subsystems: Sequence[Subsystem], dynamics:
         yield f"{before} unknowns become {after}"
 
 
-def _merged(whole: System, subsystem: Subsystem) -> Iterator[str]:
+def _of_bodies(whole: System, subsystem: Subsystem) -> Iterator[str]:
     for parent, count in Counter(subsystem.part.parent.tolist()).items():
         if count > 1:
             names = [whole.bodies[k] for k in subsystem.part.bodies[subsystem.part.parent == parent]]
             yield f"fixed joints make one body of {listed(names)}"
+    spinning = np.isin(subsystem.part.parent, [spin.body for spin in subsystem.part.spins])
+    if spinning.any():
+        names = [whole.bodies[k] for k in subsystem.part.bodies[spinning]]
+        yield f"the angle of spin is a coordinate of its own: {listed(names)}"
 
 
 def _left_out(dynamics: Dynamics) -> Iterator[str]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.machine.routines import Routine
-from .dynamics import Dynamics
+from ...compile.machine.routines import Routine
+from ..algebraic_states import rates_by_states
+from ..dynamics import Dynamics
 
 FASTEST_RATE = Routine(
     "stiffmbs.solve.native.fastest_rate",
@@ -23,7 +24,7 @@ def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> 
     state.q[:], state.u[:] = q, u
     work = np.empty(3 * dynamics.system.n_u + dynamics.system.n_q)
     addresses = (dynamics.system.mass, work, eliminated.table, dynamics.table)
-    rate = FASTEST_RATE.load()(t, eliminated.serves, *(array.ctypes.data for array in addresses))
+    rate = FASTEST_RATE.call(t, eliminated.serves, *(array.ctypes.data for array in addresses))
     dynamics.forget_pivots()
     return max(float(rate), _of_states(dynamics, t, q, u))
 
@@ -35,5 +36,5 @@ def _of_states(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> fl
         return 0.0
     state.q[:], state.u[:] = q, u
     state.evaluate("tangent", t)
-    own = state.matrix("tangent", "rate_q")[system.first_state :, system.first_state :]
-    return float(np.abs(np.linalg.eigvals(own)).max()) if np.all(np.isfinite(own)) else 0.0
+    own = rates_by_states(dynamics)
+    return float(np.abs(np.linalg.eigvals(own)).max(initial=0.0)) if np.all(np.isfinite(own)) else 0.0

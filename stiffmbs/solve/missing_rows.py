@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..solve.dynamics import Dynamics, OutputRows
-from ..solve.failures import FAILURES
-from ..solve.trajectory import Trajectory
+from .dynamics import Dynamics, OutputRows
+from .failures import FAILURES
+from .trajectory import Trajectory
 
 MOST_MISSING = 100
 """Gaps after which the results end."""

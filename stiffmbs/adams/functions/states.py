@@ -1,0 +1,174 @@
+"""States of a dataset as those of a scene: which there are, and what formulas call them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..scene.number_format import plain, vector
+from ..statements.outputs import Array, Variable
+from ..statements.systems import Differential, LinearSystem, Matrix, TransferFunction
+from .function import Function
+from .trees import name_of, times
+
+if TYPE_CHECKING:
+    from ..statements.constraints import Numbered
+    from ..statements.dataset import Dataset
+    from .translate import Translation
+
+INPUT, STATE, OUTPUT = "U", "X", "Y"
+
+
+def states(translation: Translation) -> dict[str, Any]:
+    """The states of the scene by name.
+
+    Raises
+    ------
+    DatasetFault
+        When a system names what the dataset does not have, or matrices do not fit.
+    """
+    found: dict[str, Any] = {}
+    for statements in translation.mechanism.dataset.statements.values():
+        for ident, one in statements.items():
+            match one:
+                case Variable() if ident in translation.implicit_variables:
+                    value = translation.translated(one.function)
+                    zero = ast.BinOp(value, ast.Sub(), name_of(value_name(one)))
+                    found[value_name(one)] = {"zero": ast.unparse(zero), "start": plain(one.start)}
+                case Differential():
+                    found |= _differential(one, translation)
+                case LinearSystem():
+                    found[one.name] = _linear(one, translation)
+                case TransferFunction():
+                    found[one.name] = _transfer(one, translation)
+    return found
+
+
+def _differential(one: Differential, translation: Translation) -> dict[str, Any]:
+    """A state with its rate; that of an implicit equation is an algebraic state of its own."""
+    per_second = 1 / translation.units.time
+    if not one.implicit:
+        return {one.name: {"rate": translation.formula(one.function, per_second), "start": plain(one.start)}}
+    rate = rate_name(one)
+    return {
+        one.name: {"rate": ast.unparse(times(name_of(rate), per_second)), "start": plain(one.start)},
+        rate: {"zero": translation.formula(one.function), "start": plain(one.start_of_rate)},
+    }
+
+
+def rate_name(one: Differential) -> str:
+    """What the rate of an implicit equation is called."""
+    return f"{one.name}_rate"
+
+
+def value_name(one: Variable) -> str:
+    """What the state of a variable that depends on itself is called."""
+    return f"{one.name}_value"
+
+
+def depending_on_themselves(variables: Mapping[int, Variable]) -> frozenset[int]:
+    """The variables whose expressions lead back to them, directly or through others."""
+    uses = {
+        ident: _variables_in(one.function) for ident, one in variables.items() if isinstance(one.function, Function)
+    }
+    reached = {ident: set(own) for ident, own in uses.items()}
+    for _ in uses:
+        reached = {ident: own.union(*(uses.get(other, ()) for other in own)) for ident, own in reached.items()}
+    return frozenset(ident for ident, own in reached.items() if ident in own)
+
+
+def _variables_in(function: Function) -> set[int]:
+    calls = (node for node in ast.walk(function.tree) if isinstance(node, ast.Call) and node.args)
+    return {
+        node.args[0].value
+        for node in calls
+        if isinstance(node.func, ast.Name) and node.func.id == "VARVAL"
+        and isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, int)
+    }  # fmt: skip
+
+
+def differential(dataset: Dataset, ident: int, function: Function) -> Differential:
+    """The equation that DIF and DIF1 name."""
+    found: Differential | None = dataset.statements.get("DIFF", {}).get(ident)
+    if found is None:
+        raise function.fault(f"found DIF({ident}), expected the number of a DIFF")
+    return found
+
+
+def value_of_system(dataset: Dataset, array: int, at: int, function: Function) -> ast.expr | None:
+    """What ARYVAL stands for in an array of states or outputs; None where no system has it."""
+    for statements in dataset.statements.values():
+        for one in statements.values():
+            match one:
+                case TransferFunction(y=output) if output == array and at == 1:
+                    return name_of(one.name)
+                case TransferFunction(x=state) if state == array:
+                    raise function.fault(
+                        f"found ARYVAL({array}, {at}), a state of {one.label}, expected its output: which states it has is "
+                        "Adams' own choice"
+                    )
+                case LinearSystem(y=output) if output == array:
+                    return name_of(f"{one.name}.y{at}")
+                case LinearSystem(x=state) if state == array:
+                    return name_of(f"{one.name}.s{at}")
+    return None
+
+
+def _inputs(user: Numbered, ident: int | None, translation: Translation) -> list[str]:
+    """Formulas of the variables of an ARRAY of inputs."""
+    if ident is None:
+        return []
+    array: Array | None = translation.mechanism.dataset.arrays.get(ident)
+    if array is None or not array.variables:
+        raise user.fault(f"found U = {ident}, expected the number of an ARRAY of VARIABLES")
+    return [translation.formula(Function(f"VARVAL({k})", _varval(k), user.line, user.label)) for k in array.variables]
+
+
+def _varval(ident: int) -> ast.expr:
+    return ast.Call(ast.Name("VARVAL"), [ast.Constant(ident)], [])
+
+
+def _transfer(one: TransferFunction, translation: Translation) -> dict[str, Any]:
+    """Coefficients in SI, the highest power first: s counts per unit of time."""
+    unit, inputs = translation.units.time, _inputs(one, one.u, translation)
+    if len(inputs) != 1:
+        raise one.fault(f"found {len(inputs)} VARIABLES of U = {one.u}, expected one")
+    top, bottom = (vector([c * unit**k for k, c in enumerate(part)][::-1]) for part in (one.numerator, one.denominator))
+    return {"numerator": top, "denominator": bottom, "input": inputs[0]}
+
+
+def _linear(one: LinearSystem, translation: Translation) -> dict[str, Any]:
+    """A linear system whose outputs are those of the dataset, and its states."""
+    unit, inputs = translation.units.time, _inputs(one, one.u, translation)
+    a = _rows(one, "A", one.a, translation)
+    n, m = len(a), len(inputs)
+    b = _rows(one, "B", one.b, translation) if inputs else ((0.0,),) * n
+    c = _rows(one, "C", one.c, translation) if one.c else ()
+    d = _rows(one, "D", one.d, translation) if one.d else ((0.0,) * max(m, 1),) * len(c)
+    expected = {"A": (a, n, n), "B": (b, n, max(m, 1)), "C": (c, len(c), n), "D": (d, len(c), max(m, 1))}
+    for name, (rows, high, wide) in expected.items():
+        if len(rows) != high or any(len(row) != wide for row in rows):
+            raise one.fault(f"found {name} of {len(rows)} rows, expected {high} rows of {wide} numbers")
+    identity = [[1 if i == k else 0 for i in range(n)] for k in range(n)]
+    made: dict[str, Any] = {
+        "a": [vector([x / unit for x in row]) for row in a],
+        "b": [vector([x / unit for x in row]) for row in b],
+        "c": [*(vector(row) for row in c), *identity],
+        "d": [*(vector(row) for row in d), *([0] * max(m, 1) for _ in range(n))],
+        "input": inputs or [0],
+        "outputs": [*(f"y{k + 1}" for k in range(len(c))), *(f"s{k + 1}" for k in range(n))],
+    }
+    if one.start is not None:
+        array = translation.mechanism.dataset.arrays.get(one.start)
+        if array is None or len(array.numbers) != n:
+            raise one.fault(f"found IC = {one.start}, expected the number of an ARRAY of {n} numbers")
+        made["start"] = vector(array.numbers)
+    return made
+
+
+def _rows(one: LinearSystem, name: str, ident: int | None, translation: Translation) -> tuple[tuple[float, ...], ...]:
+    matrix: Matrix | None = translation.mechanism.dataset.statements.get("MATRIX", {}).get(ident or 0)
+    if matrix is None:
+        raise one.fault(f"found {name} = {ident}, expected the number of a MATRIX")
+    return matrix.rows

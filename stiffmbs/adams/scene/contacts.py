@@ -1,0 +1,98 @@
+"""Contacts of spheres as forces by formulas.  MSC Adams/Solver, CONTACT statement: IMPACT, and Coulomb friction.
+
+The force acts at the point of contact.  On the line of the normal it acts at the sphere's centre as well; friction has a moment
+about that, which is a torque of its own, the opposite of it on the other body: both then act at one point of space.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..functions.expression import parse
+from ..functions.function import Function
+from ..functions.translate import Translation
+from ..statements.contact import PLANE, SPHERE, Contact, Friction, Shape, read_shape
+from ..statements.fault import of_each
+from .mechanism import Mechanism
+
+TORQUE = "_torque"
+SLOW = 1e-6
+"""Part of the velocity of stiction that keeps the direction of sliding from being undefined at rest."""
+
+
+def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    """The forces of all contacts by name."""
+    return of_each(mechanism.dataset.contacts.values(), lambda contact: _made(contact, mechanism, translation))
+
+
+def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
+    if (first.sort, second.sort) == (SPHERE, SPHERE):
+        return _of_spheres(contact, first, second, mechanism, translation)
+    if (first.sort, second.sort) == (PLANE, PLANE):
+        raise contact.fault("found two planes, expected a sphere")
+    sphere, plane = (first, second) if first.sort == SPHERE else (second, first)
+    return _on_plane(contact, sphere, plane, mechanism, translation)
+
+
+def _shape(contact: Contact, ident: int, mechanism: Mechanism) -> Shape:
+    statement = mechanism.dataset.graphics.get(ident)
+    if statement is None:
+        raise contact.fault(f"found the geometry {ident}, expected the number of a GRAPHICS")
+    return read_shape(statement)
+
+
+def _impact(contact: Contact, gap: str, rate: str) -> str:
+    return (
+        f"IMPACT({gap}, {rate}, 0, {contact.stiffness!r}, {contact.exponent!r}, {contact.damping!r}, {contact.depth!r})"
+    )
+
+
+def _of_spheres(
+    contact: Contact, one: Shape, other: Shape, mechanism: Mechanism, translation: Translation
+) -> dict[str, Any]:
+    if contact.friction:
+        raise contact.fault("found friction between two spheres, expected a sphere and a plane, or no friction")
+    i, j = (mechanism.place(shape.marker, contact, "CM").reference for shape in (one, other))
+    ends = f"({one.marker}, {other.marker})"
+    law = _impact(contact, f"DM{ends} - {one.radius + other.radius!r}", f"VR{ends}")
+    force = _formula(contact, law, translation, 0)
+    return {contact.name: {"type": "line_force", "i": i, "j": j, "force": force}}
+
+
+def _on_plane(
+    contact: Contact, sphere: Shape, plane: Shape, mechanism: Mechanism, translation: Translation
+) -> dict[str, Any]:
+    """Force along the axes of the plane's marker, whose z points out of the solid."""
+    center, other = mechanism.place(sphere.marker, contact, "CM"), mechanism.place(plane.marker, contact, "RM")
+    i, j, r = sphere.marker, plane.marker, sphere.radius
+    normal = _impact(contact, f"DZ({i},{j},{j}) - {r!r}", f"VZ({i},{j},{j},{j})")
+    ends: dict[str, Any] = {"i": center.reference, "j": other.body, "frame": other.reference}
+    if contact.friction is None:
+        force = [0, 0, _formula(contact, normal, translation, 0)]
+        return {contact.name: {"type": "force", **ends, "force": force}}
+    x = f"(VX({i},{j},{j},{j}) - {r!r}*(WY({i},{j},{j})))"
+    y = f"(VY({i},{j},{j},{j}) + {r!r}*(WX({i},{j},{j})))"
+    drag = _drag(contact.friction, x, y, normal)
+    force = [_formula(contact, law, translation, 0) for law in (f"{drag}*{x}", f"{drag}*{y}", normal)]
+    torque = [_formula(contact, law, translation, 1) for law in (f"{r!r}*{drag}*{y}", f"-{r!r}*{drag}*{x}")]
+    return {
+        contact.name: {"type": "force", **ends, "force": force},
+        contact.name + TORQUE: {"type": "torque", **ends, "torque": [*torque, 0]},
+    }
+
+
+def _drag(friction: Friction, x: str, y: str, normal: str) -> str:
+    """Minus mu N over the speed of sliding."""
+    slow, fast = friction.stiction_velocity, friction.friction_velocity
+    speed = f"SQRT({x}**2 + {y}**2 + {(SLOW * slow) ** 2!r})"
+    mu = (
+        f"(STEP({speed}, {-slow!r}, {-friction.static!r}, {slow!r}, {friction.static!r}) + "
+        f"STEP({speed}, {slow!r}, 0, {fast!r}, {friction.dynamic - friction.static!r}))"
+    )
+    return f"(-{mu}*{normal}/{speed})"
+
+
+def _formula(contact: Contact, law: str, translation: Translation, arm: int) -> str:
+    function = Function(law, parse(law), contact.line, contact.label)
+    return translation.formula(function, translation.units.of(force=1, length=arm))

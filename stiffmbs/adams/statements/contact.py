@@ -1,0 +1,134 @@
+"""Contacts between primitives, and the graphics that they name.  MSC Adams/Solver, CONTACT and GRAPHICS statements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .arguments import Arguments
+from .constraints import Numbered
+from .fault import DatasetFault
+from .text import Statement
+from .units import Units
+
+SPHERE, PLANE = "SPHERE", "PLANE"
+ROUND = 1e-9
+"""Part of an ellipsoid's axis by which another may differ and it is a sphere."""
+_SHAPES = ("ELLIPSOID", "PLANE", "CYLINDER", "BOX", "FRUSTUM", "TORUS", "CIRCLE", "ARC", "EXTERNAL", "OUTLINE", "FORCE", "SPRINGDAMPER", "CURVE")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Coulomb's law by Adams' smooth curve; velocities in the dataset's units."""
+
+    static: float
+    dynamic: float
+    stiction_velocity: float
+    friction_velocity: float
+
+
+@dataclass(frozen=True)
+class Contact(Numbered):
+    """A contact by Adams' IMPACT, in the dataset's units.
+
+    Attributes
+    ----------
+    shapes : (int, int)
+        GRAPHICS statements of its two sides.
+    stiffness, damping, exponent, depth : float
+        K, C, e, and the penetration from which the damping is whole.
+    friction : Friction or None
+    """
+
+    shapes: tuple[int, int]
+    stiffness: float
+    damping: float
+    exponent: float
+    depth: float
+    friction: Friction | None
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A sphere about a marker, or the plane of x and y of one, in the dataset's units."""
+
+    sort: str
+    marker: int
+    radius: float = 0.0
+
+
+_CONTACT = (
+    "IGEOM", "JGEOM", "IFLIP_GEOMETRY", "JFLIP_GEOMETRY", "IFLIP_NORMAL", "JFLIP_NORMAL", "IMPACT", "STIFFNESS", "DAMPING",
+    "EXPONENT", "DMAX", "POISSON", "PENALTY", "RESTITUTION_COEFFICIENT", "NORMAL_FUNCTION", "NORMAL_ROUTINE",
+    "COULOMB_FRICTION", "NO_FRICTION", "MU_STATIC", "MU_DYNAMIC", "STICTION_TRANSITION_VELOCITY",
+    "FRICTION_TRANSITION_VELOCITY", "FRICTION_FUNCTION", "FRICTION_ROUTINE", "AUGMENTED_LAGRANGIAN_FORMULATION",
+)  # fmt: skip
+_NOT_READ = (
+    "POISSON", "PENALTY", "RESTITUTION_COEFFICIENT", "NORMAL_FUNCTION", "NORMAL_ROUTINE", "FRICTION_FUNCTION", "FRICTION_ROUTINE",
+    "AUGMENTED_LAGRANGIAN_FORMULATION", "IFLIP_GEOMETRY", "JFLIP_GEOMETRY", "IFLIP_NORMAL", "JFLIP_NORMAL",
+)  # fmt: skip
+
+
+def read_contact(statement: Statement, units: Units) -> Contact:
+    """A contact between two primitives by stiffness and damping."""
+    found = Arguments(statement, "CONTACT", _CONTACT)
+    for name in _NOT_READ:
+        if name in found:
+            raise found.fault(
+                f"found {name}, expected a contact by IMPACT of a sphere and a plane or sphere", found.line(name)
+            )
+    sides = found.idents("IGEOM", 1), found.idents("JGEOM", 1)
+    if not all(sides):
+        raise found.fault("found no IGEOM or no JGEOM, expected one GRAPHICS each")
+    needed = {name: found.number(name) for name in ("STIFFNESS", "EXPONENT", "DMAX")}
+    for name, value in needed.items():
+        if not (value or 0.0) > 0:
+            raise found.fault(f"found no {name}, expected a number above zero", found.line(name))
+    stiffness, exponent, depth = (value or 0.0 for value in needed.values())
+    return Contact(
+        found.ident(), statement.line, statement.alias, "CONTACT", (sides[0][0], sides[1][0]), stiffness,
+        found.number("DAMPING") or 0.0, exponent, depth, _friction(found),
+    )  # fmt: skip
+
+
+def _friction(found: Arguments) -> Friction | None:
+    asked = (found.text("COULOMB_FRICTION") or "OFF").strip().upper()
+    if asked == "OFF":
+        return None
+    if asked != "ON":
+        raise found.fault(f"found COULOMB_FRICTION = {asked}, expected ON or OFF", found.line("COULOMB_FRICTION"))
+    names = ("MU_STATIC", "MU_DYNAMIC", "STICTION_TRANSITION_VELOCITY", "FRICTION_TRANSITION_VELOCITY")
+    values = [found.number(name) for name in names]
+    static, dynamic, slow, fast = values
+    if static is None or dynamic is None or slow is None or fast is None or not 0 < slow < fast:
+        raise found.fault(
+            f"found friction without all of {', '.join(names)}, expected them, the last the largest velocity"
+        )
+    return Friction(static, dynamic, slow, fast)
+
+
+def read_shape(statement: Statement) -> Shape:
+    """A sphere or a plane of a GRAPHICS statement.
+
+    Raises
+    ------
+    DatasetFault
+        When it is of another kind.
+    """
+    words = [piece.text.strip().upper() for piece in statement.pieces]
+    sort = next((full for word in words for full in _SHAPES if len(word) > 2 and full.startswith(word)), "no kind")
+    label = f"GRAPHICS/{statement.ident}"
+    if sort == "ELLIPSOID":
+        found = Arguments(statement, "GRAPHICS", ("ELLIPSOID", "CM", "XSCALE", "YSCALE", "ZSCALE", "SEG"))
+        axes = [found.number(name) or 0.0 for name in ("XSCALE", "YSCALE", "ZSCALE")]
+        if not _same(axes):
+            raise found.fault("found an ellipsoid with three axes, expected a sphere in a CONTACT")
+        return Shape(SPHERE, found.required("CM"), axes[0] / 2)
+    if sort == "PLANE":
+        found = Arguments(statement, "GRAPHICS", ("PLANE", "RM", "XMINIMUM", "XMAXIMUM", "YMINIMUM", "YMAXIMUM"))
+        return Shape(PLANE, found.required("RM"))
+    raise DatasetFault(statement.line, label, f"found {sort} in a CONTACT, expected ELLIPSOID (a sphere) or PLANE")
+
+
+def _same(axes: Sequence[float]) -> bool:
+    return axes[0] > 0 and max(axes) - min(axes) <= ROUND * axes[0]

@@ -1,0 +1,66 @@
+"""The command ``stiffmbs kc``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import click
+
+from ...errors import InputError, StiffmbsError
+from ...jobs.load_scene import load_scene
+from ..scene import CHANGES, STOPPED_EARLY, in_file, refuse
+
+
+@click.command(short_help="Kinematics and compliance of an axle.")
+@click.argument("scene")
+@click.option("--axle", default="front", show_default=True, help="What stands before .left and .right; '' for nothing.")
+@click.option("--points", type=int, default=11, show_default=True, help="Of each curve: odd, 5 or more.")
+@click.option("--body", help="The body to clamp; chassis, or ground, by default.")
+@click.option("--steering", help="The prismatic joint that steers; the only one named guide by default.")
+@click.option("--case", "cases", multiple=True, metavar="NAME=SIZE", help="How far a load case goes; 0 leaves it out.")
+@click.option("--figure", type=click.Path(path_type=Path), help="Draw the curves: .png, .svg or .pdf.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write the curves: .csv.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@CHANGES
+def kc(
+    scene: str, axle: str, points: int, body: str | None, steering: str | None, cases: tuple[str, ...],
+    figure: Path | None, output: Path | None, as_json: bool, changes: list[tuple[str, str]],
+) -> None:  # fmt: skip
+    """Sweep an axle of SCENE on a test rig by equilibria: toe, camber, track, loads, wheel rate, motion ratio.
+
+    Load cases with their default sizes: bump=50 and roll=30 (mm), steer=30 (mm of the rack), lateral=2, brake=2 and traction=2 (kN),
+    aligning=100 (N m).  The suspensions have a body upright with the markers spindle and patch, as shipped parts have.
+
+    Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
+    """
+    from ...show.kinematics_and_compliance import draw_kc, kc_csv, kc_text
+    from ...studies.suspension.kinematics_and_compliance import kinematics_and_compliance
+
+    try:
+        loaded = load_scene(scene, changes)
+        with in_file(scene):
+            found = kinematics_and_compliance(loaded, axle, points, body, steering, **_sizes(cases))
+    except StiffmbsError as error:
+        refuse(scene, error, as_json)
+    try:
+        if output is not None:
+            output.write_text(kc_csv(found), encoding="utf-8")
+        if figure is not None:
+            draw_kc(figure, found)
+    except (OSError, ValueError) as error:
+        click.echo(f"stiffmbs: not written: {error}", err=True)
+        sys.exit(STOPPED_EARLY)
+    click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
+
+
+def _sizes(cases: tuple[str, ...]) -> dict[str, float]:
+    sizes = {}
+    for text in cases:
+        name, _, size = text.partition("=")
+        try:
+            sizes[name.strip()] = float(size)
+        except ValueError:
+            raise InputError(f"--case {text}: found no number, expected NAME=SIZE such as bump=40") from None
+    return sizes

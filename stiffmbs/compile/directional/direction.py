@@ -1,0 +1,160 @@
+"""Directions: how the state, time and the numbers of a system change together, and how its terms change with them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from functools import cache
+
+import numpy as np
+
+from ...errors import InputError
+from ..kind import Kind, with_place
+from ..machine.compiler import Compiled, compiled_source
+from ..machine.layout import DIRECTION, packed
+from ..machine.routines import Routine
+from ..record import source_of
+from ..state import State
+from ..system import System
+from ..terms import TERM_AXES
+from .source import NUMBER, SIGNATURE, STATE, directional_source
+
+ALONG = Routine("stiffmbs.compile.machine.native.along", "along", "void(float64, float64, int64*, int64*)")
+EVERYTHING = (NUMBER, *STATE)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """How the numbers of a system change with a parameter.
+
+    Attributes
+    ----------
+    of_groups : tuple of ndarray
+        For each group of elements the derivatives of its numbers; the points of tables keep their values in them
+        (`stiffmbs.compile.directional.rules`).
+    moved : frozenset of int
+        The groups with numbers that change.
+    mass : ndarray, shape (n_u,)
+    """
+
+    of_groups: tuple[np.ndarray, ...]
+    moved: frozenset[int]
+    mass: np.ndarray
+
+
+@cache
+def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Compiled | None:
+    """The kernel with which a kind contributes to the derivative of a set, if it does.
+
+    Raises
+    ------
+    InputError
+        When an equation cannot be differentiated; names the kind.
+    """
+    source = source_of(kind, term_set)
+    if source is None:
+        return None
+    name = with_place(kind, "")
+    try:
+        found = directional_source(source, "kernel", along)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    if all(line.endswith("] = 0.0") for line in found.splitlines() if line.lstrip().startswith("value[")):
+        return None
+    return compiled_source(found, "kernel", SIGNATURE, f"{name}, derivatives")
+
+
+@dataclass
+class Direction:
+    """A direction for one set of terms.
+
+    Parameters
+    ----------
+    state : State
+        At which the derivatives are taken.
+    term_set : str
+    numbers : Numbers
+        How the system's numbers change.
+    along : collection of str
+        What changes: numbers alone, or the state and time too.
+
+    Attributes
+    ----------
+    q, u, a, lam, mu : ndarrays
+        How the state changes.
+    values : ndarray
+        The derivatives of the terms' values; behind them those of the system's constants.
+    table : ndarray of int
+        For compiled code (`stiffmbs.compile.machine.layout.DIRECTION`).
+    writes : set of int
+        The groups whose values change.
+    """
+
+    state: State
+    term_set: str
+    numbers: Numbers
+    along: Collection[str] = EVERYTHING
+    writes: set[int] = field(init=False, default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.state.load(self.term_set)
+        system = self.state.system
+        n_q, n_u = system.n_q + len(system.of_body.ground), system.n_u + system.of_body.n_u
+        self._q, self._u, self._a = np.zeros(n_q), np.zeros(n_u), np.zeros(n_u)
+        self._turn = np.zeros(system.of_body.turn_stride * n_q)
+        self.q, self.u, self.a = self._q[: system.n_q], self._u[: system.n_u], self._a[: system.n_u]
+        self.lam, self.mu = np.zeros(system.n_c), np.zeros(system.n_c)
+        self.values = np.zeros(len(self.state.values[self.term_set]))
+        first = system.constants(self.term_set)["M"]
+        self.values[first : first + system.n_u] = self.numbers.mass
+        self._calls = self._made_calls(system)
+        self._turned = system.turned(self.term_set) if self._whole else np.empty(0, dtype=np.int64)
+        self.table = packed(
+            DIRECTION,
+            {
+                "q": self._q, "turn": self._turn, "u": self._u, "a": self._a, "lam": self.lam, "mu": self.mu,
+                "n_turned": len(self._turned), "turned": self._turned, "n_calls": len(self._calls), "calls": self._calls,
+                "values": self.values,
+            },
+        )  # fmt: skip
+
+    @property
+    def _whole(self) -> bool:
+        """Whether more than numbers changes."""
+        return set(self.along) != {NUMBER}
+
+    def _made_calls(self, system: System) -> np.ndarray:
+        calls = []
+        for g, (group, numbers) in enumerate(zip(system.groups, self.numbers.of_groups, strict=True)):
+            if g not in self.numbers.moved and not self._whole:
+                continue
+            kernel = directional_kernel(group.kind, self.term_set, tuple(self.along))
+            if kernel is None:
+                continue
+            self.writes.add(g)
+            place = system.places[self.term_set][g]
+            calls.append((
+                kernel.address, group.count, group.index.ctypes.data, group.numbers.ctypes.data, place.ctypes.data, numbers.ctypes.data,
+            ))  # fmt: skip
+        return np.array(calls, dtype=np.int64).reshape(-1, 6)
+
+    def evaluate(self, t: float, t_d: float = 0.0) -> None:
+        """Compute the derivatives at the present state, with the terms themselves."""
+        self.state.evaluate(self.term_set, t)
+        ALONG.call(t, t_d, self.state.table.ctypes.data, self.table.ctypes.data)
+
+    def vector(self, name: str) -> np.ndarray:
+        """The derivative of a vector term, assembled."""
+        term = self.state.system.term(self.term_set, name)
+        result = np.zeros(self.state.system.extent(TERM_AXES[name]))
+        np.add.at(result, term.row, self.values[term.source])
+        return result
+
+    def product(self, name: str, x: np.ndarray, transposed: bool = False) -> np.ndarray:
+        """The derivative of a matrix term times a vector."""
+        system = self.state.system
+        term = system.term(self.term_set, name)
+        row, column = (term.column, term.row) if transposed else (term.row, term.column)
+        result = np.zeros(system.extent(TERM_AXES[name][1 if transposed else 0]))
+        np.add.at(result, row, self.values[term.source] * x[column])
+        return result

@@ -1,0 +1,69 @@
+"""Parts of Python expressions, put together without what is zero; None stands for zero."""
+
+from __future__ import annotations
+
+import ast
+
+Part = ast.expr | None
+
+
+def number(value: float) -> ast.expr:
+    """A literal."""
+    return ast.Constant(value)
+
+
+def literal(node: ast.expr) -> int:
+    """The integer that a part is, with or without a sign.
+
+    Raises
+    ------
+    ValueError
+        When it is none.
+    """
+    return int(ast.literal_eval(node))
+
+
+def whole(part: Part) -> ast.expr:
+    """The part, or a literal zero."""
+    return number(0.0) if part is None else part
+
+
+def added(*parts: Part) -> Part:
+    """A sum."""
+    total: Part = None
+    for part in parts:
+        if part is not None:
+            total = part if total is None else ast.BinOp(total, ast.Add(), part)
+    return total
+
+
+def negated(part: Part) -> Part:
+    """The opposite."""
+    return None if part is None else ast.UnaryOp(ast.USub(), part)
+
+
+def difference(a: Part, b: Part) -> Part:
+    """a - b."""
+    if a is None or b is None:
+        return negated(b) if a is None else a
+    return ast.BinOp(a, ast.Sub(), b)
+
+
+def multiplied(a: Part, b: Part) -> Part:
+    """a b."""
+    return None if a is None or b is None else ast.BinOp(a, ast.Mult(), b)
+
+
+def divided(a: Part, b: Part) -> Part:
+    """a / b; b is not zero as an expression."""
+    return None if a is None else ast.BinOp(a, ast.Div(), whole(b))
+
+
+def squared(a: ast.expr) -> ast.expr:
+    """a a."""
+    return ast.BinOp(a, ast.Mult(), a)
+
+
+def called(name: str, *arguments: Part) -> ast.expr:
+    """A call of a function."""
+    return ast.Call(ast.Name(name), [whole(argument) for argument in arguments], [])

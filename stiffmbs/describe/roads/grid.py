@@ -1,0 +1,43 @@
+"""A road by a file of heights on a grid."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ..element import Symbolic
+from ..units import si
+from .grid_file import AnyGrid
+from .road import Road, clipped
+from .rolling_filter import through_filter
+
+
+class GridRoad(Road):
+    """A road whose heights stand on a grid in a file: its first row has y, each further row x and the heights there, in m.
+
+    Along each line the height is interpolated by Akima's cubics, between two lines straight; beyond the first and the last line
+    it stays, and beyond both ends it goes on with their slope.
+    """
+
+    kind: ClassVar[str] = "grid"
+
+    file: AnyGrid = Field(description="the name of a file of heights, beside the scene")
+
+    filter_radius: si.PositiveLength | None = Field(
+        None, description="of a disc, m: the heights are those that it rolls on; those of the profile by default"
+    )
+
+    def in_equations(self) -> dict[str, Any]:
+        tables = tuple(through_filter(table, self.filter_radius) for table in self.file.tables)
+        return {"friction": self.friction, "lines": tables, "across": self.file.across}
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        """The first line's height, and what each further one adds."""
+        heights = [line(x) for line in r.lines]
+        height = heights[0]
+        for k in range(1, len(heights)):
+            part = clipped((y - r.across[k - 1]) / (r.across[k] - r.across[k - 1]))
+            height = height + (heights[k] - heights[k - 1]) * part
+        return height

@@ -1,0 +1,46 @@
+"""What a run examines of its own motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..solve.dynamics import Dynamics, OutputRows
+from .growth import senseless
+from .lost_turns import lost_turns_sentence
+from .singular_passage import singular_passage_sentence
+
+
+@dataclass(frozen=True)
+class MotionNotes:
+    """Sentences on a motion.
+
+    Attributes
+    ----------
+    senseless : tuple of str
+        What no motion of the scene can be: growth without bound, open joints.
+    uncertain : tuple of str
+        What rounding decides: passages of singular poses, lost turns.
+    """
+
+    senseless: tuple[str, ...]
+    uncertain: tuple[str, ...]
+
+
+def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> MotionNotes:
+    """What there is to say of a motion.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+        Of the whole; its state is changed.
+    rows : OutputRows
+    on_constraints : bool
+        Whether the states are brought back to the constraints, so that drift is not shown.
+    """
+    return MotionNotes(
+        tuple(senseless(dynamics, rows, on_constraints)),
+        (
+            *(singular_passage_sentence(dynamics, rows) if rows.lam.size else ()),
+            *(lost_turns_sentence(dynamics, rows) if dynamics.system.n_counters else ()),
+        ),
+    )

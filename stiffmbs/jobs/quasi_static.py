@@ -1,0 +1,67 @@
+"""Quasi-static analysis: an equilibrium at each output instant (Adams: SIMULATE/STATIC with END and STEPS)."""
+
+from __future__ import annotations
+
+from typing import Unpack
+
+import numpy as np
+
+from ..describe.scene import Scene
+from ..describe.settings import RunSettings, Settings, takes_settings
+from ..errors import AssemblyError, SolverError
+from ..results.solution import Solution
+from ..solve.algebraic_states import failure
+from ..solve.dynamics import Dynamics
+from ..solve.equilibrium import Equilibrium, find_equilibrium
+from .run import Runnable, data_of, prepare
+from .solution_at_rest import solution_at_rest
+
+
+@takes_settings
+def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Solution:
+    """Equilibria at rest at all output instants, each sought from the pose of the one before.
+
+    Forces, drives and tables of time change slowly: what depends on velocities does nothing.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+    settings : RunSettings, optional
+        Its output instants; those of a scene by default.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    Solution
+        All channels over the output instants.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    SolverError
+        Where no equilibrium is found; names the instant.
+    """
+    data = data_of(model)
+    if isinstance(data, Scene):
+        data = data.model_copy(update={"start": "described"})
+    job = prepare(data, settings, **changes)
+    times = job.grid.times if job.grid.times is not None else np.linspace(job.grid.start, job.grid.end, 101)
+    job.dynamics.state.q[:] = job.start.q
+    found = [_next(job.dynamics, float(t)) for t in times]
+    q, u = (np.array([getattr(each, name) for each in found]) for name in ("q", "u"))
+    moves = sum(each.moves for each in found)
+    solver = {"name": "quasi_static", "moves": moves, "imbalance": max(each.imbalance for each in found)}
+    return solution_at_rest(job, times, q, u, f"{len(times)} equilibria after {moves} moves", (), solver)
+
+
+def _next(dynamics: Dynamics, t: float) -> Equilibrium:
+    """The equilibrium at an instant from the present pose, which is then that of the equilibrium."""
+    status = dynamics.assemble(t)
+    if status < 0:
+        raise AssemblyError(f"t = {t:g} s: the constraints do not meet: {failure(dynamics, status, t)}")
+    try:
+        return find_equilibrium(dynamics, t)
+    except SolverError as error:
+        raise SolverError(f"t = {t:g} s: {error}") from None

@@ -1,0 +1,52 @@
+"""Motions beside a steady one, as eigenvalues in the frame that moves with it, in which the equations have constant coefficients."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..solve.dynamics import Dynamics
+from ..solve.steady_motion import SteadyMotion
+from .state_space import state_matrix
+from .tangent_space import linearised
+
+CONSTANT = 1e-6
+"""Part of the rates that may be left where the equations do have constant coefficients in that frame."""
+
+
+def eigenvalues_beside(
+    dynamics: Dynamics, t: float, motion: SteadyMotion, acceleration: np.ndarray
+) -> np.ndarray | None:
+    """Eigenvalues of the motions beside a steady one, 1/s; None where coefficients are not constant in the frame that moves with it.
+
+    With W x the rotation of the frame, variations in it change by x' = v - W x and v' = a - W v.  Neutral motions, such as
+    one along the motion itself, are among them as zeros.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+        At a state of the motion, with its multipliers.
+    t : float
+        s.
+    motion : SteadyMotion
+    acceleration : ndarray, shape (n_u,)
+        u' of the motion.
+
+    Raises
+    ------
+    SolverError
+        Where a motion that the constraints leave free has no mass.
+    """
+    system = dynamics.system
+    scale = system.per_velocity(system.size, 1.0)
+    state = state_matrix(linearised(dynamics, t, acceleration), scale)
+    turning = motion.turning(system)
+    own = state.matrix[len(state.matrix) - state.n_states :]
+    states = np.eye(len(state.matrix))[len(state.matrix) - state.n_states :]
+    values = np.vstack([*(part / scale[:, None] for part in (state.poses, state.velocities)), states])
+    x, v = state.velocities - turning @ state.poses, state.accelerations - turning @ state.velocities
+    rates = np.vstack([x / scale[:, None], v / scale[:, None], own])
+    matrix, *_ = np.linalg.lstsq(values, rates, rcond=None)
+    if np.linalg.norm(values @ matrix - rates) > CONSTANT * np.linalg.norm(rates):
+        return None
+    found: np.ndarray = np.linalg.eigvals(matrix)
+    return found[np.lexsort((found.imag, -found.real))]

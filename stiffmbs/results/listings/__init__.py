@@ -1,0 +1,1 @@
+"""Listings of other programs, and how far results are from them."""

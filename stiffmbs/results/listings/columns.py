@@ -1,0 +1,142 @@
+"""Columns over time of files of results: of this package, tables as text, and Adams' .res files in XML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ...describe.files.quoted import quoted
+from ...errors import InputError
+from ..saved_state import READERS
+
+Columns = dict[str, np.ndarray]
+"""Columns by name; time is ``time``."""
+TIME = "time"
+FEWEST_ROWS = 2
+_SPLIT = re.compile(r"\s*[,;\t]\s*|\s+")
+_WORDS = re.compile(r'"[^"]*"|[^\s,;"]+')
+
+
+def read_columns(path: str | Path) -> Columns:
+    """The columns of a file over time.
+
+    Parameters
+    ----------
+    path : str or Path
+        Results of this package (.npz, .csv, .nc), a table as text with time in its first column (.tab, .txt, .csv, .req, ...),
+        or a .res or .xml file of Adams.  A column of a table has its name in the header, where it has as many names as columns,
+        and its number: ``1`` is time, ``2`` the first after it.  A column of Adams' XML is called ``entity.component``.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read or has no columns of numbers over time.
+    """
+    file = Path(path)
+    reader = _reader(file)
+    try:
+        found = reader(file)
+    except OSError as error:
+        raise InputError(f"{quoted(str(path))}: {error.strerror or 'found no file'}") from None
+    except (ValueError, KeyError, EOFError, TypeError, ElementTree.ParseError) as error:
+        raise InputError(f"{quoted(str(path))}: found no table of numbers over time ({error})") from None
+    time = found.get(TIME)
+    if time is None or len(time) < FEWEST_ROWS or np.any(np.diff(time) < 0):
+        raise InputError(f"{quoted(str(path))}: found no times that increase, expected two rows or more over time")
+    return {name: values for name, values in found.items() if values.shape == time.shape}
+
+
+def _reader(file: Path) -> Callable[[Path], Columns]:
+    if file.suffix in (".res", ".xml"):
+        return _adams_xml
+    if file.suffix in (".npz", ".nc"):
+        return lambda path: {
+            name: np.asarray(values, dtype=float)
+            for name, values in READERS[path.suffix](path).items()
+            if _numeric(values)
+        }
+    return _table
+
+
+def _numeric(values: np.ndarray) -> bool:
+    return values.dtype.kind == "f" and values.ndim == 1
+
+
+def _table(path: Path) -> Columns:
+    """The longest block of lines of as many numbers each, with the names in the line before it."""
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    rows = [_numbers(line) for line in lines]
+    first, last = _longest_block([len(row) for row in rows])
+    if last - first < FEWEST_ROWS:
+        raise ValueError("no lines of numbers")
+    table = np.array(rows[first:last]).T
+    found = {str(k): column for k, column in enumerate(table, start=1)}
+    for line in lines[first - 1 :: -1] if first else ():
+        names = [word.strip('"').partition(" (")[0] for word in _heads(line)]
+        if len(names) == len(table):
+            found |= {name: column for name, column in zip(names, table, strict=True) if name}
+            break
+    return found | {TIME: table[0]}
+
+
+def _heads(line: str) -> list[str]:
+    """The names of columns: parted by tabs or commas where there are any, else by blanks."""
+    for sign in ("\t", ","):
+        if sign in line:
+            return [part.strip() for part in line.strip("\r\n").split(sign)]
+    return _WORDS.findall(line)
+
+
+def _numbers(line: str) -> list[float]:
+    """The numbers of a line; none where it has anything else."""
+    parts = [part for part in _SPLIT.split(line.strip()) if part]
+    try:
+        return [float(part.replace("D", "E").replace("d", "e")) for part in parts]
+    except ValueError:
+        return []
+
+
+def _longest_block(widths: Sequence[int]) -> tuple[int, int]:
+    """The bounds of the longest run of lines with the same number of columns, two or more."""
+    best, start = (0, 0), 0
+    for k in range(1, len(widths) + 1):
+        if k == len(widths) or widths[k] != widths[start]:
+            if widths[start] > 1 and k - start > best[1] - best[0]:
+                best = (start, k)
+            start = k
+    return best
+
+
+def _adams_xml(path: Path) -> Columns:
+    """Adams' .res in XML: a map of steps, which says what each number is called, and the numbers of each step."""
+    names: dict[int, str] = {}
+    rows: list[list[float]] = []
+    for element in _elements(path):
+        match element.tag.rpartition("}")[2]:
+            case "Entity":
+                entity = element.get("name") or ""
+                for component in element:
+                    names[int(component.get("id") or 0)] = _joined(entity, component.get("name") or "")
+            case "Step":
+                if element.get("type") != "initialConditions":
+                    rows.append([float(text) for text in (element.text or "").split()])
+    if not rows:
+        raise ValueError("no steps")
+    table = np.array(rows).T
+    found = {names.get(k, str(k)): column for k, column in enumerate(table, start=1)}
+    of_time = next((name for name in found if name.lower() in (TIME, f"{TIME}.{TIME}")), None)
+    return found | {TIME: found[of_time] if of_time else table[0]}
+
+
+def _elements(path: Path) -> Iterator[ElementTree.Element]:
+    with path.open("rb") as file:
+        for _, element in ElementTree.iterparse(file):
+            yield element
+
+
+def _joined(entity: str, component: str) -> str:
+    return f"{entity}.{component}" if entity and component else entity or component

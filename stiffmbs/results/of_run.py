@@ -1,0 +1,62 @@
+"""What a run reports: its channels, its energy balance, and what these say of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.system import System
+from ..describe.model_data import ModelData
+from ..describe.settings import RunSettings
+from ..solve.dynamics import OutputRows
+from ..solve.storage import with_gaps
+from .channels import channels_of, turns_of
+from .energy_balance import Balance, energy_balance
+from .energy_balance_notes import balance_notes
+from .undefined_values import no_number_sentences
+
+
+@dataclass(frozen=True)
+class RunResults:
+    """The results of a run.
+
+    Attributes
+    ----------
+    channels : dict of str to ndarray, shape (n,)
+    balance : Balance
+    turns : dict of str to ndarray, shape (n,)
+        What is counted of angles over whole turns, rad.
+    broken_balance, undefined : tuples of str
+        Sentences on the energy balance, and on channels without a number at some instants.
+    """
+
+    channels: dict[str, np.ndarray]
+    balance: Balance
+    turns: dict[str, np.ndarray]
+    broken_balance: tuple[str, ...]
+    undefined: tuple[str, ...]
+
+
+def results_of_run(
+    model: ModelData, system: System, rows: OutputRows, settings: RunSettings, steps: np.ndarray
+) -> RunResults:
+    """The results of what was computed.
+
+    Parameters
+    ----------
+    model : ModelData
+    system : System
+        Of the model.
+    rows : OutputRows
+    settings : RunSettings
+    steps : ndarray
+        Ends of the solver's own steps, s; empty where it does not tell them.
+    """
+    channels, balance = channels_of(model, system, rows), energy_balance(system, rows, steps)
+    solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
+    known = {name: values[solved_there] for name, values in with_gaps(channels).items()}
+    return RunResults(
+        channels, balance, turns_of(system, rows.q), tuple(balance_notes(system, balance, rows, settings, steps)),
+        tuple(no_number_sentences(rows.t[solved_there], known)) if known else (),
+    )  # fmt: skip

@@ -1,0 +1,20 @@
+"""Loads of bushings as a table."""
+
+from __future__ import annotations
+
+from ..studies.suspension.road_loads import RoadLoads
+
+
+def road_loads_text(scene: str, found: RoadLoads) -> str:
+    """A line for each component of each bushing: its peak, when, and in which case.
+
+    Parameters
+    ----------
+    scene : str
+    found : RoadLoads
+    """
+    lines = [f"{scene}: largest loads of bushings in their own axes (N, N m) over {', '.join(found.loads)}"]
+    for name, peaks in found.peaks.items():
+        lines.append(name)
+        lines += [f"  {peak.component} {peak.value:>12.5g} at {peak.time:>8.4g} s, {peak.case}" for peak in peaks]
+    return "\n".join(lines)

@@ -1,0 +1,108 @@
+"""Algebraic states at a state of a run: how fast they change, and why they have no value where that is so."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .dynamics import Dynamics
+from .failures import FAILURES
+from .native.statuses import NO_STATE
+
+AHEAD = 1e-6
+"""Time over which the rates of algebraic states are taken, s: they only begin a prediction, which the error test then judges."""
+BEYOND = (1e-9, 1e-7, 1e-5)
+"""How far beyond the last state a value is looked for that does not exist, relative to the time, s."""
+FLAT = 1e-10
+"""Derivative of an equation by its states, relative to scales and values, that counts as none."""
+
+
+def rates_of_algebraic(
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
+) -> np.ndarray:
+    """How fast the algebraic states change along the motion, shape (algebraic states,); the state at hand is left as it is."""
+    places = dynamics.system.algebraic_coordinates
+    if not len(places):
+        return np.zeros(0)
+    state = dynamics.state
+    with state.unchanged():
+        there = dynamics.system.of_body.moved(q, AHEAD * u)
+        there[dynamics.system.n_pose :] += AHEAD * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
+        state.q[:], state.u[:] = there, u + AHEAD * acceleration
+        status, _ = dynamics.accelerate(t + AHEAD)
+        rates = (state.q[places] - q[places]) / AHEAD
+    return rates if status >= 0 and np.all(np.isfinite(rates)) else np.zeros(len(places))
+
+
+def rates_by_states(dynamics: Dynamics) -> np.ndarray:
+    """How the rates of the other states change with these as algebraic states follow; the set ``tangent`` is up to date.
+
+    Not a number where algebraic states have no unique values.
+    """
+    system = dynamics.system
+    own = slice(system.first_state, None)
+    whole, algebraic = dynamics.state.matrix("tangent", "rate_q")[own, own], system.algebraic
+    rates, follow = whole[~algebraic], whole[algebraic]
+    try:
+        by_others = -np.linalg.solve(follow[:, algebraic], follow[:, ~algebraic])
+    except np.linalg.LinAlgError:
+        return np.full((len(rates), len(rates)), np.nan)
+    found: np.ndarray = rates[:, ~algebraic] + rates[:, algebraic] @ by_others
+    return found
+
+
+def failure(dynamics: Dynamics, status: int, t: float) -> str:
+    """Why accelerations were not found at the state at hand, as a clause; names the algebraic state that has no value."""
+    return (no_value(dynamics, t) if status == NO_STATE else "") or FAILURES[status]
+
+
+def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
+    """A clause on the algebraic state that has no value at a state, or from there on; empty where all have one."""
+    system, state = dynamics.system, dynamics.state
+    if not system.algebraic.any():
+        return ""
+    state.q[:], state.u[:] = q, u
+    status, acceleration = dynamics.accelerate(t)
+    if status >= 0:
+        for ahead in BEYOND:
+            later = ahead * max(1.0, abs(t))
+            with state.unchanged():
+                rates = dynamics.position_rates(state.q, state.u)
+                state.q[:] = system.of_body.moved(state.q, later * state.u)
+                state.q[system.n_pose :] += later * rates[system.n_pose :]
+                state.u[:] += later * acceleration
+                status, _ = dynamics.accelerate(t + later)
+                if status == NO_STATE:
+                    return no_value(dynamics, t + later)
+    return no_value(dynamics, t)
+
+
+def no_value(dynamics: Dynamics, t: float) -> str:
+    """A clause on the algebraic state whose equation has no solution near its value at hand; empty where each has a regular one."""
+    system, state = dynamics.system, dynamics.state
+    places = system.algebraic_coordinates
+    state.evaluate("tangent", t)
+    state.evaluate("motion", t)
+    slopes = state.matrix("tangent", "rate_q")[np.ix_(places, places)]
+    left = state.vector("motion", "rate")[places]
+    sizes = np.maximum(np.abs(state.q[places]), system.state_scales[system.algebraic])
+    names = [system.states[k] for k in np.flatnonzero(system.algebraic)]
+    at = [f"{name} = {value:.6g}" for name, value in zip(names, state.q[places], strict=True)]
+    undefined = np.flatnonzero(~np.isfinite(left) | ~np.all(np.isfinite(slopes), axis=1))
+    if len(undefined):
+        worst = int(undefined[0])
+        return f"the formula that the state '{names[worst]}' keeps at zero has no finite value at {at[worst]}"
+    values, vectors = np.linalg.eigh((slopes * sizes).T @ (slopes * sizes))
+    if not values[0] > FLAT**2 * max(values[-1], np.finfo(float).tiny):
+        worst = int(np.argmax(np.abs(vectors[:, 0])))
+        return (
+            f"the state '{names[worst]}' has no unique value: the derivative of its formula by the state is zero at {at[worst]}, "
+            "expected one that changes with the state"
+        )
+    moves = np.abs(np.linalg.solve(slopes, left)) / sizes
+    worst = int(np.argmax(moves))
+    if not moves[worst] > FLAT:
+        return ""
+    return (
+        f"the state '{names[worst]}' has no value: Newton's iteration finds no zero of its formula from {at[worst]}, "
+        f"where it is {left[worst]:.3g}; expected a zero near there"
+    )

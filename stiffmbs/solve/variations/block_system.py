@@ -1,0 +1,90 @@
+"""How accelerations and multipliers change with the state and with numbers: [M J^T; J 0][u'; lam] = [f; gamma], differentiated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...compile.directional.direction import Direction, Numbers
+from ...errors import SolverError
+from ..dynamics import Dynamics
+from ..failures import FAILURES
+from .saddle import saddle_solution
+
+
+@dataclass(frozen=True)
+class Change:
+    """How a state changes in each direction, one a row.
+
+    Attributes
+    ----------
+    q, u : ndarrays, shapes (directions, n_q), (directions, n_u)
+    acceleration, lam : ndarrays, shapes (directions, n_u), (directions, n_c)
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    lam: np.ndarray
+
+
+class BlockSystem:
+    """The block system of a state in several directions.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    directions : sequence of Numbers
+    """
+
+    def __init__(self, dynamics: Dynamics, directions: Sequence[Numbers]) -> None:
+        self._dynamics, self._numbers = dynamics, directions
+        self._accelerations = [Direction(dynamics.state, "acceleration", numbers) for numbers in directions]
+        self._outputs: list[Direction] = []
+
+    def change(
+        self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray
+    ) -> Change:
+        """How accelerations and multipliers change at a state.
+
+        Parameters
+        ----------
+        t : float
+        q, u : ndarrays, shapes (n_q,), (n_u,)
+        moved_q, moved_u : ndarrays, shapes (directions, n_q), (directions, n_u)
+        moved_t : ndarray, shape (directions,)
+            How time changes.
+
+        Raises
+        ------
+        SolverError
+            When the state has no accelerations.
+        """
+        state, system = self._dynamics.state, self._dynamics.system
+        state.q[:], state.u[:] = q, u
+        status, acceleration = self._dynamics.accelerate(t)
+        if status < 0:
+            raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
+        state.a[:] = acceleration
+        right = []
+        for direction, of_q, of_u, of_t in zip(self._accelerations, moved_q, moved_u, moved_t, strict=True):
+            direction.q[:], direction.u[:] = of_q, of_u
+            direction.evaluate(t, of_t)
+            force = (
+                direction.vector("f") - direction.numbers.mass * acceleration - direction.product("J", state.lam, True)
+            )
+            right.append(np.concatenate([force, direction.vector("gamma") - direction.product("J", acceleration)]))
+        solved = saddle_solution(state, "acceleration", np.array(right).T, friction=True).T
+        return Change(moved_q, moved_u, solved[:, : system.n_u], solved[:, system.n_u :])
+
+    def outputs(self, t: float, change: Change) -> np.ndarray:
+        """How the output terms change at the state at hand, shape (directions, values)."""
+        self._outputs = self._outputs or [Direction(self._dynamics.state, "output", each) for each in self._numbers]
+        n_values = self._dynamics.system.n_values("output")
+        for k, direction in enumerate(self._outputs):
+            direction.q[:], direction.u[:], direction.a[:] = change.q[k], change.u[k], change.acceleration[k]
+            direction.lam[:] = change.lam[k]
+            direction.evaluate(t)
+        return np.array([direction.values[:n_values] for direction in self._outputs])

@@ -1,0 +1,125 @@
+"""A run of `bdf` with all its steps, between the starts that breakpoints and events make."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...describe.settings import RunSettings
+from ...errors import SolverError
+from ..bdf import Integrator
+from ..dynamics import Dynamics
+from ..events.restart import INDISTINCT
+from ..ida.engine import Reached
+from ..ida.native_engine import NativeEngine
+from ..initial import InitialValues
+from ..trajectory import Grid
+
+BACK, FURTHEST = 1e-13, 1e-6
+"""Part of the time, or of the time since the start before, by which the end of a segment is moved back at first, and at the most: the
+instant of an event is known to some roundings."""
+MOST_NUMBERS = 2e8
+"""Numbers that are kept of a run, 1.6 GB."""
+
+
+@dataclass
+class Segment:
+    """The steps from one start to the next.
+
+    Attributes
+    ----------
+    start : InitialValues
+    first : ndarray, shape (2 + 2 n,)
+        Time, order, y and y' at the start.
+    rows : ndarray, shape (steps, 2 + 2 n)
+        The same at the end of each step.
+    fired : tuple of int
+        The event functions that end it; none where a breakpoint in time, or the end of the run, does.
+    """
+
+    start: InitialValues
+    first: np.ndarray
+    parts: list[np.ndarray] = field(default_factory=list)
+    fired: tuple[int, ...] = ()
+
+    @property
+    def rows(self) -> np.ndarray:
+        if len(self.parts) > 1:
+            self.parts = [np.concatenate(self.parts)]
+        return self.parts[0] if self.parts else np.empty((0, len(self.first)))
+
+
+class Recorder(Integrator):
+    """An integrator that keeps its steps.
+
+    Attributes
+    ----------
+    segments : list of Segment
+    """
+
+    def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
+        super().__init__(dynamics, settings)
+        if not isinstance(self.engine, NativeEngine):
+            raise SolverError(
+                "sensitivities: found SUNDIALS' libraries in another form, expected those of scikit-sundae's wheels"
+            )
+        self.native: NativeEngine = self.engine
+        self.segments: list[Segment] = []
+        self._numbers = 0
+
+    def _begin(self, start: InitialValues, t: float) -> None:
+        super()._begin(start, t)
+        if self.segments:
+            self._end_before_the_jump(self.segments[-1])
+        self.segments.append(Segment(start, self.native.present()))
+
+    def _end_before_the_jump(self, segment: Segment) -> None:
+        """Move the end of a segment back to where the law that held in it certainly does, by some roundings of time."""
+        rows, n = segment.rows, self.equations.n
+        if not len(rows):
+            return
+        t, y, yp = rows[-1, 0], rows[-1, 2 : 2 + n].copy(), rows[-1, 2 + n :]
+        back = BACK * max(abs(t), t - segment.first[0])
+        if segment.fired:
+            ahead = self._value(segment.fired[0], t + back, y + back * yp)
+            while back < FURTHEST * (t - segment.first[0]):
+                if self._value(segment.fired[0], t - back, y - back * yp) * ahead < 0:
+                    break
+                back *= 10.0
+        rows[-1, 0] = t - back
+        rows[-1, 2 : 2 + n] = y - back * yp
+
+    def _value(self, event: int, t: float, y: np.ndarray) -> float:
+        """An event function at a state."""
+        state = self.dynamics.state
+        with state.unchanged():
+            state.q[:], state.u[:] = self.split(y)
+            state.evaluate("event_function", t)
+            return float(state.values["event_function"][event])
+
+    def run(self, start: InitialValues, grid: Grid) -> Iterator[Reached]:
+        """As of any integrator; the steps are in `segments` afterwards."""
+        self.native.keep_steps(True)
+        try:
+            for reached in super().run(start, grid):
+                self._keep(reached)
+                yield reached
+        finally:
+            self.native.keep_steps(False)
+
+    def _keep(self, reached: Reached) -> None:
+        rows = self.native.kept_steps()
+        if not len(rows):
+            return
+        segment = self.segments[-1]
+        last = segment.parts[-1][-1, 0] if segment.parts else segment.first[0]
+        segment.parts.append(rows[np.diff(rows[:, 0], prepend=last) > INDISTINCT * np.abs(rows[:, 0])])
+        segment.fired = reached.fired
+        self._numbers += rows.size
+        if self._numbers > MOST_NUMBERS:
+            raise SolverError(
+                f"sensitivities: found {self._numbers / rows.shape[1]:.3g} steps of {rows.shape[1]} numbers, expected fewer; "
+                "give a shorter duration or a larger rtol"
+            )

@@ -1,0 +1,114 @@
+"""A run that can be looked at while it goes on."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Unpack
+
+import numpy as np
+
+from ..describe.requests.order import units
+from ..describe.scene import Scene
+from ..describe.settings import RunSettings, Settings, takes_settings
+from ..errors import InputError
+from ..jobs.run import Job, Runnable, data_of, prepare
+from ..jobs.start_from import StartFrom
+from ..results.channels import channels_of
+from ..results.energy_balance import energy_balance
+from ..results.solution import Solution
+from ..solve.settings import changed
+from ..solve.trajectory import Ending, History, Outcome
+from .stepping import stepper_of
+
+SHARE = 5.0
+"""Time of solving, relative to that of reporting what was solved: a long run is reported less and less often."""
+INTERVALS = 500
+"""Between instants that are reported where a run asks for the solver's own steps."""
+STILL_SOLVING = "still solving"
+
+
+@takes_settings
+def follow(
+    model: Runnable,
+    every: float = 0.5,
+    settings: RunSettings | None = None,
+    start_from: StartFrom | None = None,
+    **changes: Unpack[Settings],
+) -> Iterator[Solution]:
+    """Solve a model, and hand out the solution so far now and then, and the whole in the end.
+
+    bdf goes on with its history, as in `stiffmbs.run`; explicit solvers start anew at each output instant.  What `run` tells of a
+    whole solution (notes, verification) is not looked for.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+    every : float
+        Least time between two solutions, s of the clock.
+    settings : RunSettings, optional
+        The scene's own by default.
+    start_from : Solution, str, Path or SavedState, optional
+        As for `stiffmbs.run`.
+    **changes
+        Fields of the settings to change.
+
+    Yields
+    ------
+    Solution
+        From the start up to the present; the last one is whole, or stopped where the solver could not go on.
+
+    Raises
+    ------
+    InputError
+        When the model or a setting is wrong.
+    AssemblyError
+        When no consistent start is found.
+
+    Examples
+    --------
+    >>> for solution in stiffmbs.follow("examples/cart_pendulum.yaml"):
+    ...     print(solution.t[-1], solution["cart.x"][-1])
+    """
+    if not every >= 0:
+        raise InputError(f"follow: found every = {every}, expected a time of 0 s or more")
+    data = data_of(model)
+    chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), dict(changes))
+    job = prepare(data, chosen, start_from)
+    if job.subsystems:
+        job = prepare(data, changed(chosen, {"presolve": False}), start_from)
+    return _followed(job, every)
+
+
+def _followed(job: Job, every: float) -> Iterator[Solution]:
+    grid = job.grid
+    instants = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, INTERVALS + 1)
+    stepper = stepper_of(job, job.start, job.grid.start)
+    q = np.empty((len(instants), len(job.start.q)))
+    u = np.empty((len(instants), len(job.start.u)))
+    q[0], u[0] = job.start.q, job.start.u
+    told, pause, solved = time.monotonic(), every, 1
+    with Ending() as ending:
+        for k in range(1, len(instants)):
+            q[k], u[k] = stepper.advance(float(instants[k]))
+            solved = k + 1
+            begun = time.monotonic()
+            if begun - told >= pause and solved < len(instants):
+                yield _so_far(job, instants[:solved], q[:solved], u[:solved], Outcome.STOPPED, STILL_SOLVING)
+                told = time.monotonic()
+                pause = max(every, SHARE * (told - begun))
+    yield _so_far(job, instants[:solved], q[:solved], u[:solved], ending.outcome, ending.message)
+
+
+def _so_far(job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, outcome: Outcome, message: str) -> Solution:
+    """The solution at some instants, from the start on."""
+    system = job.dynamics.system
+    with job.dynamics.state.unchanged():
+        rows = job.dynamics.report(t, q, u, project=True)
+    channels = channels_of(job.data, system, rows)
+    return Solution(
+        name=job.data.name, time=rows.t, channels=channels, outcome=outcome, message=message, notes=(),
+        solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
+        balance=energy_balance(system, rows, np.empty(0)),
+        requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
+    )  # fmt: skip

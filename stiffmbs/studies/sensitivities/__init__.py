@@ -1,0 +1,1 @@
+"""Forward sensitivities: how outputs of a run change with parameters."""

@@ -1,0 +1,174 @@
+"""Derivatives of outputs, formulas of channels and of their peaks, integrals and the like, by the rules of differentiation."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...errors import InputError
+from ..outputs import FUNCTIONS, OPERATORS, REDUCTIONS, TIME, channel_of, parsed
+
+SELECTED = {
+    "peak": lambda x: int(np.argmax(np.abs(x))), "max": lambda x: int(np.argmax(x)), "min": lambda x: int(np.argmin(x)),
+    "final": lambda x: len(x) - 1, "first": lambda x: 0,
+}  # fmt: skip
+"""Reductions that are the value at one instant, which moves: at a peak the channel's rate is zero, so that this has no part in the
+derivative."""
+WHOLE = ("rms", "mean", "integral")
+"""Reductions of all instants."""
+
+
+@dataclass(frozen=True)
+class Dual:
+    """A value with its derivatives; of a series only those at the instants that count.
+
+    Attributes
+    ----------
+    value : float or ndarray, shape (n,)
+    slope : ndarray, shape (directions,) or (n, directions)
+    """
+
+    value: Any
+    slope: Any
+
+
+class Formula:
+    """An output of a run, its value and its derivatives.
+
+    Parameters
+    ----------
+    text : str
+        As in `stiffmbs.sweep`.
+    time : ndarray, shape (n,)
+    channels : mapping of str to ndarray
+    """
+
+    def __init__(self, text: str, time: np.ndarray, channels: Mapping[str, np.ndarray]) -> None:
+        self.text, self._time, self._channels = text, time, channels
+        self._tree = parsed(text).body
+
+    def instants(self) -> np.ndarray:
+        """The numbers of the instants at which derivatives of channels are needed."""
+        wanted = np.zeros(len(self._time), dtype=bool)
+        self._mark(self._tree, np.ones(len(self._time), dtype=bool), wanted)
+        return np.flatnonzero(wanted)
+
+    def _mark(self, node: ast.AST, here: np.ndarray, wanted: np.ndarray) -> None:
+        match node:
+            case ast.Call(ast.Name(name), [argument], []) if name in REDUCTIONS:
+                if name in SELECTED:
+                    here = np.zeros_like(here)
+                    here[SELECTED[name](self._series(argument))] = True
+                elif name not in WHOLE:
+                    raise InputError(
+                        f"of: found {name} in '{self.text}', expected a channel, {', '.join((*SELECTED, *WHOLE))}"
+                    )
+                else:
+                    here = np.ones_like(here)
+                self._mark(argument, here, wanted)
+            case _ if channel_of(node) not in (None, TIME):
+                wanted |= here
+            case ast.Call(_, arguments):
+                for argument in arguments:
+                    self._mark(argument, here, wanted)
+            case _:
+                for part in ast.iter_child_nodes(node):
+                    self._mark(part, here, wanted)
+
+    def _series(self, node: ast.AST) -> np.ndarray:
+        value = self._dual(node, dict.fromkeys(self._channels, 0.0)).value
+        return np.broadcast_to(np.asarray(value, dtype=float), self._time.shape)
+
+    def dual(self, slopes: Mapping[str, Any]) -> Dual:
+        """The value with its derivatives, from those of the channels, shape (n, directions)."""
+        with np.errstate(all="ignore"):
+            return self._dual(self._tree, slopes)
+
+    def _dual(self, node: ast.AST, slopes: Mapping[str, Any]) -> Dual:
+        name = channel_of(node)
+        if name is not None:
+            if name == TIME:
+                return Dual(self._time, 0.0)
+            if name not in slopes:
+                raise InputError(
+                    f"of: found '{name}' in '{self.text}', which has no derivatives, expected another channel"
+                )
+            return Dual(self._channels[name], slopes[name])
+        match node:
+            case ast.Constant(value):
+                return Dual(value, 0.0)
+            case ast.Call(ast.Name(function), [argument], []) if function in REDUCTIONS:
+                return self._reduced(function, self._dual(argument, slopes))
+            case ast.Call(ast.Name(function), arguments, []):
+                return _called(function, [self._dual(argument, slopes) for argument in arguments])
+            case ast.BinOp(left, operator, right):
+                return _operated(operator, self._dual(left, slopes), self._dual(right, slopes))
+            case ast.UnaryOp(ast.USub(), operand):
+                found = self._dual(operand, slopes)
+                return Dual(-found.value, -found.slope)
+            case ast.UnaryOp(_, operand):
+                return self._dual(operand, slopes)
+        raise InputError(f"of: found '{ast.unparse(node)}', expected a formula of channels")
+
+    def _reduced(self, name: str, x: Dual) -> Dual:
+        series, value = np.asarray(x.value, dtype=float), REDUCTIONS[name](self._time, x.value)
+        if np.ndim(x.slope) == 0:
+            return Dual(value, 0.0)
+        if name in SELECTED:
+            k = SELECTED[name](series)
+            return Dual(value, x.slope[k] * (np.sign(series[k]) if name == "peak" else 1.0))
+        span = 1.0 if name == "integral" else self._time[-1] - self._time[0]
+        if name == "rms":
+            mean = np.trapezoid(series[:, None] * x.slope, self._time, axis=0) / span
+            return Dual(value, mean / value if value else 0.0 * mean)
+        return Dual(value, np.trapezoid(x.slope, self._time, axis=0) / span)
+
+
+def _times(factor: Any, slope: Any) -> Any:
+    """A slope times a number, or times a series instant by instant."""
+    if np.ndim(slope) == 0:
+        return slope * 0.0
+    if np.ndim(factor) == 1:
+        return np.asarray(factor)[:, None] * slope
+    return factor * slope
+
+
+def _operated(operator: ast.operator, a: Dual, b: Dual) -> Dual:
+    value = OPERATORS[type(operator)](a.value, b.value)
+    match operator:
+        case ast.Add():
+            slope = a.slope + b.slope
+        case ast.Sub():
+            slope = a.slope - b.slope
+        case ast.Mult():
+            slope = _times(b.value, a.slope) + _times(a.value, b.slope)
+        case ast.Div():
+            slope = _times(1 / np.asarray(b.value), a.slope) - _times(value / np.asarray(b.value), b.slope)
+        case _:
+            x, n = np.asarray(a.value, dtype=float), np.asarray(b.value, dtype=float)
+            slope = _times(n * x ** (n - 1), a.slope)
+            if np.ndim(b.slope):
+                slope = slope + _times(value * np.log(x), b.slope)
+    return Dual(value, slope)
+
+
+SLOPES: dict[str, Any] = {
+    "abs": np.sign, "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
+    "cos": lambda x: -np.sin(x), "tan": lambda x: 1 / np.cos(x) ** 2,
+}  # fmt: skip
+"""Derivatives of the functions of one number."""
+
+
+def _called(name: str, arguments: list[Dual]) -> Dual:
+    values = [np.asarray(argument.value, dtype=float) for argument in arguments]
+    value = FUNCTIONS[name](*values)
+    if name in SLOPES:
+        return Dual(value, _times(SLOPES[name](values[0]), arguments[0].slope))
+    a, b = values
+    square = a * a + b * b
+    by_a, by_b = (b / square, -a / square) if name == "atan2" else (a / value, b / value)
+    return Dual(value, _times(by_a, arguments[0].slope) + _times(by_b, arguments[1].slope))

@@ -1,0 +1,147 @@
+"""Parameters by name: their present values, and scenes with other ones."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ...describe.files.unchanged import Unchanged
+from ...describe.files.written_scene import WrittenScene
+from ...describe.scene import Scene, made_scene
+from ...errors import InputError
+
+STEP = 1e-4
+"""Change of a parameter, relative to it, by which what a scene is set up with is differentiated; absolute, in SI units, where the
+parameter is zero.  Set-up is arithmetic, exact to rounding: central differences leave 1e-8 of it and mostly far less."""
+
+
+class Scenes:
+    """Scenes that differ by one value; what stays the same is validated once.
+
+    Parameters
+    ----------
+    written : WrittenScene
+
+    Attributes
+    ----------
+    known : Scene
+        As it is written.
+    """
+
+    def __init__(self, written: WrittenScene) -> None:
+        self._written, self._unchanged = written, Unchanged()
+        self.known = self.changed(())
+
+    def changed(self, changes: Sequence[tuple[str, Any]]) -> Scene:
+        """The scene with other values.
+
+        Raises
+        ------
+        InputError
+            When one does not fit.
+        """
+        written = self._written
+        content, all_changes = copy.deepcopy(dict(written.content)), (*written.changes, *changes)
+        return made_scene(content, all_changes, written.source, lambda _: None, written.folder, self._unchanged)
+
+
+class Parameter:
+    """One value of a scene: a parameter, or a path such as ``forces.spring.stiffness`` or ``bodies.bar.position.0``.
+
+    Parameters
+    ----------
+    scenes : Scenes
+    name : str
+
+    Attributes
+    ----------
+    name : str
+    value : float
+        As the scene has it, in SI units.
+
+    Raises
+    ------
+    InputError
+        When the scene has no such value, or it is no number.
+    """
+
+    def __init__(self, scenes: Scenes, name: str) -> None:
+        self.name, self._scenes = name, scenes
+        self._path, self._places, self._whole = _found(scenes.known, name)
+        self.value = float(_part(self._whole, self._places))
+
+    @property
+    def step(self) -> float:
+        """By which set-up is differentiated."""
+        return STEP * (abs(self.value) or 1.0)
+
+    def scene(self, value: float) -> Scene:
+        """The scene with another value.
+
+        Raises
+        ------
+        InputError
+            When it does not fit.
+        """
+        return self._scenes.changed([(self._path, _replaced(self._whole, self._places, value))])
+
+
+def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
+    """The path without indices behind it, those indices, and what stands there."""
+    parts = name.split(".")
+    if name in scene.parameters:
+        return name, (), scene.parameters[name]
+    if len(parts) == 2 and parts[0] == "parameters" and parts[1] in scene.parameters:
+        return name, (), scene.parameters[parts[1]]
+    if len(parts) < 2 or parts[0] == "run":
+        known = ", ".join(scene.parameters) or "none"
+        raise InputError(
+            f"to: found '{name}', expected a parameter of the scene ({known}) or a path such as forces.spring.stiffness"
+        )
+    at: Any = scene
+    k = 0
+    while k < len(parts):
+        if parts[k].isdigit() and isinstance(at, list | tuple):
+            places = tuple(map(int, parts[k:]))
+            if not _is_number(_part(at, places, name)):
+                raise InputError(f"to: found '{name}', which is no number, expected one; add a place such as .0")
+            return ".".join(parts[:k]), places, at
+        at, k = _next(at, parts, k, name)
+    if not _is_number(at):
+        what = "a vector; add a place such as .0" if isinstance(at, list | tuple) else "no number"
+        raise InputError(f"to: found '{name}', which is {what}, expected a number")
+    return name, (), at
+
+
+def _is_number(found: Any) -> bool:
+    return isinstance(found, int | float) and not isinstance(found, bool)
+
+
+def _next(at: Any, parts: Sequence[str], k: int, name: str) -> tuple[Any, int]:
+    """What stands under the next part of a path, or under several, as names may have dots; and where the path goes on."""
+    for end in range(len(parts), k, -1):
+        key = ".".join(parts[k:end])
+        found = at.get(key) if isinstance(at, Mapping) else getattr(at, key, None)
+        if found is not None:
+            return found, end
+    raise InputError(f"to: found '{name}', expected a path of the scene; it has no '{'.'.join(parts[: k + 1])}'")
+
+
+def _part(whole: Any, places: Sequence[int], name: str = "") -> Any:
+    for place in places:
+        if not isinstance(whole, list | tuple) or place >= len(whole):
+            raise InputError(f"to: found '{name}', expected a place of the vector or matrix there")
+        whole = whole[place]
+    return whole
+
+
+def _replaced(whole: Any, places: Sequence[int], value: float) -> Any:
+    if not places:
+        return value
+    first, *rest = places
+    return [_replaced(part, rest, value) if k == first else _listed(part) for k, part in enumerate(whole)]
+
+
+def _listed(part: Any) -> Any:
+    return [_listed(each) for each in part] if isinstance(part, list | tuple) else part

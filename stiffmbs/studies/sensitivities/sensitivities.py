@@ -1,0 +1,200 @@
+"""The front door: how outputs of a run change with parameters of its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...describe.settings import RunSettings
+from ...errors import InputError, SolverError
+from ...jobs.run import Runnable, prepare
+from ...results.channels import channels_of
+from ...solve.bdf import integrated
+from ...solve.dynamics import OutputRows
+from ...solve.missing_rows import reported
+from ...solve.settings import changed
+from ...solve.trajectory import Grid, Outcome
+from ...solve.variations.along_run import AlongRun
+from ...solve.variations.recorded import Recorder
+from ..case_solver import written_scene
+from ..outputs import outputs_of
+from .channels import changed_channels, changed_requests
+from .formulas import Formula
+from .parameters import Parameter, Scenes
+from .set_up import SetUp, breakpoint_rates
+
+TIGHTER, TIGHTEST = 1e-4, 1e-12
+"""Part of the asked rtol with which the run is solved, and the least rtol.  A force in a stiff bushing hangs on a deflection that is a
+small part of a coordinate, and its derivative on the phase of a vibration: they are coarser than the motion."""
+HELD = {"solver": "bdf", "formulation": "SI2", "presolve": False}
+"""Settings of the run along which sensitivities are integrated."""
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """An output and how it changes with parameters.
+
+    Attributes
+    ----------
+    of : str
+        The output, a formula of channels.
+    value : float or ndarray, shape (n,)
+        SI units; over the output instants where it is a channel.
+    to : dict of str to float or ndarray
+        The derivative by each parameter, SI units.
+    time : ndarray, shape (n,)
+        The output instants, s.
+    """
+
+    of: str
+    value: Any
+    to: dict[str, Any]
+    time: np.ndarray
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """What ``stiffmbs sensitivities --json`` prints."""
+        to = {name: np.asarray(slope).tolist() for name, slope in self.to.items()}
+        return {"scene": scene, "of": self.of, "value": np.asarray(self.value).tolist(), "to": to}
+
+
+def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings: Any) -> Sensitivity:
+    """How an output of a run changes with parameters of its scene, by forward sensitivity analysis.
+
+    The equations of motion are differentiated exactly, and integrated along the steps of `bdf` with their own iteration matrices.
+    Jumps at breakpoints in time and at events are part of it.
+
+    Parameters
+    ----------
+    scene : str, Path, Scene or Model
+    to : sequence of str
+        Parameters of the scene, or paths of numbers in it: ``"k_b"``, ``"bodies.bar.mass"``, ``"forces.spring.i.point.0"``.
+    of : str
+        A formula of channels and of ``peak``, ``max``, ``min``, ``final``, ``first``, ``rms``, ``mean`` and ``integral`` of them.
+    **settings
+        Fields of the run's settings to change: ``duration=2.0, rtol=1e-9``.
+
+    Returns
+    -------
+    Sensitivity
+
+    Raises
+    ------
+    InputError
+        When the scene, a parameter or the output is wrong, or a parameter changes the structure of the model.
+    AssemblyError
+        When no consistent start is found.
+    SolverError
+        When the run stops early, or the motion is not differentiable: an event function only touches zero.
+
+    References
+    ----------
+    Caracotsios and Stewart, Comput. Chem. Eng. 9 (1985) 359-365; Feehery, Tolsma and Barton, Appl. Numer. Math. 25 (1997) 41-54;
+    Galan, Feehery and Barton, Appl. Numer. Math. 31 (1999) 17-47.
+
+    Examples
+    --------
+    >>> found = stiffmbs.sensitivities("examples/half_car.yaml", ["k_b", "V"], "peak(front_bushing.fx)")
+    >>> found.to["V"]
+    """
+    names = [to] if isinstance(to, str) else list(to)
+    if not names or len(set(names)) < len(names):
+        raise InputError(f"to: found {', '.join(names) or 'no parameter'}, expected one parameter or more, each once")
+    (output,) = outputs_of(of)
+    scenes = Scenes(written_scene(scene))
+    asked = changed(scenes.known.run, settings)
+    for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
+        run = DifferentiatedRun(scenes, names, changed(asked, {"rtol": rtol}))
+        if run.success:
+            break
+    return run.sensitivity(output.text)
+
+
+class DifferentiatedRun:
+    """A run with the derivatives of its outputs.
+
+    Parameters
+    ----------
+    scenes : Scenes
+    names : sequence of str
+        Of the parameters.
+    settings : RunSettings
+        Solver and formulation are `bdf` and SI2 in any case, without presolve.
+    times : ndarray, optional
+        Output instants in place of those of the settings.
+
+    Attributes
+    ----------
+    success : bool
+        Whether the whole time was solved.
+    """
+
+    def __init__(
+        self, scenes: Scenes, names: Sequence[str], settings: RunSettings, times: np.ndarray | None = None
+    ) -> None:
+        parameters = [Parameter(scenes, name) for name in names]
+        self._job = job = prepare(scenes.known, changed(settings, HELD))
+        self._set_ups = [SetUp(job, parameter) for parameter in parameters]
+        self._numbers = [set_up.numbers for set_up in self._set_ups]
+        self._recorder = Recorder(job.dynamics, job.settings)
+        job.dynamics.forget_pivots()
+        grid = job.grid if times is None else Grid(job.grid.start, job.grid.end, times)
+        self._trajectory = integrated(self._recorder, job.start, grid, lambda _: None)
+        if self._trajectory.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        self.success = self._trajectory.outcome is Outcome.DONE
+
+    def sensitivity(self, text: str) -> Sensitivity:
+        """Of a formula of channels; errors as for `sensitivities`."""
+        rows = self._rows
+        channels = channels_of(self._job.data, self._job.dynamics.system, rows)
+        (output,) = outputs_of(text)
+        output.refuse_unknown(channels)
+        formula = Formula(output.text, rows.t, channels)
+        dual = formula.dual(self._slopes(channels, formula.instants()))
+        by = np.broadcast_to(dual.slope, (*np.shape(dual.value), len(self._set_ups)))
+        if not np.isfinite(by).all():
+            raise SolverError(
+                f"sensitivities: found a derivative of '{formula.text}' that is no number, expected finite ones"
+            )
+        to = {set_up.parameter.name: _plain(by[..., k]) for k, set_up in enumerate(self._set_ups)}
+        return Sensitivity(formula.text, _plain(dual.value), to, rows.t)
+
+    @cached_property
+    def _rows(self) -> OutputRows:
+        if not self.success:
+            raise SolverError(f"sensitivities: the run {self._trajectory.message}")
+        rows, gaps = reported(self._job.dynamics, self._trajectory, True)
+        if len(rows.t) < len(self._trajectory.t) or gaps:
+            raise SolverError(
+                "sensitivities: found instants without accelerations and reactions, expected them everywhere"
+            )
+        return rows
+
+    def _slopes(self, channels: dict[str, np.ndarray], instants: np.ndarray) -> dict[str, np.ndarray]:
+        """Derivatives of all channels, shape (n, directions); zero at instants that are not asked for."""
+        job, rows, count = self._job, self._rows, len(self._set_ups)
+        along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
+        shape = len(rows.t), count
+        slopes: dict[str, np.ndarray] = {}
+        moved_q = np.zeros((*shape, job.dynamics.system.n_q))
+        start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))
+        try:
+            for k, change in along.at(rows, instants, start_q, start_u):
+                values = along.block.outputs(rows.t[k], change)
+                found = changed_channels(job.dynamics.system, rows.u[k], self._numbers, change, values)
+                moved_q[k] = change.q
+                for name, slope in found.items():
+                    slopes.setdefault(name, np.zeros(shape))[k] = slope
+        finally:
+            along.close()
+        if job.data.requests and instants.size:
+            slopes |= changed_requests(job, self._set_ups, rows, channels, slopes, moved_q)
+        return slopes
+
+
+def _plain(value: Any) -> Any:
+    return float(value) if np.ndim(value) == 0 else np.asarray(value, dtype=float)

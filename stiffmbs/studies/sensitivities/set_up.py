@@ -1,0 +1,223 @@
+"""How what a run is set up with changes with a parameter: numbers of elements, masses, the start, breakpoints.
+
+The equations of motion are differentiated exactly; set-up is arithmetic in scenes, and an assembly that is exact to rounding, and is
+differentiated by central differences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...compile.compile_model import compile_model
+from ...compile.directional.direction import Numbers
+from ...compile.inputs.features import input_features
+from ...compile.kind import sorted_out
+from ...compile.system import System
+from ...describe.scene import Scene
+from ...errors import InputError, SolverError
+from ...jobs.run import Job, start_of_job
+from ...jobs.start_from import started_from
+from ...solve.dynamics import Dynamics
+from .parameters import Parameter
+
+HELD = ("dimensions", "gravity", "markers", "states", "inputs", "roads")
+"""Sections from which every element may follow."""
+SAME_TIME = 1e-9
+"""Part of a run by which a breakpoint may lie beside that of the same number."""
+
+
+class SetUp:
+    """What a job is set up with, by one parameter.
+
+    Parameters
+    ----------
+    job : Job
+        Of the scene as it is.
+    parameter : Parameter
+
+    Raises
+    ------
+    InputError
+        When the parameter changes the structure of the model, or neither a larger nor a smaller value fits.
+    """
+
+    def __init__(self, job: Job, parameter: Parameter) -> None:
+        self._job, self.parameter = job, parameter
+        self.scenes, self.shifts, self._weights = self._differences()
+        self._quick = all(_same_bodies(job.data, scene) for scene in self.scenes)
+
+    def _differences(self) -> tuple[list[Scene], list[float], list[float]]:
+        """Scenes with other values, by how much they differ, and the weights with which what they give makes the derivative."""
+        value, step = self.parameter.value, self.parameter.step
+        faults: list[InputError] = []
+        for shifts, weights in (
+            ((-1.0, 1.0), (-0.5, 0.5)),
+            ((0.0, 1.0, 2.0), (-1.5, 2.0, -0.5)),
+            ((0.0, -1.0, -2.0), (1.5, -2.0, 0.5)),
+        ):
+            try:
+                scenes = [self.parameter.scene(value + shift * step) for shift in shifts]
+                return scenes, [shift * step for shift in shifts], [weight / step for weight in weights]
+            except InputError as error:
+                faults.append(error)
+        raise InputError(f"to: found that '{self.parameter.name}' cannot be changed a little: {faults[0]}")
+
+    def derivative(self, values: Sequence[Any]) -> np.ndarray:
+        """The derivative of what the scenes give, one of it each."""
+        return np.asarray(sum(w * np.asarray(value) for w, value in zip(self._weights, values, strict=True)))
+
+    @cached_property
+    def _systems(self) -> list[System]:
+        """Compiled systems of the scenes."""
+        found = [started_from(compile_model(scene), scene, self._job.start_from) for scene in self.scenes]
+        system = self._job.dynamics.system
+        for other in found:
+            if not _same_structure(system, other):
+                raise InputError(
+                    f"to: found that '{self.parameter.name}' changes the structure of the model, expected one that changes numbers"
+                )
+            if not np.array_equal(system.principal_axes, other.principal_axes):
+                raise InputError(
+                    f"to: found that '{self.parameter.name}' turns principal axes of a body, expected inertias about fixed ones"
+                )
+        return found
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """The derivatives of the system's numbers."""
+        system = self._job.dynamics.system
+        if self._quick:
+            of_groups, mass = self._numbers_of_changed(), np.zeros(system.n_u)
+        else:
+            of_groups = [
+                self.derivative(parts)
+                for parts in zip(*([g.numbers for g in s.groups] for s in self._systems), strict=True)
+            ]
+            mass = self.derivative([other.mass for other in self._systems])
+        moved = frozenset(g for g, numbers in enumerate(of_groups) if numbers.any())
+        for g, numbers in enumerate(of_groups):
+            self._keep_points_of_tables(g, numbers)
+        return Numbers(tuple(map(np.ascontiguousarray, of_groups)), moved, mass)
+
+    def _numbers_of_changed(self) -> list[np.ndarray]:
+        """Of the elements that are not those of the job's own scene."""
+        job, system = self._job, self._job.dynamics.system
+        found = [np.zeros_like(group.numbers) for group in system.groups]
+        for section in ("joints", "forces"):
+            for name, element in getattr(job.data, section).items():
+                if any(getattr(scene, section)[name] is not element for scene in self.scenes):
+                    for scene, weight in zip(self.scenes, self._weights, strict=True):
+                        g, first, values = self._place(name, scene, getattr(scene, section)[name])
+                        found[g][first : first + len(values)] += weight * values
+        return found
+
+    def _place(self, name: str, scene: Any, element: Any) -> tuple[int, int, np.ndarray]:
+        """The group of an element, where its numbers begin there, and the numbers."""
+        kind, data = sorted_out(name, element.at_initial_pose(scene), scene)
+        for g, group in enumerate(self._job.dynamics.system.groups):
+            if name in group.names and group.kind == kind:
+                return g, int(group.index[group.names.index(name), 2 * kind.n_bodies]), data.flat()
+        raise InputError(
+            f"to: found that '{self.parameter.name}' changes the equations of '{name}', expected a parameter that changes numbers"
+        )
+
+    def _keep_points_of_tables(self, g: int, numbers: np.ndarray) -> None:
+        """Put the points of tables, which must not move, among the derivatives (`stiffmbs.compile.directional.rules`)."""
+        group = self._job.dynamics.system.groups[g]
+        if not any(_has_table(shape) for _, shape in group.kind.fields):
+            return
+        for e, name in enumerate(group.names):
+            _, data = sorted_out(name, group.elements[e], self._job.data)
+            first, flat = int(group.index[e, 2 * group.kind.n_bodies]), data.flat()
+            for at, table in data.tables:
+                points = slice(first + int(flat[at]), first + int(flat[at]) + 2 + int(table[0]))
+                if numbers[points].any():
+                    raise InputError(
+                        f"to: found that '{self.parameter.name}' moves points of a table of '{name}' along its argument, "
+                        "expected one that changes its values"
+                    )
+                numbers[points] = group.numbers[points]
+
+    @cached_property
+    def start(self) -> tuple[np.ndarray, np.ndarray]:
+        """The derivatives of q and u at the start, shapes (n_q,), (n_u,)."""
+        system, numbers = self._job.dynamics.system, self.numbers
+        if self._quick and not self._start_follows(numbers):
+            return np.zeros(system.n_q), np.zeros(system.n_u)
+        starts = [self._started(scene, other) for scene, other in zip(self.scenes, self._systems, strict=True)]
+        return self.derivative([start.q for start in starts]), self.derivative([start.u for start in starts])
+
+    def _start_follows(self, numbers: Numbers) -> bool:
+        """Whether the start may change where bodies stay as they are described."""
+        job = self._job
+        if getattr(job.data, "start", "described") != "described":
+            return True
+        groups = job.dynamics.system.groups
+        return any(groups[g].record.n_equations or groups[g].record.n_counters for g in numbers.moved)
+
+    def _started(self, scene: Scene, system: System) -> Any:
+        dynamics = Dynamics(replace(system, active=self._job.dynamics.system.active))
+        return start_of_job(replace(self._job, data=scene, dynamics=dynamics))
+
+    def breakpoint_rate(self, t: float) -> float:
+        """The derivative of the breakpoint in time at t; zero where there is none.
+
+        Raises
+        ------
+        SolverError
+            When other values have other breakpoints.
+        """
+        known, *others = self._breakpoints
+        if any(len(other) != len(known) for other in others):
+            raise SolverError(
+                f"sensitivities: found that inputs begin, end or bend at {len(known)} instants, and at {[len(o) for o in others]} with "
+                f"another '{self.parameter.name}', where the motion is not differentiable by it; expected as many"
+            )
+        near = np.abs(known - t) <= SAME_TIME * (self._job.grid.end - self._job.grid.start)
+        if not near.any():  # the run started anew for a narrow feature of a law, which has no breakpoint there
+            return 0.0
+        place = int(np.flatnonzero(near)[0])
+        return float(self.derivative([other[place] for other in others]))
+
+    @cached_property
+    def _breakpoints(self) -> list[np.ndarray]:
+        start, end = self._job.grid.start, self._job.grid.end
+        systems = [self._job.dynamics.system, *self._systems]
+        return [np.asarray(input_features(system, start, end).breakpoints) for system in systems]
+
+
+def breakpoint_rates(set_ups: Sequence[SetUp]) -> Callable[[float], np.ndarray]:
+    """How the breakpoint next to some time moves with each parameter."""
+    return lambda t: np.array([each.breakpoint_rate(t) for each in set_ups])
+
+
+def _same_bodies(before: Any, after: Any) -> bool:
+    """Whether all but joints and forces is the same, so that elements can be looked at one by one."""
+    if any(getattr(before, section, None) != getattr(after, section, None) for section in HELD):
+        return False
+    if list(before.bodies) != list(after.bodies) or list(before.forces) != list(after.forces):
+        return False
+    return all(body is after.bodies[name] or body == after.bodies[name] for name, body in before.bodies.items())
+
+
+def _same_structure(a: System, b: System) -> bool:
+    return (
+        a.bodies == b.bodies and a.states == b.states and len(a.groups) == len(b.groups)
+        and all(
+            x.kind == y.kind and x.names == y.names and x.numbers.shape == y.numbers.shape
+            for x, y in zip(a.groups, b.groups, strict=True)
+        )
+    )  # fmt: skip
+
+
+def _has_table(shape: Any) -> bool:
+    if not isinstance(shape, tuple):
+        return False
+    if shape[:1] == ("table",) or (shape[:1] == ("formula",) and shape[2][2]):
+        return True
+    return any(map(_has_table, shape))

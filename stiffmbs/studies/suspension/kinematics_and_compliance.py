@@ -1,0 +1,210 @@
+"""Kinematics and compliance of an axle: quasi-static sweeps on a test rig."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...describe.table import Table
+from ...errors import InputError
+from ...jobs.quasi_static import quasi_static
+from ...jobs.run import Runnable, data_of
+from .characteristics import characteristics
+from .rig import INPUTS, SIDES, Axle, axle_of, design_height, on_rig
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """A sweep of the rig's inputs from minus to plus their amplitudes.
+
+    Attributes
+    ----------
+    name, swept : str
+        The case, and what its abscissa is called.
+    unit : str
+    scale : float
+        What the abscissa is in SI units.
+    inputs : mapping of str to float
+        What each input is for an abscissa of 1 in SI units.
+    """
+
+    name: str
+    swept: str
+    unit: str
+    scale: float
+    inputs: dict[str, float]
+
+
+CASES = (
+    LoadCase("bump", "travel of both wheels", "mm", 1e-3, {"kc_left": 1.0, "kc_right": 1.0}),
+    LoadCase("roll", "travel, left up and right down", "mm", 1e-3, {"kc_left": 1.0, "kc_right": -1.0}),
+    LoadCase("steer", "travel of the rack to the left", "mm", 1e-3, {"kc_rack": 1.0}),
+    LoadCase("lateral", "force outwards at both patches", "kN", 1e3, {"kc_lateral": 1.0}),
+    LoadCase("brake", "braking force at both patches", "kN", 1e3, {"kc_brake": 1.0}),
+    LoadCase("traction", "driving force at both wheels' centres", "kN", 1e3, {"kc_traction": 1.0}),
+    LoadCase("aligning", "torque that turns both wheels inwards", "N m", 1.0, {"kc_torque": 1.0}),
+)
+AMPLITUDES = {
+    "bump": 50.0,
+    "roll": 30.0,
+    "steer": 30.0,
+    "lateral": 2.0,
+    "brake": 2.0,
+    "traction": 2.0,
+    "aligning": 100.0,
+}
+"""In the units of the cases."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The curves of one load case.
+
+    Attributes
+    ----------
+    case : LoadCase
+    abscissa : ndarray, shape (n,)
+        In the unit of the case.
+    channels : dict of str to ndarray
+        Characteristics of both wheels, as `stiffmbs.studies.suspension.characteristics` names them.
+    """
+
+    case: LoadCase
+    abscissa: np.ndarray
+    channels: dict[str, np.ndarray]
+
+    def slope(self, channel: str) -> float:
+        """The slope of a curve at the middle, by a parabola through three points; per unit of the case."""
+        middle = len(self.abscissa) // 2
+        x, y = self.abscissa, self.channels[channel]
+        return float((y[middle + 1] - y[middle - 1]) / (x[middle + 1] - x[middle - 1]))
+
+
+@dataclass(frozen=True)
+class KinematicsAndCompliance:
+    """What the rig shows.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    axle : Axle
+    sweeps : dict of str to Sweep
+        By load case.
+    message : str
+    """
+
+    name: str
+    axle: Axle
+    sweeps: dict[str, Sweep] = field(default_factory=dict)
+    message: str = ""
+
+    def asymmetry(self) -> float:
+        """The largest difference between left and right, relative to the range of its curve or 1, in cases that load both alike."""
+        worst = 0.0
+        for name in ("bump", "lateral", "brake", "traction", "aligning"):
+            channels = self.sweeps[name].channels if name in self.sweeps else {}
+            for left in (each for each in channels if each.startswith("left.")):
+                a, b = channels[left], channels[f"right.{left.removeprefix('left.')}"]
+                worst = max(worst, float(np.max(np.abs(a - b)) / max(1.0, np.max(np.abs(a)))))
+        return worst
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs kc --json``."""
+        cases = {
+            name: {
+                "input": sweep.case.swept, "unit": sweep.case.unit, "values": sweep.abscissa.tolist(),
+                "channels": {channel: values.tolist() for channel, values in sweep.channels.items()},
+                "slopes": {channel: sweep.slope(channel) for channel in sweep.channels},
+            }
+            for name, sweep in self.sweeps.items()
+        }  # fmt: skip
+        return {
+            "scene": scene,
+            "status": "done",
+            "message": self.message,
+            "asymmetry": self.asymmetry(),
+            "cases": cases,
+        }
+
+
+def kinematics_and_compliance(
+    model: Runnable, axle: str = "front", points: int = 11, body: str | None = None, steering: str | None = None,
+    **amplitudes: float,
+) -> KinematicsAndCompliance:  # fmt: skip
+    """Sweep an axle on a test rig by equilibria: wheel travel, roll, steering, lateral and longitudinal forces, torques.
+
+    The body is clamped as described, pads hold the patches at their heights, and tyres, drivers and other axles are left out.
+    All sweeps begin at the heights of the scene as it is described.
+
+    Parameters
+    ----------
+    model : Scene, str or Path
+        With suspensions ``front.left`` and ``front.right``, each with a body ``upright`` that has the markers ``spindle`` and
+        ``patch``, as the parts that come with the package have.
+    axle : str
+        What stands before ``.left`` and ``.right``; empty for suspensions ``left`` and ``right``.
+    points : int
+        Of each curve, odd and at least 5.
+    body, steering : str, optional
+        The body to clamp and the prismatic joint that steers, where they are not ``chassis`` and the only ``guide``.
+    **amplitudes
+        Of the load cases, such as ``bump=40`` (mm) or ``lateral=3`` (kN); 0 leaves a case out.
+
+    Returns
+    -------
+    KinematicsAndCompliance
+
+    Raises
+    ------
+    InputError
+        For what the scene does not have, or an unknown case.
+    SolverError
+        Where the axle has no equilibrium on the rig.
+    """
+    if points < 5 or points % 2 == 0:
+        raise InputError(f"points: found {points}, expected an odd number, 5 or more")
+    for name, amplitude in amplitudes.items():
+        if name not in AMPLITUDES or not np.isfinite(amplitude) or amplitude < 0:
+            raise InputError(f"{name}={amplitude!r}: found no such case or amplitude, expected {', '.join(AMPLITUDES)}")
+    data = data_of(model)
+    if data.dimensions != 3:
+        raise InputError("found a scene in the plane, expected one in space")
+    found = axle_of(data, axle, body, steering)
+    sizes = {**AMPLITUDES, **amplitudes}
+    cases = [case for case in CASES if sizes[case.name] and (case.name != "steer" or found.steering)]
+    half = points // 2
+    schedule = _schedule(cases, sizes, half)
+    heights = {f"kc_{side}": design_height(data, found, side) for side in SIDES}
+    rig = on_rig(data, found, _tables(schedule, heights))
+    solution = quasi_static(rig, start=0.0, duration=float(len(schedule) - 1), output=1.0)
+    sweeps = {}
+    for k, case in enumerate(cases):
+        first = k * (2 * half + 2)
+        order = [*range(first + 2 * half + 1, first + half + 1, -1), *range(first, first + half + 1)]
+        part = {name: values[order] for name, values in solution.items()}
+        abscissa = sizes[case.name] * np.linspace(-1, 1, points)
+        sweeps[case.name] = Sweep(case, abscissa, characteristics(rig, found, part, half))
+    return KinematicsAndCompliance(data.name, found, sweeps, solution.message)
+
+
+def _schedule(cases: list[LoadCase], sizes: dict[str, float], half: int) -> list[dict[str, float]]:
+    """The inputs of all instants: each case from the middle to plus its amplitude, back, and to minus its amplitude."""
+    parts = [*np.linspace(0, 1, half + 1), 0.0, *np.linspace(-1 / half, -1, half)]
+    return [
+        {name: part * sizes[case.name] * case.scale * each for name, each in case.inputs.items()}
+        for case in cases
+        for part in parts
+    ]
+
+
+def _tables(schedule: list[dict[str, float]], heights: dict[str, float]) -> dict[str, Table]:
+    return {
+        name: Table(
+            table=[(float(t), heights.get(name, 0.0) + inputs.get(name, 0.0)) for t, inputs in enumerate(schedule)],
+            lines=True,
+        )
+        for name in INPUTS
+    }

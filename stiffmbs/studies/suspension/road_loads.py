@@ -1,0 +1,122 @@
+"""Road loads: the forces and torques of all bushings in their own axes, with their peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...describe.marker import GROUND
+from ...describe.model_data import ModelData
+from ...describe.spatial.forces.elastic import Elastic
+from ...errors import InputError
+from ...jobs.run import Runnable, data_of
+from ...results.solution import Solution
+from .characteristics import direction
+
+COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The largest magnitude of a component.
+
+    Attributes
+    ----------
+    component : str
+        fx to tz, along the axes of the bushing's marker j.
+    value : float
+        With its sign, N or N m.
+    time : float
+        When, s.
+    case : str
+        In which load case.
+    """
+
+    component: str
+    value: float
+    time: float
+    case: str
+
+
+@dataclass(frozen=True)
+class RoadLoads:
+    """The loads of bushings.
+
+    Attributes
+    ----------
+    peaks : dict of str to tuple of Peak
+        Of each bushing the six components.
+    loads : dict of str to dict of str to ndarray
+        By case, then by channel such as ``arm.bush.fx``: over time, in the bushing's own axes.
+    """
+
+    peaks: dict[str, tuple[Peak, ...]]
+    loads: dict[str, dict[str, np.ndarray]]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The peaks for JSON: by bushing and component value, time and case."""
+        return {
+            name: {peak.component: {"value": peak.value, "time": peak.time, "case": peak.case} for peak in peaks}
+            for name, peaks in self.peaks.items()
+        }
+
+
+def road_loads(model: Runnable, cases: Mapping[str, Solution]) -> RoadLoads:
+    """The forces and torques of all bushings, along the axes of their markers j, in runs of a model.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+        In space.
+    cases : mapping of str to Solution
+        Its runs by the names of load cases.
+
+    Returns
+    -------
+    RoadLoads
+        The forces are those on marker i's body, at its point.
+
+    Raises
+    ------
+    InputError
+        When there is no case, or a run is not of this model.
+    """
+    data = data_of(model)
+    names = [name for name, force in data.forces.items() if isinstance(force, Elastic)]
+    if not cases or data.dimensions != 3:
+        raise InputError(
+            f"found {len(cases)} load cases in {data.dimensions} dimensions, expected one or more in space"
+        )
+    loads = {case: _in_own_axes(data, names, case, solution) for case, solution in cases.items()}
+    peaks = {name: tuple(_peak(f"{name}.{part}", part, loads, cases) for part in COMPONENTS) for name in names}
+    return RoadLoads(peaks, loads)
+
+
+def _in_own_axes(model: ModelData, names: list[str], case: str, solution: Solution) -> dict[str, np.ndarray]:
+    found: dict[str, np.ndarray] = {}
+    for name in names:
+        marker = model.forces[name].j  # type: ignore[attr-defined]
+        needed = [f"{name}.{part}" for part in COMPONENTS]
+        needed += [] if marker.body == GROUND else [f"{marker.body}.q{k}" for k in range(4)]
+        for channel in needed:
+            if channel not in solution:
+                raise InputError(f"{case}: found no channel '{channel}', expected a run of this model")
+        along = [direction(model, solution, marker, axis) for axis in range(3)]
+        for kind in "ft":
+            vector = np.stack([solution[f"{name}.{kind}{axis}"] for axis in "xyz"], axis=1)
+            found |= {
+                f"{name}.{kind}{axis}": np.sum(vector * unit, axis=1) for axis, unit in zip("xyz", along, strict=True)
+            }
+    return found
+
+
+def _peak(
+    channel: str, part: str, loads: Mapping[str, Mapping[str, np.ndarray]], cases: Mapping[str, Solution]
+) -> Peak:
+    highest = {case: int(np.nanargmax(np.abs(each[channel]))) for case, each in loads.items()}
+    case = max(highest, key=lambda name: abs(loads[name][channel][highest[name]]))
+    at = highest[case]
+    return Peak(part, float(loads[case][channel][at]), float(cases[case].time[at]), case)

@@ -1,0 +1,21 @@
+"""Runs that start in the pose of the equilibrium with the described velocities."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+
+SCENE = """
+gravity: [0, -10]
+bodies: {load: {mass: 2, inertia: 1, velocity: [0, 0.3]}}
+joints: {rail: {type: prismatic, i: load, j: {body: ground, angle: 90 deg}}}
+forces: {spring: {type: spring_damper, i: load, j: {body: ground, point: [0, 1]}, stiffness: 200, free_length: 1}}
+start: settled
+run: {duration: 1 s, points: 101, rtol: 1e-9}
+"""
+
+
+def test_a_load_swings_about_where_it_would_hang():
+    found = stiffmbs.run(stiffmbs.read_scene(SCENE))
+    assert found["load.y"] == pytest.approx(-0.1 + 0.03 * np.sin(10 * found.time), abs=1e-7)
+    assert any("stable was not looked at" in note for note in found.notes)

@@ -1,0 +1,57 @@
+"""The car of the examples: at rest, its modes, its manoeuvres, and its loads."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+
+pytestmark = pytest.mark.long
+TYRES = [f"{end}.{side}.tyre" for end in ("front", "rear") for side in ("left", "right")]
+
+
+def weight(scene):
+    return 9.81 * sum(body.mass for body in scene.bodies.values())
+
+
+@pytest.mark.parametrize("word", ["bushing", "rigid"])
+def test_at_rest_the_tyres_carry_the_weight_and_go_on_to(examples, word):
+    scene = stiffmbs.load_scene(examples / "car.yaml", [("V", "0"), ("choose.compliance", word)])
+    found = stiffmbs.equilibrium(scene)
+    assert sum(found.channels[f"{tyre}.load"] for tyre in TYRES) == pytest.approx(weight(scene), rel=1e-9)
+    still = stiffmbs.run(scene, duration=10, points=101, rtol=1e-8)
+    assert still.success
+    assert sum(still[f"{tyre}.load"] for tyre in TYRES) == pytest.approx(np.full(101, weight(scene)), rel=1e-9)
+
+
+def test_the_body_moves_slowly_and_the_wheels_hop(examples):
+    modes = stiffmbs.modes(stiffmbs.load_scene(examples / "car.yaml", [("V", "0")]))
+    swinging = [mode for mode in modes.modes if mode.eigenvalues[0].imag != 0]
+    body, hop = ([each for each in swinging if low < each.frequency < high] for low, high in ((0.7, 2.5), (8, 18)))
+    assert len(body) == 3, "heave, pitch and roll"
+    assert len(hop) >= 4
+    assert min(each.frequency for each in swinging) > 0.7
+
+
+@pytest.mark.parametrize("manoeuvre", ["bump", "rough", "step_steer", "sine_sweep"])
+def test_manoeuvres_run_and_the_driver_keeps_the_speed(examples, manoeuvre):
+    scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", manoeuvre)])
+    found = stiffmbs.run(scene, duration=4)
+    assert found.success
+    assert found["driver.speed"] == pytest.approx(np.full(len(found.time), 20.0), abs=0.5)
+    turned = np.max(np.abs(found["yaw_rate"]))
+    assert turned > 0.05 if manoeuvre[0] == "s" else turned < 0.02
+
+
+def test_bushing_loads_add_up_at_rest(examples):
+    scene = stiffmbs.load_scene(examples / "car.yaml", [("V", "0")])
+    table = stiffmbs.road_loads(scene, {"rest": stiffmbs.run(scene, duration=0.1, points=3)})
+    left, right = (table.peaks[f"front.{side}.lower.front_bush"] for side in ("left", "right"))
+    assert [abs(a.value) for a in left] == pytest.approx([abs(b.value) for b in right], rel=1e-6, abs=1e-6)
+
+
+def test_a_leaf_sprung_car_on_bumps_is_the_same_by_both_integrators(examples):
+    scene = examples / "leaf_sprung_car.yaml"
+    found = stiffmbs.run(scene, rtol=1e-8, solver="bdf", points=301)
+    exact = stiffmbs.run(scene, rtol=1e-10, solver="projected", scheme="dop853", points=301)
+    for channel, bound in (("chassis.z", 1e-8), ("front.axle.z", 1e-8), ("front.left.front_bush.fz", 1e-2)):
+        assert found[channel] == pytest.approx(exact[channel], abs=bound)

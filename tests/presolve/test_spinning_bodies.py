@@ -1,0 +1,140 @@
+"""Bodies whose quaternions don't follow their spin: steps that don't depend on speed, and the numbers of the plain body."""
+
+import math
+
+import numpy as np
+import pytest
+
+from stiffmbs.presolve.spinning_bodies import spinning
+from stiffmbs.spatial import (
+    AppliedForce,
+    AppliedTorque,
+    Body,
+    Drive,
+    FialaTyre,
+    Fixed,
+    Marker,
+    Model,
+    Orientation,
+    Revolute,
+    Spherical,
+    TorsionSpring,
+)
+
+AXLE = {"z": (0, 1, 0)}
+WHEEL = {"mass": 20, "inertia": (0.7, 1.2, 0.7)}
+DRIVEN = "60*sin(3*t) - 5*wy(wheel, fork)"
+
+
+def hub(body, along=0.0):
+    return Marker(body=body, point=(0, along, 0), orientation=AXLE)
+
+
+def rolling(speed=10.0, torque="0", **wheel):
+    """A wheel in a fork that stays upright, on a level road."""
+    model = Model("unicycle", gravity=(0, 0, -9.81))
+    place = {"position": (0, 0, 0.29), "velocity": (speed, 0, 0)}
+    model.add("fork", Body(mass=180, inertia=(5, 6, 7), **place))
+    model.add("wheel", Body(**{**WHEEL, **wheel}, **place, omega=(0, speed / 0.2967, 0)))
+    model.add("upright", Orientation(i="fork", j="ground"))
+    model.add("pin", Revolute(i=hub("wheel"), j=hub("fork")))
+    tyre = {"slip_stiffness": 8e4, "cornering_stiffness": 6e4, "mu_static": 1, "mu_sliding": 0.8, "width": 0.2}
+    model.add("tyre", FialaTyre(i="wheel", radius=0.3, stiffness=2e5, damping=2000, **tyre))
+    model.add("drive", AppliedTorque(i="wheel", j="fork", torque=(0, torque, 0)))
+    return model
+
+
+def top(spin, inertia=(0.05, 0.05, 0.02)):
+    """A heavy top on a ball joint."""
+    model = Model("top", gravity=(0, 0, -9.81))
+    lean = (math.sin(0.5), 0.0, math.cos(0.5))
+    place = {"position": tuple(0.3 * x for x in lean), "orientation": {"z": lean, "y": (0, 1, 0)}}
+    model.add("top", Body(mass=1, inertia=inertia, **place, omega=(0, 0, spin)))
+    model.add("ball", Spherical(i=Marker(body="top", point=(0, 0, -0.3)), j="ground"))
+    return model
+
+
+def spins(model, *turns):
+    found = spinning(model.data(), {name: np.array(turns) for name in model.bodies} if turns else {})
+    return dict(found.axes) if found else {}
+
+
+def steps(model, duration, **settings):
+    return model.run(duration=duration, output=0.05, rtol=1e-6, **settings).solver["steps"]
+
+
+def test_steps_do_not_depend_on_speed():
+    counts = [steps(rolling(speed), 4) for speed in (5, 20, 80)]
+    assert max(counts) <= 1.2 * min(counts)
+    assert steps(rolling(80), 1, presolve=False) > 4 * max(counts)
+
+
+@pytest.mark.parametrize(
+    "model", [rolling(15, DRIVEN), rolling(15, DRIVEN, inertia=(0.7, 0.7, 0.7)), top(80)], ids=["wheel", "ball", "top"]
+)
+def test_the_numbers_are_those_of_the_plain_body(model):
+    settings = {"duration": 0.6, "output": 0.02, "rtol": 1e-8}
+    one, plain = model.run(**settings), model.run(**settings, presolve=False)
+    assert any("spin" in line for line in one.presolve) and not plain.presolve
+    for name, expected in plain.channels.items():
+        if not name.startswith("constraint"):
+            scale = max(1.0, np.abs(expected).max())
+            assert np.abs(one[name] - expected).max() <= 2e-5 * scale, name
+
+
+def test_a_fast_top_takes_steps_by_its_precession():
+    assert steps(top(300), 1) < steps(top(300), 1, presolve=False) / 4
+
+
+def test_rigid_parts_spin_as_one_body():
+    model = rolling(20)
+    model.add("rim", Body(mass=5, inertia=(0.1, 0.2, 0.1), position=(0, 0.04, 0.29), velocity=(20, 0, 0)))
+    model.add("weld", Fixed(i="rim", j=Marker(body="wheel", point=(0, 0.04, 0))))
+    model.add("rub", AppliedForce(i="rim", force=(0, 0, -50)))
+    one, plain = (model.run(duration=0.3, output=0.02, rtol=1e-8, presolve=p) for p in (True, False))
+    assert any("its own: wheel and rim" in line for line in one.presolve)
+    for name in ("rim.q0", "rim.q2", "rim.wy", "rim.z", "weld.fx", "weld.tx", "pin.fz"):
+        assert one[name] == pytest.approx(plain[name], abs=1e-5 * max(1.0, np.abs(plain[name]).max()))
+
+
+@pytest.mark.parametrize(
+    ("name", "element"),
+    [
+        ("off", AppliedForce(i=Marker(body="wheel", point=(0.1, 0, 0)), force=(0, 0, 1))),
+        ("body_axes", AppliedForce(i="wheel", axes="body", force=(0, 0, 1))),
+        ("seen", AppliedForce(i="fork", force=("wheel.q1", 0, 0))),
+        ("across", AppliedForce(i="fork", force=("wheel.wx", 0, 0))),
+        ("angle", AppliedForce(i="fork", force=("sin(ay(wheel, fork))", 0, 0))),
+        ("axes", AppliedForce(i="fork", force=("vx(fork, ground, wheel)", 0, 0))),
+        ("spring", TorsionSpring(i=hub("wheel"), j=hub("fork"), stiffness=1)),
+        ("motor", Drive(joint="pin", velocity="30")),
+        ("reaction", AppliedForce(i="fork", force=("0.01*fx(pin)", 0, 0))),
+    ],
+)
+def test_what_sees_the_angle_of_the_spin_keeps_the_plain_body(name, element):
+    model = rolling()
+    assert spins(model) == {"wheel": "y"}
+    model.add(name, element)
+    assert spins(model) == {}
+
+
+def test_a_wobbling_wheel_is_a_plain_body():
+    assert spins(rolling(inertia=(0.7, 1.2, 0.7000001))) == {}
+    assert spins(rolling(inertia=((0.7, 1e-7, 0), (1e-7, 1.2, 0), (0, 0, 0.7)))) == {}
+    assert spins(rolling(center_of_mass=(1e-6, 0, 0))) == {}
+    assert spins(rolling(center_of_mass=(0, 0.01, 0))) == {"wheel": "y"}
+
+
+def test_a_free_body_spins_by_its_start():
+    assert spins(top(80), 1, 2, 80) == {"top": "z"}
+    assert spins(top(80), 1, 2, 6) == spins(top(80), 90, 2, 80) == spins(top(80, (0.05, 0.04, 0.02)), 1, 2, 80) == {}
+
+
+def test_a_request_of_the_angle_keeps_counting_turns():
+    model = rolling()
+    model.request("turned", "ay(wheel, fork)")
+    assert spins(model) == {}
+
+
+def test_explicit_steps_follow_the_spin():
+    assert not any("spin" in line for line in top(80).run(duration=0.1, solver="auto").presolve)

@@ -1,0 +1,145 @@
+"""Axles on their rig: against closed forms, left against right, bushings against joints, and what is refused."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import stiffmbs
+from stiffmbs.commands.main import main
+from stiffmbs.errors import InputError, SolverError
+
+NONE = {"roll": 0, "steer": 0, "lateral": 0, "brake": 0, "traction": 0, "aligning": 0}
+
+
+def axle(part, word, parameters=None, **sections):
+    entry = {"use": part, "compliance": word, "parameters": parameters or {}}
+    parts = {"front.left": entry, "front.right": {**entry, "mirror": "y"}}
+    found = {"dimensions": 3, "gravity": [0, 0, -9.81], "parts": parts, **sections}
+    return json.dumps(found)
+
+
+def curves(text, **sizes):
+    return stiffmbs.kinematics_and_compliance(stiffmbs.read_scene(text), points=7, **{**NONE, **sizes})
+
+
+def test_a_trailing_arm_moves_its_wheel_on_a_circle():
+    """About a pivot across the car nothing is steered or leans; the rate is that of the spring, and of the weight's arm."""
+    pivot, wheel, seat, tower = (0.42, 0.28), (0.0, 0.30), (-0.05, 0.28), (-0.02, 0.66)
+    straight = {"pivot_outer": [0.42, 0.66, 0.28], "pivot_inner": [0.42, 0.36, 0.28], "strut_seat": [-0.05, 0.58, 0.28],
+                "strut_tower": [-0.02, 0.58, 0.66], "upright_centre": [0, 0.7, 0.3]}  # fmt: skip
+    bump = curves(axle("trailing_arm", "rigid", straight), bump=30).sweeps["bump"].channels
+    arm = np.subtract(wheel, pivot)
+    radius, start = np.hypot(*arm), np.arctan2(arm[1], -arm[0])
+    patch = np.array([0.0, 0.0]) - pivot  # on the arm, and held by the pad
+    heights = 1e-3 * np.linspace(-30, 30, 7)
+    turn = np.array([_turn_for(patch, height) for height in heights])
+    angle = start + turn
+    assert bump["left.travel"] == pytest.approx(1e3 * radius * (np.sin(angle) - np.sin(start)), abs=1e-6)
+    assert bump["left.longitudinal"] == pytest.approx(1e3 * radius * (np.cos(start) - np.cos(angle)), abs=1e-6)
+    for name in ("toe", "camber", "lateral"):
+        assert np.max(np.abs(bump[f"left.{name}"])) < 1e-9
+    foot = np.subtract(seat, pivot)
+    c, s = np.cos(-turn), np.sin(-turn)
+    moved = np.stack([pivot[0] + c * foot[0] - s * foot[1], pivot[1] + s * foot[0] + c * foot[1]], axis=1)
+    length = np.linalg.norm(np.subtract(tower, moved), axis=1)
+    ratio = -np.gradient(length, 1e-3 * bump["left.travel"])
+    assert bump["left.motion_ratio.strut.strut"] == pytest.approx(ratio, rel=1e-6)
+    force = 3400 - 25e3 * (length - length[3])  # of the spring, between its stops
+    lever = (moved[:, 0] - pivot[0]) * (tower[1] - moved[:, 1]) - (moved[:, 1] - pivot[1]) * (tower[0] - moved[:, 0])
+    centre = pivot[0] - radius * np.cos(angle)  # of arm and wheel
+    foot_of_pad = pivot[0] + c * patch[0] - s * patch[1]
+    expected = (-force * lever / length + 40 * 9.81 * (pivot[0] - centre)) / (pivot[0] - foot_of_pad)
+    assert bump["left.load"][1:-1] == pytest.approx(expected[1:-1], rel=1e-4)
+
+
+def _turn_for(patch, height):
+    """The turn of the arm, upwards, that lifts the patch by a height."""
+    from scipy.optimize import brentq
+
+    return brentq(lambda turn: -patch[0] * np.sin(turn) + patch[1] * (np.cos(turn) - 1) - height, -0.3, 0.3)
+
+
+def test_left_and_right_are_mirror_images_on_bushings():
+    found = curves(axle("double_wishbone", "bushing"), lateral=2, aligning=50)
+    assert found.asymmetry() < 1e-9
+    lateral = found.sweeps["lateral"]
+    assert lateral.slope("left.lateral") > 0.01, "bushings give way outwards"
+    assert found.sweeps["bump"].slope("left.camber") < 0, "into the bump the top leans inwards"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", ["double_wishbone", "multi_link", "macpherson", "trailing_arm"])
+def test_stiff_bushings_are_joints(part):
+    sizes = {"bump": 20, "lateral": 1}
+    joints = curves(axle(part, "rigid"), **sizes)
+    stiff = {"k_b": 1e9, **({"k_top": 1e8} if part == "macpherson" else {})}
+    bushings = curves(axle(part, "bushing", stiff), **sizes)
+    for name in ("toe", "camber"):
+        for case, bound in (("bump", 2e-3), ("lateral", 5e-3)):
+            a, b = (found.sweeps[case].slope(f"left.{name}") for found in (joints, bushings))
+            assert abs(a - b) < bound, (case, name)
+
+
+@pytest.mark.long
+def test_the_rack_steers_and_the_bar_adds_to_roll(examples):
+    found = stiffmbs.kinematics_and_compliance(
+        examples / "car.yaml", points=5, lateral=0, brake=0, traction=0, aligning=0
+    )
+    assert found.sweeps["steer"].slope("left.toe") < 0 < found.sweeps["steer"].slope("right.toe")
+    bump, roll = (found.sweeps[name].channels["left.wheel_rate"][2] for name in ("bump", "roll"))
+    assert roll > 1.1 * bump
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"points": 4}, "points: found 4, expected an odd number"),
+        ({"axle": "rear"}, r"found no body 'rear\.left\.upright', expected a suspension with one: front\.left, front\.right"),
+        ({"swim": 3}, "swim=3: found no such case"),
+        ({"body": "hull"}, "found no body 'hull' to clamp"),
+        ({"steering": "slide"}, "found no prismatic joint 'slide', expected one of none"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_told(arguments, sentence):
+    with pytest.raises(InputError, match=sentence):
+        stiffmbs.kinematics_and_compliance(stiffmbs.read_scene(axle("double_wishbone", "rigid")), **arguments)
+
+
+def test_the_command_writes_table_curves_figure_and_json(tmp_path):
+    scene = tmp_path / "axle.yaml"
+    scene.write_text(axle("double_wishbone", "bushing"))
+    given = ["kc", str(scene), "--points", "5"]
+    for case in ("roll", "lateral", "brake", "traction", "aligning"):
+        given += ["--case", f"{case}=0"]
+    curves, figure = tmp_path / "kc.csv", tmp_path / "kc.png"
+    shown = CliRunner().invoke(main, [*given, "-o", str(curves), "--figure", str(figure)])
+    assert shown.exit_code == 0, shown.output
+    assert "left.camber" in shown.output
+    assert len(curves.read_text().splitlines()) == 6
+    assert figure.stat().st_size > 1000
+    found = json.loads(CliRunner().invoke(main, [*given, "--json"]).output)
+    assert found["cases"]["bump"]["values"] == [-50, -25, 0, 25, 50]
+    assert found["asymmetry"] < 1e-9
+    assert CliRunner().invoke(main, [*given, "--case", "bump=high"]).exit_code == 2
+
+
+PENDULUM = (
+    "gravity: [0, -10]\nbodies: {bar: {mass: 1, inertia: 1, position: [0, -0.5]}}\n"
+    "joints: {pin: {type: revolute, i: {body: bar, point: [0, 0.5]}, j: ground}}\n"
+    "forces: {motor: {type: torque, i: bar, torque: 4*t}}\nrun: {duration: 1 s, points: 11}\n"
+)
+
+
+def test_equilibria_over_time_follow_a_torque():
+    """A pendulum under a torque of time hangs where its weight balances it."""
+    found = stiffmbs.quasi_static(stiffmbs.read_scene(PENDULUM))
+    assert found["bar.angle"] == pytest.approx(np.arcsin(4 * found.time / 5), abs=1e-8)
+    assert np.max(np.abs(found["bar.omega"])) == 0
+
+
+@pytest.mark.long
+def test_an_instant_without_an_equilibrium_is_told():
+    with pytest.raises(SolverError, match=r"t = 1\.4 s: no equilibrium"):
+        stiffmbs.quasi_static(stiffmbs.read_scene(PENDULUM), duration=2.0, points=11)

@@ -1,0 +1,180 @@
+"""Sensitivities: closed forms of their own derivatives, jumps at breakpoints and events, differences of converged runs."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import InputError, SolverError, sensitivities
+from stiffmbs.studies.outputs import outputs_of
+
+SLED = """
+parameters: {k: 100 N/m, c: 1 N s/m, x0: 0.1 m, m: 2 kg}
+bodies: {sled: {mass: m, inertia: 1, position: [x0, 0]}}
+joints: {rail: {type: prismatic, i: sled, j: ground}}
+forces:
+  spring: {type: force, i: sled, force: ["-k*sled.x - c*sled.vx", 0]}
+run: {duration: 2, rtol: 1e-7, points: 41}
+"""
+
+
+def oscillation(t, k=100.0, c=1.0, x0=0.1, m=2.0):
+    d, w = c / (2 * m), np.sqrt(k / m - (c / (2 * m)) ** 2)
+    return x0 * np.exp(-d * t) * (np.cos(w * t) + d / w * np.sin(w * t))
+
+
+def slope(function, name, value):
+    """By central differences of fourth order of a closed form."""
+    h = 1e-3 * value
+    f = [function(**{name: value + shift * h}) for shift in (-2, -1, 1, 2)]
+    return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h)
+
+
+@pytest.mark.parametrize("of", ["sled.x", "rms(sled.x)", "final(3*sled.x^2 + sin(sled.x))", "integral(abs(sled.x))/2"])
+def test_those_of_a_damped_oscillation(of):
+    t = np.linspace(0, 2, 41)
+    outputs = {
+        "sled.x": lambda x: x, "rms(sled.x)": lambda x: np.sqrt(np.trapezoid(x * x, t) / 2),
+        "final(3*sled.x^2 + sin(sled.x))": lambda x: (3 * x * x + np.sin(x))[-1],
+        "integral(abs(sled.x))/2": lambda x: np.trapezoid(np.abs(x), t) / 2,
+    }  # fmt: skip
+    found = sensitivities(stiffmbs.read_scene(SLED), ["k", "c", "x0", "m"], of)
+    for name, value in (("k", 100.0), ("c", 1.0), ("x0", 0.1), ("m", 2.0)):
+        exact = slope(lambda **p: outputs[of](oscillation(t, **p)), name, value)
+        np.testing.assert_allclose(found.to[name], exact, rtol=1e-5, atol=1e-6 * np.abs(exact).max())
+
+
+PUSHED = """
+parameters: {F: 3 N, T: 0.4 s, m: 2 kg}
+bodies: {sled: {mass: m, inertia: 1, velocity: [0.5, 0]}}
+joints: {rail: {type: prismatic, i: sled, j: ground}}
+forces:
+  push: {type: force, i: sled, force: ["branch(t - T, F, 0, 0)", 0]}
+run: {duration: 1, rtol: 1e-6}
+"""
+
+
+def test_a_force_that_ends_at_an_instant_that_moves():
+    """x = v + F/m (T - T^2/2) at 1 s."""
+    found = sensitivities(stiffmbs.read_scene(PUSHED), ["F", "T", "m"], "final(sled.x)")
+    assert found.value == pytest.approx(0.5 + 1.5 * 0.32, rel=1e-8)
+    expected = {"F": 0.32 / 2, "T": 1.5 * 0.6, "m": -3 * 0.32 / 4}
+    assert found.to == pytest.approx(expected, rel=1e-7)
+
+
+def test_an_event_at_which_a_force_jumps():
+    """A sled at speed v meets a constant resistance behind x = a: x = a + v s - R/(2 m) s^2, s = 1 - a/v."""
+    text = PUSHED.replace("F: 3 N, T: 0.4 s", "R: 0.6 N, a: 0.2 m").replace(
+        "branch(t - T, F, 0, 0)", "branch(sled.x - a, 0, 0, -R)"
+    )
+    found = sensitivities(stiffmbs.read_scene(text), ["R", "a", "bodies.sled.velocity.0"], "final(sled.x)")
+    s, v, a, R, m = 0.6, 0.5, 0.2, 0.6, 2.0
+    assert found.value == pytest.approx(a + v * s - R / (2 * m) * s * s, rel=1e-8)
+    expected = {
+        "R": -s * s / (2 * m), "a": 1 + (v - R / m * s) * (-1 / v),
+        "bodies.sled.velocity.0": s + (v - R / m * s) * a / v**2,
+    }  # fmt: skip
+    assert found.to == pytest.approx(expected, rel=1e-7)
+
+
+def test_a_bounce_on_a_stiff_floor():
+    """A lossless bounce lasts pi/w and ends with the speed that it began with; the motion before and behind is free."""
+    text = """
+parameters: {h: 0.5 m, k: 1e6 N/m}
+gravity: [0, -10]
+bodies: {ball: {mass: 1, inertia: 1, position: [0, h]}}
+joints: {upright: {type: prismatic, i: {body: ball, angle: 90 deg}, j: {body: ground, angle: 90 deg}}}
+forces: {floor: {type: force, i: ball, force: [0, "k*max(0, -ball.y)"]}}
+run: {duration: 0.6, rtol: 1e-8}
+"""
+
+    def height(h=0.5, k=1e6):
+        fall, speed, w = np.sqrt(h / 5), np.sqrt(20 * h), np.sqrt(k)
+        contact = 2 / w * (np.pi - np.arctan(speed * w / 10))
+        rest = 0.6 - fall - contact
+        return speed * rest - 5 * rest**2
+
+    found = sensitivities(stiffmbs.read_scene(text), ["h", "k"], "final(ball.y)")
+    assert found.value == pytest.approx(height(), rel=1e-6)
+    assert found.to["h"] == pytest.approx(slope(height, "h", 0.5), rel=1e-5)
+    assert found.to["k"] == pytest.approx(slope(height, "k", 1e6), rel=1e-5)
+
+
+def test_lengths_that_assembly_follows():
+    """A slider-crank at constant speed: the slider is r cos(a) + sqrt(L^2 - r^2 sin(a)^2) from the pin."""
+    angle = 25.0 * 0.1
+
+    def place(r=0.125, L=0.35):
+        return -r * np.cos(angle) - np.sqrt(L**2 - (r * np.sin(angle)) ** 2)
+
+    found = sensitivities("examples/crank_slider.yaml", ["r", "L", "rate"], "final(slider.x)", duration=0.1)
+    assert found.value == pytest.approx(place(), rel=1e-8)
+    assert found.to["r"] == pytest.approx(slope(place, "r", 0.125), rel=1e-7)
+    assert found.to["L"] == pytest.approx(slope(place, "L", 0.35), rel=1e-7)
+
+
+def test_a_start_in_equilibrium():
+    text = SLED.replace("-k*sled.x", "9 - k*sled.x") + "start: equilibrium\n"
+    found = sensitivities(stiffmbs.read_scene(text), ["k", "c"], "final(sled.x)")
+    assert found.value == pytest.approx(0.09, rel=1e-9)
+    assert found.to == pytest.approx({"k": -0.09 / 100, "c": 0.0}, rel=1e-7, abs=1e-9)
+
+
+LONG = partial(pytest.param, marks=pytest.mark.long)
+
+
+def differences(scene, path, value, of, **settings):
+    """By central differences of fourth order of converged runs."""
+    h, (output,) = 1e-3 * abs(value), outputs_of(of)
+    f = [
+        output.value(
+            stiffmbs.run(stiffmbs.load_scene(scene, [(path, repr(value + shift * h))]), rtol=1e-11, **settings)
+        )
+        for shift in (-2, -1, 1, 2)
+    ]
+    return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h)
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "value", "of", "settings"),
+    [
+        ("cart_pendulum", "bodies.bar.mass", None, "final(rail.fy)", {"duration": 0.5}),
+        ("cart_pendulum", "bodies.bar.inertia", None, "rms(hinge.fx)", {"duration": 0.5}),
+        ("heavy_top", "tilt", 0.6, "final(top.x)", {"duration": 0.3}),
+        LONG("heavy_top", "top_mass", 1.0, "final(energy.kinetic)", {"duration": 0.3}),
+        LONG("spatial_slider_crank", "L", 0.3, "final(slider.x)", {"duration": 0.3}),
+        LONG("cam_follower", "eccentricity", 0.01, "final(follower.y)", {"duration": 0.02}),
+        LONG("elastic_bearing", "bearing", 1e9, "final(give)", {"duration": 0.01}),
+    ],
+)
+def test_differences_of_converged_runs(scene, name, value, of, settings):
+    file = f"examples/{scene}.yaml"
+    if value is None:
+        value = getattr(stiffmbs.load_scene(file).bodies["bar"], name.rpartition(".")[2])
+    found = sensitivities(file, [name], of, **settings)
+    assert found.to[name] == pytest.approx(differences(file, name, value, of, solver="bdf", **settings), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("to", "of", "message"),
+    [
+        (["nothing"], "final(sled.x)", "expected a parameter of the scene"),
+        (["k", "k"], "final(sled.x)", "each once"),
+        (["bodies.sled.position"], "final(sled.x)", "add a place such as .0"),
+        (["bodies.sled.position.5"], "final(sled.x)", "a place of the vector"),
+        (["k"], "final(sled.q)", "no channel 'sled.q'"),
+        (["k"], "t_peak(sled.x)", "found t_peak"),
+        (["k"], "final(constraint.position)", "has no derivatives"),
+        (["run.rtol"], "final(sled.x)", "expected a parameter of the scene"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_differentiated_is_refused(to, of, message):
+    with pytest.raises(InputError, match=message):
+        sensitivities(stiffmbs.read_scene(SLED), to, of)
+
+
+def test_a_run_that_stops_early_has_none():
+    text = SLED.replace('"-k*sled.x - c*sled.vx"', '"sqrt(1 - t)"')
+    with pytest.raises(SolverError, match="the run stopped"):
+        sensitivities(stiffmbs.read_scene(text.replace("k: 100 N/m, c: 1 N s/m, ", "")), ["m"], "final(sled.x)")
