@@ -140,8 +140,8 @@ class NativeIda:
         return self._ida.history
 
     @property
-    def long_steps(self) -> LongStepLog:
-        """Steps far longer than those before them."""
+    def long_steps(self) -> LongStepLog | None:
+        """Steps far longer than those before them; None for scenes without laws."""
         return self._ida.long_steps
 
     @property
