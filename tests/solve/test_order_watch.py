@@ -38,7 +38,7 @@ def test_a_faint_vibration_is_damped_away_and_the_order_free_again(examples, mon
     monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
     creeping = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
     assert mended.solver["steps"] < 0.8 * creeping.solver["steps"]
-    assert any(f"held at 2 for {order_watch.DAMPED_AWAY} of" in note for note in mended.notes)
+    assert mended.notes == ()
     np.testing.assert_allclose(mended["chassis.y"], creeping["chassis.y"], atol=2e-6)
 
 

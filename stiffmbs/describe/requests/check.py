@@ -83,6 +83,8 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
                 f"expected {term.element}, whose first body is known"
             )
     for owner, name in output.channels():
+        if owner in model.forces and name in model.forces[owner].own_states():
+            continue
         if channel(owner, name) in channels_of_states(model):
             continue
         if not name:
@@ -101,12 +103,11 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
 
 
 def channels_of_states(model: Any) -> set[str]:
-    """What is reported of states: their values and rates."""
+    """What is reported of the model's states: their values and rates."""
     values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
-    return (
-        set(model.state_values()) | outputs | {f"{name}.rate" for name, value in values.items() if not value.algebraic}
-    )
+    rates = {f"{name}.rate" for name, value in values.items() if not value.algebraic}
+    return set(values) | outputs | rates
 
 
 def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:

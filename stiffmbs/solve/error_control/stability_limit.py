@@ -130,7 +130,8 @@ class StabilityLimitDetection:
             return False
         self.order, self._pace, self._briefly = HELD, pace, faint
         self._next = steps + (DAMPED_AWAY if faint else RELAPSE)
-        self._held.append((t, steps))
+        if not faint:
+            self._held.append((t, steps))
         return True
 
     def _frees(self, pace: float, t: float, steps: int) -> bool:
@@ -141,7 +142,7 @@ class StabilityLimitDetection:
             return False
         if not self._briefly:
             self._stretch *= LONGER
-        self._held_steps += steps - self._held[-1][1]
+            self._held_steps += steps - self._held[-1][1]
         self.order, self._next = self._highest, steps + (RELAPSE if pays or self._briefly else steps)
         return True
 
@@ -176,7 +177,7 @@ class StabilityLimitDetection:
         """What was done, for the user, after so many steps of the run; empty for nothing."""
         if not self._held:
             return ""
-        held = self._held_steps + (steps - self._held[-1][1] if self.held else 0)
+        held = self._held_steps + (steps - self._held[-1][1] if self.held and not self._briefly else 0)
         first, before = self._held[0]
         return (
             f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: orders 3 to 5 had crept along "
