@@ -75,7 +75,7 @@ class Group:
             counters=self.index[:, end - self.record.n_counters :],
             has_inputs=has_inputs,
             has_functions=self.kind.holds("python"),
-            has_law=bool(self.record.entries["event_function"]) or has_inputs,
+            has_law=bool(self.record.entries["event_function"]) or self.kind.holds("formula", "table", "python"),
         )
 
     @property

@@ -9,7 +9,8 @@ step, and is met by an output instant, is beyond both.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,8 +35,8 @@ class Overlooked:
     Attributes
     ----------
     times : ndarray
-        In each step that passed over something, the output instant with the largest accelerations of the first pair that
-        shows it, s.
+        Where it is shown, s: in each step the output instant with the largest accelerations of the first pair that does,
+        and in long steps the instants with the largest accelerations.
     step : float
         Length of the first of these steps, s.
     velocity : str
@@ -51,12 +52,22 @@ class Overlooked:
 
     def sentence(self) -> str:
         """Where it was."""
-        more = f" and in {len(self.times) - 1} more steps" if len(self.times) > 1 else ""
+        more = f" and at {len(self.times) - 1} more instants" if len(self.times) > 1 else ""
         law = f"'{self.element}'" if self.element else "a law"
         return (
             f"a step of {self.step:.2g} s passed over {law} at t = {self.times[0]:.6g} s{more}: "
             f"forces there accelerate {self.velocity} otherwise than the step has followed"
         )
+
+
+def together(found: Sequence[Overlooked]) -> Overlooked | None:
+    """What was found in several ways as one, told by the earliest; None for nothing."""
+    if not found:
+        return None
+    return replace(
+        min(found, key=lambda each: float(each.times[0])),
+        times=np.unique(np.concatenate([each.times for each in found])),
+    )
 
 
 def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings) -> Overlooked | None:
@@ -87,7 +98,7 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     _, first = np.unique(number[found], return_index=True)
     at, k = (pairs + (size[pairs + 1] > size[pairs]))[found], found[0]
     velocity = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities)
-    return Overlooked(rows.t[at[first]], float(step[k]), velocity, _acting(system, rows, int(at[0])))
+    return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
 
 
 def _contradictions(rows: OutputRows) -> np.ndarray:
@@ -99,7 +110,7 @@ def _contradictions(rows: OutputRows) -> np.ndarray:
     return off
 
 
-def _acting(system: System, rows: OutputRows, k: int) -> str:
+def acting(system: System, rows: OutputRows, k: int) -> str:
     """The law with the largest force or torque at an instant."""
     laws = {name for group in system.groups if group.has_law for name in group.names}
     found = reactions(system, rows.values[k : k + 1])

@@ -1,4 +1,4 @@
-"""Runs whose steps passed over something are taken again, with a start at each output instant that shows it.
+"""Runs whose steps passed over something are taken again, with a start at each instant that shows it.
 
 The step that ends there sees the force, so that its error estimate makes it as short as it has to be.
 """
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..diagnostics.overlooked import Overlooked, overlooked
+from ..diagnostics.overlooked import Overlooked, overlooked, together
+from ..diagnostics.within_long_steps import overlooked_in_long_steps
 from ..solve.dynamics import OutputRows
 from ..solve.trajectory import Outcome, Trajectory
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 ROUNDS, STARTS = 3, 1000
 """How often a run is taken again, and with how many starts at the most."""
-AGAIN = "the run was taken again with a start there; what no output instant shows, max_step or more output points do"
+AGAIN = "the run was taken again with a start there; what neither output instants nor long steps show, max_step or more output points do"
 LEFT = "the results may be wrong from there on; set max_step to far less than that"
 
 
@@ -34,7 +35,7 @@ class Computed:
 
 
 def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
-    """Compute a job until no output instant contradicts its steps; what there is to say of that.
+    """Compute a job until no instant looked at contradicts its steps; what there is to say of that.
 
     Parameters
     ----------
@@ -61,5 +62,13 @@ def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
-    system = job.dynamics.system
-    return overlooked(system, computed.rows, computed.trajectory, job.settings) if system.has_laws else None
+    """What output instants, or instants within long steps, show."""
+    system, trajectory = job.dynamics.system, computed.trajectory
+    if not system.has_laws:
+        return None
+    long_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.long_steps
+    found = [
+        overlooked(system, computed.rows, trajectory, job.settings),
+        *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
+    ]
+    return together([each for each in found if each is not None])

@@ -19,6 +19,7 @@ from .error_control.relaxation import relax
 from .events.chattering import Chattering
 from .events.divergence import refuse_beyond_sense
 from .events.limits import refuse_beyond_limits
+from .events.long_steps import LongSteps
 from .events.masked import MaskedEvents
 from .events.restart import just_after, restarted
 from .events.velocity_jumps import VelocityJumps
@@ -92,7 +93,15 @@ def integrated(
                 refuse_beyond_sense(integrator.dynamics, rows, reached.t, *state, integrator.steps())
     statistics = {**integrator.statistics(), "seconds": ending.seconds}
     history = integrator.engine.history()
-    return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, history, integrator.note())
+    return Trajectory(
+        *rows.stored,
+        ending.outcome,
+        ending.message,
+        statistics,
+        history,
+        integrator.note(),
+        long_steps=integrator.long_steps(),
+    )
 
 
 def _failure(integrator: Integrator, reached: Reached) -> str:
@@ -212,6 +221,18 @@ class Integrator:
     def steps(self) -> int:
         """Taken so far."""
         return int(self.engine.statistics()["steps"])
+
+    def long_steps(self) -> tuple[LongSteps, ...]:
+        """Steps far longer than those before them, as far as they are kept."""
+        kept = self.engine.long_steps()
+        if kept is None:
+            return ()
+        begin, end, rows = kept
+        if not len(begin):
+            return ()
+        q, u = self.equations.states(rows.reshape(-1, rows.shape[-1]))
+        shape = rows.shape[:2]
+        return (LongSteps(self.dynamics, begin, end, q.reshape(*shape, -1), u.reshape(*shape, -1)),)
 
     def _explained(self, reached: Reached) -> Reached:
         """A failure in the words of the force that causes it, where it jumps back and forth."""

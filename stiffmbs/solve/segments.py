@@ -26,7 +26,9 @@ def joined(segments: Sequence[Segment]) -> Trajectory:
         np.concatenate([getattr(part, name)[int(k > 0) :] for k, part in enumerate(parts)]) for name in ("t", "q", "u")
     )
     counted = _last_of_each_kind(segments)
-    return replace(parts[-1], t=t, q=q, u=u, statistics=_summed(parts, counted), history=_history(counted))
+    long_steps = tuple(steps for part in counted for steps in part.long_steps)
+    statistics, history = _summed(parts, counted), _history(counted)
+    return replace(parts[-1], t=t, q=q, u=u, statistics=statistics, history=history, long_steps=long_steps)
 
 
 def _last_of_each_kind(segments: Sequence[Segment]) -> list[Trajectory]:

@@ -145,6 +145,7 @@ def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], star
         ending, t=found[0].t[:rows], q=q, u=u, statistics=summed([each.statistics for each in found]), history=_merged([each.history for each in found]),
         note="; ".join(each.note for each in found if each.note),
         solver=", ".join(dict.fromkeys(each.solver for each in found if each.solver)),
+        long_steps=tuple(steps for each in found for steps in each.long_steps),
     )  # fmt: skip
 
 

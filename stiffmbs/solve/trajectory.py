@@ -26,6 +26,7 @@ from .storage import BLOCK, allocated, release
 
 if TYPE_CHECKING:
     from .dynamics import Dynamics
+    from .events.long_steps import LongSteps
     from .initial import InitialValues
 
 ProgressCallback = Callable[[float], None]
@@ -96,6 +97,8 @@ class Trajectory:
         What the user should know besides; empty for nothing.
     solver : str
         Which solvers have worked, where that was not for the user to say.
+    long_steps : tuple of LongSteps
+        Steps far longer than those before them, with the motion within them; for scenes with laws alone.
     """
 
     t: np.ndarray
@@ -107,6 +110,7 @@ class Trajectory:
     history: History = field(default_factory=lambda: History(np.empty(0), np.empty(0, dtype=int)))
     note: str = ""
     solver: str = ""
+    long_steps: tuple[LongSteps, ...] = ()
 
     @property
     def step_times(self) -> np.ndarray:

@@ -98,7 +98,15 @@ class AdaptiveRun:
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": ending.seconds}
         note = "; ".join(filter(None, (self._note, self._jumps.sentence())))
-        return Trajectory(*self._rows.stored, ending.outcome, ending.message, statistics, history, note)
+        return Trajectory(
+            *self._rows.stored,
+            ending.outcome,
+            ending.message,
+            statistics,
+            history,
+            note,
+            long_steps=self.work.long_steps(),
+        )
 
     def _reason(self, status: int) -> str:
         """Why the run cannot go on."""

@@ -12,6 +12,7 @@ from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch
+from ..events.long_steps import LongStepLog, LongSteps
 from ..events.step_bound import StepBound
 from ..initial import InitialValues
 from ..trajectory import Grid, Rows
@@ -54,6 +55,8 @@ class Integration:
         times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
         n_event_functions = dynamics.system.n_event_functions
         self._watch = EventSearch(dynamics.state)
+        self._long_steps = dynamics.kept("long_steps", n, lambda: LongStepLog(dynamics.system, n))
+        self._long_steps.forget()
         self._arrays: dict[str, Any] = {
             "dynamics": dynamics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
             "pivots_tell": self._eliminated.pivots_tell,
@@ -67,7 +70,7 @@ class Integration:
             "watch": self._watch.table,
             "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
-            "n_times": len(times), "times": times,
+            "n_times": len(times), "times": times, "long_steps": self._long_steps.table,
             "capacity": self.capacity, "row_t": np.empty(self.capacity), "row_y": np.empty((self.capacity, n)),
             "ends": np.empty(self.capacity),
         }  # fmt: skip
@@ -125,6 +128,11 @@ class Integration:
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
         return int(self._cells[name])
+
+    def long_steps(self) -> tuple[LongSteps, ...]:
+        """Steps far longer than those before them."""
+        begin, end, y = self._long_steps.kept()
+        return (LongSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
 
     def collect(self, rows: Rows) -> None:
         """Take over the rows and ends of steps that the last call stored, and leave their memory to the next."""

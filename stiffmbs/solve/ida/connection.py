@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.machine.layout import MOST_STEPS, NATIVE_IDA, SAMPLES, packed
+from ...compile.machine.layout import LONG_STEPS, MOST_STEPS, NATIVE_IDA, SAMPLES, packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ..events.event_functions import EventSearch
+from ..events.long_steps import LongStepLog
 from ..events.step_bound import StepBound
 from .error_norm import ErrorNorm
 from .iteration import Iteration
@@ -64,6 +65,8 @@ class Connection:
         As in `stiffmbs.solve.native.event_search.event_signs`.
     watch : EventSearch
     history : StepLog
+    long_steps : LongStepLog or None
+        None for scenes without laws.
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
         Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
     table : int
@@ -78,6 +81,8 @@ class Connection:
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
         self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
         self.history = StepLog()
+        self.long_steps = LongStepLog(equations.system, len(self.reported)) if equations.system.has_laws else None
+        self._long_steps = self.long_steps.table if self.long_steps else np.zeros(len(LONG_STEPS), dtype=np.int64)
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.iteration, self.step_bound = OutputCorrection(equations), Iteration(n), StepBound()
@@ -113,7 +118,7 @@ class Connection:
                 "step_bound": self.step_bound.table, "history": history, "samples": self.samples,
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
-                "probe": self._probe,
+                "probe": self._probe, "long_steps": self._long_steps,
             },
         )  # fmt: skip
 
@@ -147,6 +152,8 @@ class Connection:
     def forget(self) -> None:
         """Drop the history, and the pivots that the linear solver has found."""
         self.history.forget()
+        if self.long_steps:
+            self.long_steps.forget()
         self.output_correction.forget()
         self.error_norm.forget()
         if self._assembled.pivots is not None:

@@ -76,5 +76,8 @@ class Engine(Protocol):
     def last_step(self) -> tuple[float, int] | None:
         """Size, s, and order of the last step, where they are known."""
 
+    def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Begins and ends of steps far longer than those before them, and what is reported at nodes within them; None where it keeps none."""
+
     def history(self) -> History:
         """Ends of the steps, and their orders where they are known."""

@@ -12,6 +12,7 @@ from ...compile.inputs.features import InputFeatures
 from ...compile.machine.layout import MOST_STEPS
 from ...compile.machine.routines import Routine
 from ...compile.state import State
+from ..events.long_steps import LongStepLog
 from ..native.statuses import ROOT_RETURN, STOP_RETURN
 from .connection import MODULE, Connection
 from .matrices import Matrix
@@ -137,6 +138,11 @@ class NativeIda:
     def history(self) -> StepLog:
         """Time, order and size of each step."""
         return self._ida.history
+
+    @property
+    def long_steps(self) -> LongStepLog | None:
+        """Steps far longer than those before them; None for scenes without laws."""
+        return self._ida.long_steps
 
     @property
     def samples(self) -> np.ndarray:

@@ -181,6 +181,11 @@ class NativeEngine:
         """Size, s, and order of the last step, where they are known."""
         return self._ida.history.last
 
+    def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Begins and ends of steps far longer than those before them, and what is reported at nodes within them; None for scenes without laws."""
+        log = self._ida.long_steps
+        return log.kept() if log else None
+
     def history(self) -> History:
         """Ends of the steps and their orders."""
         return History(self._ida.history.t, self._ida.history.order)

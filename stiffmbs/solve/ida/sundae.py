@@ -278,6 +278,9 @@ class SundaeEngine:
         """Size, s, and order of the last step: scikit-sundae gives none of them."""
         return None
 
+    def long_steps(self) -> None:
+        """None are kept."""
+
     def history(self) -> History:
         """Ends of the steps; their orders are not known here."""
         return History(self.callbacks.step_times, np.empty(0, dtype=int))

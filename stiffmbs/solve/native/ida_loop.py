@@ -16,6 +16,7 @@ from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.event_search.event_signs import watched
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import MADE, iteration_view
+from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, next_row
 from stiffmbs.solve.native.output_correction import corrected, output_correction_view
 from stiffmbs.solve.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
@@ -94,6 +95,7 @@ def _see_inputs(c, stop):
 def _stepped(c, ida, toward, stop):
     """One step; returns IDA's flag and notes the step's end, order and size in the history."""
     before = c.internal
+    begun = c.returned
     _see_inputs(c, stop)
     c.within = 0
     if c.look_at_start:
@@ -115,6 +117,8 @@ def _stepped(c, ida, toward, stop):
         return STALLED
     if flag >= 0 and c.look_within and call_int(c.look_within, (ida,)):
         flag = int32(ROOT_RETURN)
+    if flag >= 0:
+        _keep_if_long(c, begun)
     if flag >= 0 and c.trace:
         _keep_step(c)
     return flag
@@ -138,6 +142,21 @@ def _keep_step(c):
 def _report(c, values, row):
     for k in range(c.n_reported):
         row[k] = values[c.reported[k]]
+
+
+@compiled
+def _keep_if_long(c, begun):
+    """Keep states within the last step where it is far longer than those before."""
+    w = long_steps_view(c.long_steps)
+    h = c.returned - begun
+    if w.room == 0 or not is_to_be_kept(w, h):
+        return
+    row = next_row(w, begun, c.returned)
+    for node in range(w.n_nodes):
+        if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
+            return
+        _report(c, c.output, shifted(row, node * w.width))
+    w.count += 1
 
 
 @compiled

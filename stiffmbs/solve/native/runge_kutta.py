@@ -16,7 +16,8 @@ from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.error_estimate import trusted_error
 from stiffmbs.solve.native.event_search.explicit_events import RETRIED
-from stiffmbs.solve.native.interpolant import store_rows, store_step
+from stiffmbs.solve.native.interpolant import interpolated, prepare, store_rows, store_step
+from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, next_row
 from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
@@ -115,6 +116,19 @@ def _step(x, c, s, m, end):
             return status if status < 0 else STEP_TOO_SMALL
 
 
+@compiled
+def _keep_if_long(x, c, s, m):
+    """Keep states within the last step where it is far longer than those before."""
+    w = long_steps_view(x.long_steps)
+    if w.room == 0 or not is_to_be_kept(w, x.span):
+        return
+    if x.dense_ready or prepare(x, c, s, m) == 0:
+        row = next_row(w, x.t_before, x.t_before + x.span)
+        for node in range(w.n_nodes):
+            interpolated(x, c, w.node[node], shifted(row, node * w.width))
+        w.count += 1
+
+
 def advance(end, steps, held, own_steps, explicit):
     """Integrate towards `end`, for so many steps, until stability has held back `held` of them, or the memory for rows is full.
 
@@ -144,6 +158,7 @@ def advance(end, steps, held, own_steps, explicit):
             continue
         x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
+        _keep_if_long(x, c, s, m)
         if own_steps:
             store_step(x)
         if x.steps >= ENOUGH_STEPS and _is_hopeless(x, end):

@@ -1,0 +1,106 @@
+"""What steps far longer than those before them have passed over, whether output instants lie within them or not.
+
+Within a step the integrator's polynomial has a rate of the velocities.  Where that contradicts the accelerations that the
+block system gives at the polynomial's own state, the step has not seen the forces there.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from ..describe.settings import RunSettings
+from ..solve.dynamics import OutputRows
+from ..solve.error_control.tolerances import absolute_tolerances
+from ..solve.events.long_steps import LongSteps, Motion
+from ..solve.settings import near_constraints
+from .overlooked import PART, Overlooked, acting
+
+TOLERANCES = 1e4
+"""Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked.  Measured: up to
+1.2e3 in steps of stick and slip, with the slopes of all forces taken into account."""
+FINE = 20_000
+"""Parts of a run's time in which Python functions are looked at: nothing else tells where these have features."""
+SLIGHT = 0.01
+"""Part of the tolerance by which positions and velocities within a step may be off: a stiff force makes much of that."""
+TIMED, ALLOWED = 16, 1.0
+"""Instants of which the time for one is measured; s that looking may take, or instants become fewer."""
+
+
+def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float) -> Overlooked | None:
+    """What long steps have passed over; None for nothing.
+
+    They are looked at in their middle, and all along where a law is a Python function.
+
+    Parameters
+    ----------
+    found : LongSteps
+    settings : RunSettings
+    end : float
+        Of what is reported: later steps do not count, s.
+    """
+    steps = np.arange(np.searchsorted(found.begin, end))
+    if not len(steps):
+        return None
+    if found.whole:
+        steps, parts = _all_along(found, steps, settings)
+        motion = found.at(steps, parts)
+    else:
+        motion = found.middles()
+    count = len(steps)
+    rows = found.dynamics.report(motion.t[:count], motion.q[:count], motion.u[:count], near_constraints(settings))
+    return _judged(found, steps, motion, rows, settings)
+
+
+def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
+    """Steps and parts of them, evenly spread in time: an odd number in each step, so that its middle is among them."""
+    middles = found.at(steps[:1].repeat(TIMED), np.linspace(0.0, 1.0, TIMED))
+    begun = time.perf_counter()
+    found.dynamics.report(middles.t, middles.q, middles.u, False)
+    each = (time.perf_counter() - begun) / TIMED
+    spacing = settings.duration / min(FINE, 1.0 + ALLOWED / each)
+    counts = 2 * ((found.end - found.begin)[steps] / (2.0 * spacing)).astype(int) + 1
+    of_step = np.repeat(steps, counts)
+    number = np.arange(len(of_step)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return of_step, (number + 0.5) / counts[of_step]
+
+
+def _judged(
+    found: LongSteps, steps: np.ndarray, motion: Motion, rows: OutputRows, settings: RunSettings
+) -> Overlooked | None:
+    system, done = found.dynamics.system, len(rows.t)
+    steps, rate = steps[:done], motion.rate[:done]
+    off = rows.acceleration - rate
+    size = np.fmax(rows.acceleration**2 @ system.mass, rate**2 @ system.mass)
+    places = np.flatnonzero(off**2 @ system.mass > PART**2 * size)
+    if not len(places):
+        return None
+    length = (found.end - found.begin)[steps]
+    tolerance = absolute_tolerances(system, settings)
+    of_velocities = tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[places])
+    over_step = np.abs(off[places]) * length[places, None] / (TOLERANCES * of_velocities)
+    peaks = _peaks(places[(over_step > 1.0).any(axis=1)], steps, size)
+    peaks = [k for k in peaks if off[k] ** 2 @ system.mass > _of_errors(found, rows, k, settings) ** 2 @ system.mass]
+    if not peaks:
+        return None
+    first = peaks[0]
+    of_first = np.abs(off[first]) / (tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[first]))
+    velocity = system.name_of(int(np.nanargmax(of_first)), system.of_body.velocities)
+    return Overlooked(rows.t[peaks], float(length[first]), velocity, acting(system, rows, first))
+
+
+def _peaks(places: np.ndarray, steps: np.ndarray, size: np.ndarray) -> list[int]:
+    """The place with the largest accelerations of each set of neighbours within one step."""
+    ends = np.flatnonzero((np.diff(places) > 1) | (np.diff(steps[places]) > 0)) + 1
+    return [int(part[np.argmax(size[part])]) for part in np.split(places, ends) if len(part)]
+
+
+def _of_errors(found: LongSteps, rows: OutputRows, k: int, settings: RunSettings) -> np.ndarray:
+    """By how much errors far below the tolerance change the accelerations at an instant: where forces are stiff, by much."""
+    dynamics, state = found.dynamics, np.concatenate([rows.q[k], rows.u[k]])
+    errors = SLIGHT * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))
+    states = np.vstack([state, state + np.diag(errors)])
+    q, u = np.split(states, [dynamics.system.n_q], axis=1)
+    accelerations = dynamics.report(np.full(len(states), rows.t[k]), q, u, False).acceleration
+    return np.abs(accelerations[1:] - accelerations[0]).sum(axis=0)

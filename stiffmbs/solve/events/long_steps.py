@@ -1,0 +1,116 @@
+"""Steps far longer than those before them, with what the integrator's polynomial says within each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebder, chebvander
+
+from ...compile.machine.layout import LONG_STEPS, packed
+from ...compile.system import System
+from ..dynamics import Dynamics
+
+APART = 1e-4
+"""Part of a step on both sides of its middle at which states are kept: their mean and difference are the state there and its rate."""
+MIDDLE = np.array([0.5 - APART, 0.5 + APART])
+WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
+"""Places that describe a whole step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
+LONG, LONG_FOR_FUNCTIONS = (4.0, 8.0), (2.0, 64.0)
+"""Times the usual step from which on a step is long, and of about how many steps that is the mean.  Nothing but steps so kept tells what
+a Python function does within them; other laws are searched for events as well."""
+MOST_STEPS, MOST_VALUES = 1000, 1_000_000
+"""Steps, and numbers of their states, that are kept of one run."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """States within steps, one row each.
+
+    Attributes
+    ----------
+    t, q, u, rate : ndarrays, shapes (m,), (m, n_q), (m, n_u), (m, n_u)
+        Times, states, and rates of u, of the integrator's polynomial.
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    rate: np.ndarray
+
+
+@dataclass(frozen=True)
+class LongSteps:
+    """Long steps of one run.
+
+    Attributes
+    ----------
+    dynamics : Dynamics
+        Of the system that was integrated.
+    begin, end : ndarrays, shape (n,)
+        s.
+    q, u : ndarrays, shapes (n, places, n_q), (n, places, n_u)
+        States at `MIDDLE` of each step, or at `WHOLE`.
+    """
+
+    dynamics: Dynamics
+    begin: np.ndarray
+    end: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+
+    @property
+    def whole(self) -> bool:
+        """Whether the polynomial is known all along the steps."""
+        return self.q.shape[1] == len(WHOLE)
+
+    def middles(self) -> Motion:
+        """The middle of each step; where they are not known as a whole."""
+        t, length = 0.5 * (self.begin + self.end), self.end - self.begin
+        rate = (self.u[:, 1] - self.u[:, 0]) / (2.0 * APART * length)[:, None]
+        return Motion(t, self.q.mean(axis=1), self.u.mean(axis=1), rate)
+
+    def at(self, step: np.ndarray, part: np.ndarray) -> Motion:
+        """Parts (0 to 1) of steps, both of shape (m,); where steps are known as a whole."""
+        length = (self.end - self.begin)[step]
+        to_series = np.linalg.inv(chebvander(2.0 * WHOLE - 1.0, len(WHOLE) - 1))
+        q, u = (np.einsum("kl,nlj->nkj", to_series, states) for states in (self.q, self.u))
+        places = chebvander(2.0 * part - 1.0, len(WHOLE) - 1)
+        slopes = 2.0 * places[:, :-1] / length[:, None]
+        weighted = ((places, q), (places, u), (slopes, chebder(u, axis=1)))
+        found = (np.einsum("mk,mkj->mj", weights, series[step]) for weights, series in weighted)
+        return Motion(self.begin[step] + part * length, *found)
+
+
+class LongStepLog:
+    """Memory for the long steps of one integration, filled by compiled code.
+
+    Parameters
+    ----------
+    system : System
+    width : int
+        Numbers of a state that are kept.
+
+    Attributes
+    ----------
+    table : ndarray of int
+        Addresses for compiled code (`stiffmbs.compile.machine.layout.LONG_STEPS`).
+    """
+
+    def __init__(self, system: System, width: int) -> None:
+        places, (ratio, remembered) = (WHOLE, LONG_FOR_FUNCTIONS) if system.has_functions else (MIDDLE, LONG)
+        row = 2 + len(places) * width
+        room = min(MOST_STEPS, MOST_VALUES // row) if system.has_laws else 0
+        self._rows, self._shape = np.empty((room, row)), (len(places), width)
+        self._arrays = {"n_nodes": len(places), "node": places, "width": width, "row": self._rows}
+        self.table = packed(LONG_STEPS, {**self._arrays, "ratio": ratio, "remembered": remembered, "room": room})
+        self._cells = self.table.view(LONG_STEPS.cells)[0]
+
+    def forget(self) -> None:
+        """Drop all steps."""
+        self._cells["count"], self._cells["usual"] = 0, 0.0
+
+    def kept(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Begin and end of each step kept, and its states, shape (n, places, width)."""
+        rows = self._rows[: int(self._cells["count"])].copy()
+        return rows[:, 0], rows[:, 1], rows[:, 2:].reshape(len(rows), *self._shape)

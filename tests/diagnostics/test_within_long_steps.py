@@ -1,0 +1,71 @@
+"""What begins and ends within a long step is found without an output instant there, and the run is taken again."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.diagnostics import within_long_steps
+from stiffmbs.solve.events.long_steps import WHOLE, LongSteps
+
+SOLVERS = (
+    {"solver": "bdf"},
+    {"solver": "projected", "scheme": "dopri5"},
+    {"solver": "projected", "scheme": "dop853"},
+    {"solver": "auto"},
+)
+HEIGHT = 1e4
+
+
+def ball(width: float, places: tuple[float, ...] = (5.0031,)) -> stiffmbs.Model:
+    """A ball of 1 kg at 10 m/s, pushed by a Python function that is narrow Gaussians of its place."""
+
+    def push(x):
+        return HEIGHT * sum(np.exp(-(((x[0] - place) / width) ** 2)) for place in places), 0, 0
+
+    model = stiffmbs.Model("Ball", gravity=(0, 0))
+    model.add("ball", stiffmbs.Body(mass=1, inertia=1, velocity=(10, 0)))
+    model.add("push", stiffmbs.PythonForce(i="ball", of=("ball.x",), function=push))
+    return model
+
+
+def behind(width: float, count: int = 1) -> float:
+    """The speed behind the Gaussians: their work is HEIGHT * width * sqrt(pi) each."""
+    return float(np.sqrt(100 + 2 * HEIGHT * width * np.sqrt(np.pi) * count))
+
+
+def told(solution):
+    return [note for note in solution.notes if "passed over" in note]
+
+
+@pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
+def test_a_python_function_that_no_output_meets(how, monkeypatch):
+    monkeypatch.setattr(within_long_steps, "FINE", 1000)
+    found = stiffmbs.run(ball(5e-3), duration=1.0, points=2, rtol=1e-6, **how)
+    (note,) = told(found)
+    assert "passed over 'push' at t = " in note and "taken again" in note
+    assert found["ball.vx"][-1] == pytest.approx(behind(5e-3), abs=2e-3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
+@pytest.mark.parametrize("width", [1e-4, 3e-4, 1e-3, 3e-3, 1e-2])
+def test_narrow_python_functions_on_every_solver(width, how):
+    for places in ((0.777,), (5.0031,), (3.777, 9.66)):
+        found = stiffmbs.run(ball(width, places), duration=1.0, points=2, rtol=1e-6, **how)
+        assert told(found)
+        assert found["ball.vx"][-1] == pytest.approx(behind(width, len(places)), abs=2e-3)
+
+
+def test_a_function_without_narrow_features_is_left_alone():
+    model = ball(1.0)
+    assert not told(stiffmbs.run(model, duration=1.0, points=2))
+
+
+def test_motion_within_steps_is_that_of_their_polynomial():
+    part = np.array([0.1, 0.5, 0.93])
+    t = 2.0 + 0.5 * WHOLE
+    u = np.stack([t**5, 3 * t], axis=1)[None]
+    motion = LongSteps(None, np.array([2.0]), np.array([2.5]), u, u).at(np.zeros(3, dtype=int), part)
+    assert motion.t == pytest.approx(2.0 + 0.5 * part)
+    assert motion.u[:, 0] == pytest.approx(motion.t**5)
+    assert motion.rate == pytest.approx(np.stack([5 * motion.t**4, np.full(3, 3.0)], axis=1))
