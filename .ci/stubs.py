@@ -81,6 +81,7 @@ from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
 from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
 from .studies.sensitivities.sensitivities import sensitivities as sensitivities
+from .studies.fmu.build import build_fmu as build_fmu
 from .studies.follow import follow as follow
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation

@@ -49,7 +49,7 @@ _LATER = {
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
-    "listed_statements": ".adams.listing", "differences": ".results.listings.differences",
+    "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
 """The modules of what is loaded when it is used."""

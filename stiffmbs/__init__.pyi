@@ -69,6 +69,7 @@ from .show.drawing.animate import animate as animate
 from .show.drawing.draw import draw as draw
 from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
+from .studies.fmu.build import build_fmu as build_fmu
 from .studies.follow import follow as follow
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise

@@ -13,6 +13,7 @@ from .convert import convert
 from .draw import draw
 from .equilibrium import equilibrium
 from .exchange.diff import diff
+from .exchange.fmu import fmu
 from .fit import fit, optimise
 from .modes import modes
 from .plot import plot
@@ -50,6 +51,6 @@ def main() -> None:
 
 
 for command in (
-    run, check, equilibrium, modes, response, kc, loads, study, sensitivities, compare, fit, optimise, convert, diff, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
+    run, check, equilibrium, modes, response, kc, loads, study, sensitivities, compare, fit, optimise, convert, diff, fmu, schema, bench, cache, draw, animate, plot, report, stress, init, examples, parts, show_version,
 ):  # fmt: skip
     main.add_command(with_logging_options(command))

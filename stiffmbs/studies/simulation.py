@@ -124,11 +124,22 @@ class Simulation:
         """
         if not 0 < dt < np.inf:
             raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
-        if inputs and self._inputs.set(inputs):
-            self._stepper.restart(self.t, self.q, self.u)
+        self.set_inputs(inputs or {})
         end = self.t + dt
         q, u = self._stepper.advance(end)
         self.t, self.q, self.u, self._known = end, q, u, None
+
+    def set_inputs(self, inputs: Mapping[str, float]) -> None:
+        """Values of inputs from now on; those of others stay.
+
+        Raises
+        ------
+        InputError
+            When an input is unknown, or its value does not fit.
+        """
+        if inputs and self._inputs.set(inputs):
+            self._stepper.restart(self.t, self.q, self.u)
+            self._known = None
 
     @property
     def channels(self) -> dict[str, float]:

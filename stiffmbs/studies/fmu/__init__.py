@@ -1,0 +1,1 @@
+"""Models as FMUs, for programs that simulate several models together."""

@@ -1,0 +1,121 @@
+"""FMUs of scenes, built by PythonFMU (FMI 2.0, co-simulation)."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ...describe.files.scene_text import scene_text
+from ...describe.scene import Scene
+from ...errors import InputError, needs
+from ...jobs.load_scene import load_scene
+from .stepping import CommunicationSteps, parameters_of
+
+ABOUT, SCENE = "model.json", "scene.yaml"
+ENDING = ".fmu"
+SCRIPT = '''"""The model of the FMU; it needs the package stiffmbs in the Python that runs it."""
+
+from stiffmbs.studies.fmu.slave import SceneSlave
+
+
+class {name}(SceneSlave):
+    pass
+'''
+
+
+def build_fmu(
+    path: str | Path, output: str | Path, outputs: Sequence[str] = (), changes: Sequence[tuple[str, str]] = ()
+) -> tuple[str, ...]:
+    """Write an FMU for co-simulation, FMI 2.0: the scene's inputs, parameters, and channels as outputs.
+
+    The FMU needs this package in the Python of the program that runs it.  Inputs hold over a communication step, and each step
+    starts the integrator anew.
+
+    Parameters
+    ----------
+    path : str or Path
+        A scene's file, or an Adams/Solver dataset.
+    output : str or Path
+        Ends in .fmu.
+    outputs : sequence of str, optional
+        Channels; without any the requests of the scene, or all channels where it has none.
+    changes : sequence of (path, text)
+        Values put in place of the file's.
+
+    Returns
+    -------
+    tuple of str
+        The names of the outputs.
+
+    Raises
+    ------
+    InputError
+        When the scene is wrong, has stages or files beside it, there is no such channel, or PythonFMU is missing.
+    """
+    target = Path(output)
+    if target.suffix != ENDING:
+        raise InputError(f"-o {output}: found the ending '{target.suffix}', expected {ENDING}")
+    with needs("pythonfmu", "fmu"):
+        from pythonfmu.builder import FmuBuilder
+    scene = load_scene(path, changes)
+    name = re.sub(r"\W+", "_", Path(path).stem).strip("_") or "model"
+    name = name if name[0].isalpha() else f"model_{name}"
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        (folder / SCENE).write_text(_content(scene), encoding="utf-8")
+        about = _about(scene, folder / SCENE, outputs)
+        (folder / ABOUT).write_text(json.dumps(about), encoding="utf-8")
+        script = folder / f"{name}_fmu.py"
+        script.write_text(SCRIPT.format(name=name), encoding="utf-8")
+        before = list(sys.path)
+        try:
+            FmuBuilder.build_FMU(script, target, project_files=[folder / SCENE, folder / ABOUT])
+        finally:
+            sys.path[:] = before
+            sys.modules.pop(script.stem, None)
+    return tuple(about["outputs"])
+
+
+def _content(scene: Scene) -> str:
+    """The scene's file with all that it includes and changes of it."""
+    written = scene.written
+    if written is None:
+        raise InputError("found a scene that was not read from a file, expected one of a file")
+    if written.changes:
+        raise InputError("found --set, expected a scene as it stands in its file: its parameters can be set in the FMU")
+    return scene_text(copy.deepcopy(dict(written.content)))
+
+
+def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]:
+    """What the variables of the FMU are, with their values at the start."""
+    from ... import __version__
+
+    try:
+        steps = CommunicationSteps(copied)
+    except InputError as error:
+        raise InputError(
+            f"alone in an FMU, without files beside it: {str(error).replace(f'{copied.parent}/', '')}"
+        ) from None
+    inputs = {name: value for name, value in scene.inputs.items() if isinstance(value, float | int)}
+    tables = [name for name in scene.inputs if name not in inputs]
+    if tables:
+        raise InputError(f"found a table for the input '{tables[0]}', expected a number")
+    values = steps.values({})
+    chosen = tuple(outputs) or tuple(name for name in values if name in scene.outputs()) or tuple(values)
+    unknown = [name for name in chosen if name not in values]
+    if unknown:
+        raise InputError(f"found no channel '{unknown[0]}', expected one such as {', '.join(list(values)[:12])}")
+    run = scene.run
+    return {
+        "description": scene.name, "version": __version__, "start": run.start, "stop": run.start + run.duration,
+        "step": run.output or run.duration / 1000, "tolerance": run.rtol,
+        "inputs": {name: float(value) for name, value in inputs.items()},
+        "parameters": {name: float(value) for name, value in parameters_of(scene).items()},
+        "outputs": {name: values[name] for name in chosen},
+    }  # fmt: skip

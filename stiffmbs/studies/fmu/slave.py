@@ -1,0 +1,86 @@
+"""The model inside an FMU: a slave of PythonFMU that runs a scene between communication points.
+
+It is imported by the FMU's script, in the Python of the program that runs the FMU.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pythonfmu import DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
+
+from ...errors import StiffmbsError
+from .stepping import CommunicationSteps
+
+ABOUT, SCENE = "model.json", "scene.yaml"
+"""Files of the FMU's resources: what its variables are, and the scene."""
+
+
+class SceneSlave(Fmi2Slave):  # type: ignore[misc]
+    """A scene whose inputs, parameters and channels are variables of the FMU."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        folder = Path(self.resources)
+        about = json.loads((folder / ABOUT).read_text(encoding="utf-8"))
+        self.description, self.version = about["description"], about["version"]
+        self.default_experiment = DefaultExperiment(*(about[name] for name in ("start", "stop", "step", "tolerance")))
+        self._steps = CommunicationSteps(folder / SCENE)
+        self._inputs: dict[str, float] = dict(about["inputs"])
+        self._parameters: dict[str, float] = dict(about["parameters"])
+        self._start: float = about["start"]
+        self._tolerance: float | None = None
+        self._channels: dict[str, float] | None = dict(about["outputs"])
+        self._register(self._inputs, Fmi2Causality.input, Fmi2Variability.continuous)
+        self._register(self._parameters, Fmi2Causality.parameter, Fmi2Variability.fixed)
+        for name in about["outputs"]:
+            self.register_variable(
+                Real(name, causality=Fmi2Causality.output, getter=lambda name=name: self._value(name)), nested=False
+            )
+
+    def _register(self, values: dict[str, float], causality: Any, variability: Any) -> None:
+        """Variables that another program sets."""
+        for name, value in values.items():
+
+            def put(number: float, name: str = name) -> None:
+                values[name] = number
+                self._channels = None
+
+            self.register_variable(
+                Real(
+                    name,
+                    start=value,
+                    causality=causality,
+                    variability=variability,
+                    getter=lambda name=name: values[name],
+                    setter=put,
+                ),
+                nested=False,
+            )
+
+    def _value(self, name: str) -> float:
+        if self._channels is None:
+            self._channels = self._steps.values(self._inputs)
+        return self._channels[name]
+
+    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        """Take the time at the start, and the tolerance where it is finer than the scene's."""
+        self._start, self._tolerance = start_time, tolerance
+
+    def exit_initialization_mode(self) -> None:
+        """Read the scene with the parameters that were set."""
+        finer = self._tolerance and min(self._tolerance, self._steps.scene.run.rtol)
+        self._steps.begin(self._start, self._parameters, self._inputs, finer or None)
+        self._channels = None
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """Run on to the next communication point; inputs hold over the step."""
+        self._channels = None
+        try:
+            self._steps.step(step_size, self._inputs)
+        except StiffmbsError as error:
+            self.log(str(error))
+            return False
+        return True
