@@ -6,8 +6,6 @@ block system gives at the polynomial's own state, the step has not seen the forc
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from ..describe.settings import RunSettings
@@ -24,8 +22,6 @@ FINE = 20_000
 """Parts of a run's time in which Python functions are looked at: nothing else tells where these have features."""
 SLIGHT = 0.01
 """Part of the tolerance by which positions and velocities within a step may be off: a stiff force makes much of that."""
-TIMED, ALLOWED = 16, 1.0
-"""Instants of which the time for one is measured; s that looking may take, or instants become fewer."""
 
 
 def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float) -> Overlooked | None:
@@ -55,11 +51,7 @@ def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
     """Steps and parts of them, evenly spread in time: an odd number in each step, so that its middle is among them."""
-    middles = found.at(steps[:1].repeat(TIMED), np.linspace(0.0, 1.0, TIMED))
-    begun = time.perf_counter()
-    found.dynamics.report(middles.t, middles.q, middles.u, False)
-    each = (time.perf_counter() - begun) / TIMED
-    spacing = settings.duration / min(FINE, 1.0 + ALLOWED / each)
+    spacing = settings.duration / FINE
     counts = 2 * ((found.end - found.begin)[steps] / (2.0 * spacing)).astype(int) + 1
     of_step = np.repeat(steps, counts)
     number = np.arange(len(of_step)) - np.repeat(np.cumsum(counts) - counts, counts)

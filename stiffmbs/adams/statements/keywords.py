@@ -56,7 +56,6 @@ LEFT_OUT = {
     "KINEMATICS": "analysis settings",
     "LSOLVER": "analysis settings",
     "PREFERENCES": "analysis settings",
-    "SENSOR": "where it would end or change a run in Adams, a run goes on here",
     "PINPUT": "analysis settings",
     "POUTPUT": "analysis settings",
     "PSTATE": "analysis settings",
@@ -72,6 +71,7 @@ FLEXIBLE, ROUTINE, CURVED = (
     "curves and surfaces in space are not read",
 )
 REFUSED = {
+    "SENSOR": "it ends or changes a run, which is not followed here",
     "FLEX_BODY": FLEXIBLE,
     "FE_PART": FLEXIBLE,
     "FE_NODE": FLEXIBLE,
