@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from ..show.style import dress, legend_below, stroke
 from .benchmark import Row
 from .machine import machine
 from .sweep import at_target_rows
@@ -14,20 +15,20 @@ SIZE, NARROW = (8, 5.5), (7, 4.2)
 """Of figures, inches: with and without a line on the machine."""
 
 
-def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, style: str = "-") -> None:
-    """Times of a solver, on logarithmic axes."""
-    axes.loglog(x, seconds, style, marker=".", label=label)
+def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, marker: str = ".") -> None:
+    """Times of a solver, on logarithmic axes; lines differ in color and in stroke."""
+    axes.loglog(x, seconds, marker=marker, label=label, **stroke(len(axes.lines)))
 
 
 def finished(axes: Any, x: str, title: str) -> None:
     """Give the axes their labels, grid and legend."""
     axes.set(xlabel=x, ylabel="time of a solution, s", title=title)
-    axes.grid(which="major", alpha=0.3)
-    axes.legend(fontsize="small")
+    dress(axes)
+    legend_below(axes.figure, [axes])
 
 
 def draw(problem: str, rows: Sequence[Row], folder: Path) -> Path:
-    """Draw the rows of a problem; peers are dashed.
+    """Draw the rows of a problem; peers have crosses.
 
     Returns
     -------
@@ -51,7 +52,7 @@ def draw_rows(axes: Any, problem: str, rows: Sequence[Row]) -> None:
     measured = [row for row in rows if row.error > 0 and row not in at_target_rows(rows)]
     for solver in dict.fromkeys(row.solver for row in measured):
         own = sorted((r for r in measured if r.solver == solver), key=lambda r: r.seconds)
-        style = "--" if own[0].peer else "-"
-        curve(axes, [r.error for r in own], [r.seconds for r in own], solver, style)
+        marker = "x" if own[0].peer else "."
+        curve(axes, [r.error for r in own], [r.seconds for r in own], solver, marker)
     axes.invert_xaxis()
     finished(axes, "largest error, m or rad", problem)
