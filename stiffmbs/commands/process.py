@@ -35,10 +35,11 @@ class Process(click.Group):
         with _signals(), warnings.catch_warnings():
             # Numbers that overflow are told where they end up, in sentences.
             warnings.simplefilter("ignore", RuntimeWarning)
+            status = 0
             try:
                 status = _status(lambda: super(Process, self).main(*arguments, **{**options, "standalone_mode": False}))
             finally:
-                written = _flushed()
+                written = _flushed(told=status != 0)
         if closed:
             _tell("standard output is closed: nothing is shown")
         sys.exit(status or (0 if written and not closed else FAILED))
@@ -99,14 +100,21 @@ def _with_standard_files() -> bool:
     return closed
 
 
-def _flushed() -> bool:
-    """Whether all that was printed has been written; what cannot be is given up, so that the interpreter doesn't try again."""
+def _flushed(told: bool) -> bool:
+    """Whether all that was printed has been written; what cannot be is given up, so that the interpreter doesn't try again.
+
+    Parameters
+    ----------
+    told : bool
+        Whether the user knows already why the command failed: a buffer that cannot be written fails here a second time.
+    """
     try:
         sys.stdout.flush()
     except BrokenPipeError:
         pass
     except OSError as error:
-        _tell(f"standard output: cannot be written ({error.strerror})")
+        if not told:
+            _tell(f"standard output: cannot be written ({error.strerror})")
     except ValueError:
         return True
     else:

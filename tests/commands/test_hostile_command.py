@@ -94,9 +94,13 @@ def started(*arguments, **options):
 @pytest.mark.parametrize(
     "arguments", [["check", "scene.yaml"], ["run", "scene.yaml", "--json"], ["schema"], ["--help"]]
 )
-def test_a_full_standard_output_is_told(folder, arguments):
+@pytest.mark.parametrize("buffered", [True, False])
+def test_a_full_standard_output_is_told(folder, arguments, buffered):
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     with open("/dev/full", "w") as full:
-        process = started(*arguments, stdout=full)
+        process = started(
+            *arguments, stdout=full, env=environment if buffered else environment | {"PYTHONUNBUFFERED": "1"}
+        )
         _, errors = process.communicate()
     assert process.returncode == 1
     assert errors.count("\n") == 1
