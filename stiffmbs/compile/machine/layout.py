@@ -25,6 +25,7 @@ class Layout(dict[str, str]):
 
     @cached_property
     def cells(self) -> np.dtype[np.void]:
+        """The type of a row of a table by this layout, with its cells by name."""
         columns = {name: column for column, name in enumerate(self) if self[name] in CELLS}
         formats = ["f8" if self[name] == FLOAT_CELL else "i8" for name in columns]
         offsets = [8 * column for column in columns.values()]

@@ -75,6 +75,13 @@ class Definitions:
         return use, words
 
     def of(self, part: str) -> dict[str, Any]:
+        """What is written of a part.
+
+        Raises
+        ------
+        InputError
+            When it is no mapping.
+        """
         found = self.written(part)
         if not isinstance(found, dict):
             raise InputError(f"parts.{part}: found {written(found)}, expected a mapping with 'bodies'")
