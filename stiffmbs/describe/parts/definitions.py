@@ -80,7 +80,7 @@ class Definitions:
         Raises
         ------
         InputError
-            When it is no mapping.
+            When it is no mapping, or has unknown keys.
         """
         found = self.written(part)
         if not isinstance(found, dict):
