@@ -89,7 +89,7 @@ class Child:
         process, _ = self._running
         process.join()
         code = process.exitcode or 0
-        if code == -OUT_OF_TIME:
+        if OUT_OF_TIME and code == -OUT_OF_TIME:
             return self._no_end()
         self.close()
         how = f"by {signal.Signals(-code).name}" if code < 0 else f"with exit status {code}"
