@@ -9,12 +9,12 @@ from ..compile.inputs.of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .algebraic_states import failure
+from .driven.states import Instant, states_after
+from .driven.velocities import IntegratedMotion
 from .dynamics import Dynamics
 from .events.limits import refuse_beyond_limits
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .initial import InitialValues
-from .kinematic_states import Instant, states_after
-from .kinematic_velocities import IntegratedMotion
 from .native.statuses import NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import SolverError
-from .algebraic_states import failure
-from .dynamics import Dynamics
-from .initial import InitialValues
-from .native.statuses import NOT_FINITE
+from ...errors import SolverError
+from ..algebraic_states import failure
+from ..dynamics import Dynamics
+from ..initial import InitialValues
+from ..native.statuses import NOT_FINITE
 
 TOLERANCE = 1e-11
 """Relative tolerance of positions, and absolute one, m and rad."""
