@@ -16,8 +16,8 @@ from .bodies import notes as body_notes
 from .contacts import contacts
 from .forces import Forces
 from .gears import gears
+from .initial_conditions import at_start, set_in_motion
 from .initial_conditions import notes as start_notes
-from .initial_conditions import set_in_motion
 from .joints import held, joints
 from .mechanism import Mechanism
 from .motions import motions
@@ -62,6 +62,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "markers": {},
         "bodies": {},
         **sections,
+        "at_start": at_start(mechanism),
         "requests": requests.all(),
         "run": dict(RUN),
         "notes": [
