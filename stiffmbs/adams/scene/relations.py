@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...describe.spatial.number_format import plain
 from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Coupler, Joint, Numbered
 from .initial_conditions import initial_displacement
 from .mechanism import Mechanism
-from .number_format import plain
 
 SORTS = {"REVOLUTE": ROTATIONAL, "TRANSLATIONAL": TRANSLATIONAL}
 """Of the joints with one displacement."""
