@@ -14,13 +14,13 @@ from typing import Any
 
 import numpy as np
 
+from ...describe.spatial.number_format import plain
 from ..statements.bodies import Part, Vector
 from ..statements.constraints import ROTATIONAL, Joint
 from ..statements.dataset import Dataset
 from ..statements.geometry import IDENTITY
 from .coordinates import coordinate, initial_displacement
 from .mechanism import Mechanism, Place
-from .number_format import plain
 
 CONSISTENT = 1e-6
 """How far what a joint and its parts state may be apart, in m, rad, and per s."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...describe.spatial.number_format import plain
 from ..statements.constraints import ROTATIONAL, Coupler, Joint, Numbered
 from .coordinates import SORTS, coordinate, initial_displacement
 from .mechanism import Mechanism
-from .number_format import plain
 
 
 def relations(mechanism: Mechanism) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from ...describe.spatial.number_format import vector
 from ..functions.states import states
 from ..functions.translate import Translation
 from ..statements.dataset import Dataset
@@ -21,7 +22,6 @@ from .initial_conditions import notes as start_notes
 from .joints import held, joints
 from .mechanism import Mechanism
 from .motions import motions
-from .number_format import vector
 from .racks import notes as rack_notes
 from .relations import relations
 from .requests import Requests
