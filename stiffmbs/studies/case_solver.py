@@ -11,6 +11,7 @@ import numpy as np
 
 from ..describe.files.unchanged import Unchanged
 from ..describe.files.written_scene import WrittenScene
+from ..describe.other_forces import OtherForces
 from ..describe.scene import Scene, made_scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
@@ -81,6 +82,7 @@ class CaseSolver:
     def __init__(self, task: Task) -> None:
         self._task = task
         self._unchanged = Unchanged()
+        self._other_forces: OtherForces | None = None
         self._jobs: list[Job] = []
 
     def scene(self, values: Sequence[Any]) -> Scene:
@@ -91,10 +93,16 @@ class CaseSolver:
         InputError
             When a value does not fit.
         """
+        found = self._other_forces.scene(values) if self._other_forces and len(values) else None
+        if found is not None:
+            return found
         written, names = self._task.scene, self._task.names
         content = copy.deepcopy(dict(written.content))
         changes = (*written.changes, *zip(names, values, strict=True))
-        return made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+        scene = made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+        if self._other_forces is None:
+            self._other_forces = OtherForces(written, names, self._unchanged)
+        return scene
 
     def solution(self, values: Sequence[Any]) -> Solution:
         """The solution of a case; errors as for `stiffmbs.run`."""
