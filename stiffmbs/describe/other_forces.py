@@ -39,8 +39,8 @@ class OtherForces:
     def __init__(self, written: WrittenScene, names: Sequence[str], unchanged: Unchanged) -> None:
         self._names, self._unchanged = names, unchanged
         self._content = unshared(copy.deepcopy(dict(written.content)))
-        changed = [(path, None) for path, _ in written.changes] + [(name, None) for name in names]
-        self._replaced = replaced_parameters(self._content, changed)
+        replaced = [(name, None) for name in (*(path for path, _ in written.changes), *names)]
+        self._replaced = replaced_parameters(self._content, replaced)
         self._affected = self._found(written)
 
     def _found(self, written: WrittenScene) -> frozenset[str] | None:
@@ -61,7 +61,7 @@ class OtherForces:
                 own.add(force)
             else:
                 return None
-        changed |= {name for name in _following(parameters, changed)}
+        changed |= _following(parameters, changed)
         if any(names_in({key: entry}) & changed for key, entry in content.items() if key not in (PARAMETERS, FORCES)):
             return None
         forces = content.get(FORCES) or {}

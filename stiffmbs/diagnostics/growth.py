@@ -45,10 +45,11 @@ def _grown(system: System, rows: OutputRows) -> str:
         return ""
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
     limit, resolved = BEYOND * system.size, RESOLVED * system.size / np.finfo(float).eps
-    furthest = max(np.max(_largest(rows.q, rows.q[0]) * of_places), 0.0)
-    fastest = max(np.max(_largest(rows.u, np.zeros_like(rows.u[0])) * of_rates), 0.0)
-    if furthest <= min(limit, resolved) and fastest <= LIGHT:  # of nearly all runs; not with nan
-        return ""
+    if (
+        _width(rows.q) * np.max(of_places, initial=0.0) <= min(limit, resolved)
+        and _width(rows.u) * np.max(of_rates) <= LIGHT
+    ):
+        return ""  # of nearly all runs; not with nan
     far, speed = np.empty(len(rows.t)), np.empty(len(rows.t))
     for block in blocks(len(rows.t)):
         far[block] = np.max(np.abs(rows.q[block] - rows.q[0]) * of_places, axis=1)
@@ -66,14 +67,13 @@ def _grown(system: System, rows: OutputRows) -> str:
     return ""
 
 
-def _largest(values: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """The largest distance of each column from its start; nan where one of its values is."""
-    found = np.zeros(values.shape[1])
+def _width(values: np.ndarray) -> float:
+    """A bound on how far any column comes from its start and from zero; nan where one of the values is."""
+    low = high = 0.0
     for block in blocks(len(values)):
-        part = values[block]
-        found = np.maximum(found, np.maximum(part.max(axis=0) - start, start - part.min(axis=0)))
+        low, high = np.minimum(low, values[block].min()), np.maximum(high, values[block].max())
         release(values)
-    return found
+    return float(high - low)
 
 
 def _connected(system: System) -> bool:

@@ -18,7 +18,7 @@ from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
-from .storage import allocated, blocks, release
+from .storage import all_finite, allocated, blocks, release
 
 T = TypeVar("T")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS = together(
@@ -63,6 +63,14 @@ class OutputRows:
     velocity_violation: np.ndarray
     drift: np.ndarray
     status: int
+
+    @property
+    def finite(self) -> bool:
+        """Whether every instant has all values: nothing that channels are made of is nan or infinite."""
+        return all_finite(
+            self.q, self.u, self.acceleration, self.values, self.kinetic, self.potential, self.position_violation,
+            self.velocity_violation,
+        )  # fmt: skip
 
 
 class Dynamics:

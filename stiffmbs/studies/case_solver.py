@@ -84,6 +84,7 @@ class CaseSolver:
         self._unchanged = Unchanged()
         self._other_forces: OtherForces | None = None
         self._jobs: list[Job] = []
+        self._of_scene = self._changed = RunSettings()
 
     def scene(self, values: Sequence[Any]) -> Scene:
         """The scene of a case.
@@ -128,6 +129,12 @@ class CaseSolver:
         told = "; ".join(([] if done else [solution.message]) + list(solution.notes))
         return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs)
 
+    def _settings(self, of_scene: RunSettings) -> RunSettings:
+        """Those of a scene with the task's changes, checked once as long as the scene's are the same."""
+        if self._of_scene is not of_scene:
+            self._of_scene, self._changed = of_scene, changed(of_scene, dict(self._task.settings))
+        return self._changed
+
     def job(self, scene: Scene, settings: RunSettings | None = None) -> Job:
         """A job for a scene: one of the same structure with other numbers, or a new one; errors as for `stiffmbs.run`.
 
@@ -137,7 +144,7 @@ class CaseSolver:
         settings : RunSettings, optional
             Those of the scene with the task's changes by default.
         """
-        settings = settings or changed(scene.run, dict(self._task.settings))
+        settings = settings or self._settings(scene.run)
         for k, known in enumerate(self._jobs):
             if known.settings == settings:
                 found = renumbered(known, scene)
