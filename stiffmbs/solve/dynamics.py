@@ -155,6 +155,12 @@ class Dynamics:
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end = np.nan, np.nan, None
 
+    def take_input_features(self, other: Dynamics) -> None:
+        """Take over the features of inputs of another system where these stand in the very same elements."""
+        own, others = ([*dynamics.system.elements_with_inputs()] for dynamics in (self, other))
+        if len(own) == len(others) and all(one is another for one, another in zip(own, others, strict=True)):
+            self._features, self._input_end = other._features, other._input_end
+
     def return_to_start(self) -> None:
         """Put the state to the system's start, as described, without multipliers and relaxation: as it is when new."""
         state, system = self.state, self.system

@@ -152,9 +152,12 @@ class CaseSolver:
                     self._jobs.insert(0, found)
                     del self._jobs[k + 1]
                     return found
-        self._jobs.insert(0, prepare(scene, settings))
+        found = prepare(scene, settings)
+        for known in self._jobs:
+            found.dynamics.take_input_features(known.dynamics)
+        self._jobs.insert(0, found)
         del self._jobs[MOST_STRUCTURES:]
-        return self._jobs[0]
+        return found
 
 
 def _kept(output: Output, solution: Solution, done: bool) -> float | np.ndarray:
