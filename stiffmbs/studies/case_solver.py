@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ..describe.files.other_forces import OtherForces
 from ..describe.files.unchanged import Unchanged
 from ..describe.files.written_scene import WrittenScene
-from ..describe.other_forces import OtherForces
 from ..describe.scene import Scene, made_scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError

@@ -4,8 +4,8 @@ import copy
 
 import pytest
 
+from stiffmbs.describe.files.other_forces import OtherForces
 from stiffmbs.describe.files.unchanged import Unchanged
-from stiffmbs.describe.other_forces import OtherForces
 from stiffmbs.describe.scene import made_scene, read_scene
 from stiffmbs.studies.case_solver import written_scene
 

@@ -12,12 +12,12 @@ from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
-from ..errors import InputError
-from .files.expand import read_parameters, replaced_parameters, set_value, unshared
-from .files.unchanged import Unchanged, names_in
-from .files.written_scene import WrittenScene
-from .parts.options import CHOOSE, OPTIONS
-from .scene import Scene
+from ...errors import InputError
+from ..parts.options import CHOOSE, OPTIONS
+from ..scene import Scene
+from .expand import read_parameters, replaced_parameters, set_value, unshared
+from .unchanged import Unchanged, names_in
+from .written_scene import WrittenScene
 
 PARAMETERS, FORCES = "parameters", "forces"
 NOT_AS_WRITTEN = ("use", "stages", OPTIONS, CHOOSE)
