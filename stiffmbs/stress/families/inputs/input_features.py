@@ -47,7 +47,7 @@ def _seen(
     name: str, force: str, impulse: float, tables: dict[str, Any] | None = None, allowed: float = 1e-4, **how: Any
 ) -> tuple[Any, ...]:
     """By both integrators, and by `auto`, which is not quick."""
-    solvers = {
+    solvers: dict[str, dict[str, Any]] = {
         "bdf": {"solver": "bdf"},
         "auto": {"solver": "auto", "quick": False},
         "dopri5": {"solver": "projected", "scheme": "dopri5"},
