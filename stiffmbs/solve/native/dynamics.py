@@ -24,6 +24,7 @@ from stiffmbs.compile.machine.native.evaluate import (
 )
 from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
 from stiffmbs.compile.machine.native.orientation import take_unit_length
+from stiffmbs.solve.native.long_steps import contradicts
 from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NO_STATE, NOT_FINITE, SINGULAR
 
 MOST_MOVES = 20
@@ -216,6 +217,33 @@ def accelerate(t, acceleration, dynamics):
     for k in range(s.n_u):
         acceleration[k] = factors_view(m.acceleration_factors).b[k]
     return status
+
+
+def contradicting(count, begin, end, apart, q, u, mass, rtol, atol, part, tolerances, rate, found, dynamics):
+    """Which of `count` steps have accelerations in their middle that contradict their polynomial; how many.
+
+    States (n_q, n_u numbers) are given twice a step, so far apart as a part of it on both sides of its middle; `rate` is memory.
+    Where accelerations have no solution they contradict.
+    """
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    total = 0
+    for step in range(count):
+        h = end[step] - begin[step]
+        first, second = shifted(q, 2 * step * s.n_q), shifted(q, (2 * step + 1) * s.n_q)
+        for k in range(s.n_q):
+            s.q[k] = 0.5 * (first[k] + second[k])
+        first, second = shifted(u, 2 * step * s.n_u), shifted(u, (2 * step + 1) * s.n_u)
+        for k in range(s.n_u):
+            s.u[k] = 0.5 * (first[k] + second[k])
+            rate[k] = (second[k] - first[k]) / (2.0 * apart * h)
+        solved = to_accelerations(s, m, 0.5 * (begin[step] + end[step])) >= 0
+        acceleration = factors_view(m.acceleration_factors).b
+        found[step] = 0
+        if not solved or contradicts(h, acceleration, rate, s.u, mass, rtol, atol, part, tolerances, s.n_u):
+            found[step] = 1
+            total += 1
+    return total
 
 
 @compiled
