@@ -6,7 +6,7 @@ import ast
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..scene.number_format import plain, vector
+from ...describe.spatial.number_format import plain, vector
 from ..statements.outputs import Array, Variable
 from ..statements.systems import Differential, LinearSystem, Matrix, TransferFunction
 from .function import Function
