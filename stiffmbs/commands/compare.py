@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from ..describe.settings import SchemeName
+from ..describe.solver_names import SchemeName
 from ..errors import InputError, StiffmbsError
 from ..jobs.load_scene import load_scene
 from .ranges import numbers_in, values_in
