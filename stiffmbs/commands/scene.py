@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, get_args
 import click
 
 from ..describe.files.text_file import STANDARD_INPUT, source_name
-from ..describe.solver_names import SchemeName, SolverName
 from ..errors import AssemblyError, InputError, SolverError, StiffmbsError
+from ..solver_names import SchemeName, SolverName
 
 if TYPE_CHECKING:
     from ..describe.scene import Scene

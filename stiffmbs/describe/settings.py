@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, U
 
 from pydantic import Field, model_validator
 
+from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 from .fields import Described, Measured
 from .given import Number
-from .solver_names import CHOICES, FormulationName, SchemeName, SolverName
 from .units import si
 
 MOST_OUTPUTS = 10_000_000
