@@ -46,10 +46,10 @@ def test_installed_examples_are_found_by_the_record_of_the_installation(tmp_path
     (tmp_path / "share/stiffmbs/examples/one.yaml").write_text("# One. Two.\n")
     recorded = ["stiffmbs/a.py", "share/stiffmbs/examples/parts/p.yaml", "share/stiffmbs/examples/one.yaml"]
     monkeypatch.setattr(shipped, "__file__", str(tmp_path / "stiffmbs/commands/starting/shipped.py"))
-    monkeypatch.setattr(shipped, "files", lambda _: [File(name) for name in recorded])
+    monkeypatch.setattr("importlib.metadata.files", lambda _: [File(name) for name in recorded])
     assert shipped.examples_folder() == tmp_path / "share/stiffmbs/examples"
     assert shipped.first_words(shipped.scene_file("one.yaml")) == "One"
-    monkeypatch.setattr(shipped, "files", lambda _: None)
+    monkeypatch.setattr("importlib.metadata.files", lambda _: None)
     with pytest.raises(shipped.InputError, match="found no examples"):
         shipped.examples_folder()
 
