@@ -88,7 +88,7 @@ def test_the_first_scene_runs_and_is_not_written_over(call):
 
 def test_versions_are_those_of_what_a_plain_run_needs(call, monkeypatch):
     stated = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
-    monkeypatch.setattr(version, "requires", lambda _: [*stated, 'furo>=2024.8; extra == "docs"'])
+    monkeypatch.setattr("importlib.metadata.requires", lambda _: [*stated, 'furo>=2024.8; extra == "docs"'])
     needed = {re.match(r"[\w.-]+", text)[0] for text in stated}
     found = json.loads(call("version", "--json").output)
     assert {"stiffmbs", "python", "platform", *needed} == found.keys()
