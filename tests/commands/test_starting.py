@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
-from stiffmbs.commands.starting import shipped, version
+from stiffmbs.commands.starting import shipped
 from stiffmbs.commands.starting.init import FIRST_SCENE
 
 ROOT = Path(__file__).parents[2]
