@@ -151,7 +151,13 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         return replace(
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
         )
-    start = initial_values(dynamics, t)
+    if isinstance(data, Scene) and data.at_start:
+        from .held_at_start import hold_at_start
+
+        hold_at_start(dynamics, data, t)
+        start = initial_values(dynamics, t).as_asked_by([*data.at_start])
+    else:
+        start = initial_values(dynamics, t)
     asked = data.start if isinstance(data, Scene) else "described"
     if isinstance(asked, SteadyMotion):
         from .steady import settled_in_motion

@@ -156,7 +156,7 @@ def _first_change(x, c, s, high):
 
 
 @compiled
-def _retaken(x, c, s, m, h):
+def retaken(x, c, s, m, h):
     """The step again with another length; 0 or a negative status."""
     status = attempt(x, c, s, m, h)
     if status < 0:
@@ -192,7 +192,7 @@ def _taken_to_change(x, c, s, m, high, behind):
         first = _first_change(x, c, s, high)
         if not changed and first <= x.span + 2.0 * behind:
             return 0
-        status = _retaken(x, c, s, m, max(first - behind, 0.5 * first))
+        status = retaken(x, c, s, m, max(first - behind, 0.5 * first))
         if status < 0:
             return status
         changed = _changed(x, _values(x, s, x.y, x.t))
@@ -217,7 +217,7 @@ def _taken_to_event(x, c, s, m, h, behind):
         return 0 if changed else NO_EVENT
     if within < 0.0:
         return int(within)
-    return RETRIED if within == h else _retaken(x, c, s, m, max(within - behind, 0.5 * within))
+    return RETRIED if within == h else retaken(x, c, s, m, max(within - behind, 0.5 * within))
 
 
 def end_at_event(explicit):
