@@ -12,8 +12,8 @@ from functools import partial
 
 import numpy as np
 
-from ...describe.formula.field import TIME, reading_order
 from ...describe.formula.functions import EACH, IN_FORMULAS, Breakpoints
+from ...describe.formula.nodes import TIME, reading_order
 from ...errors import InputError
 from .of_time import Input
 from .zeros import AT_ONCE, ZERO, TooMany, zeros
