@@ -223,8 +223,8 @@ def made_scene(
         scene = _validated(found, replaced, in_parts, chosen, folder, unchanged)
     except _Located as error:
         message = as_written(str(error), parts)
-        path = error.path if message == str(error) else ("parts", *error.path[1:])
-        where = _place(error.path, changes, lambda _: line_of(path))
+        there = error.path if message == str(error) else ("parts", *error.path[1:])
+        where = _place(error.path, changes, lambda _: line_of(there))
         raise InputError(f"{source}, {where}{message}") from None
     scene._written = scene_as_written
     if scene.stages:
