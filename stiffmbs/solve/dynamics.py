@@ -18,7 +18,7 @@ from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
-from .storage import allocated, blocks, release
+from .storage import all_finite, allocated, blocks, release
 
 T = TypeVar("T")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, CONTRADICTING, OUTPUT_POINTS = together(
@@ -64,6 +64,14 @@ class OutputRows:
     velocity_violation: np.ndarray
     drift: np.ndarray
     status: int
+
+    @property
+    def finite(self) -> bool:
+        """Whether every instant has all values: nothing that channels are made of is nan or infinite."""
+        return all_finite(
+            self.q, self.u, self.acceleration, self.values, self.kinetic, self.potential, self.position_violation,
+            self.velocity_violation,
+        )  # fmt: skip
 
 
 class Dynamics:
@@ -147,6 +155,12 @@ class Dynamics:
         """Have the features of inputs sought anew, as formulas of time were changed in place."""
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end = np.nan, np.nan, None
+
+    def take_input_features(self, other: Dynamics) -> None:
+        """Take over the features of inputs of another system where these stand in the very same elements."""
+        own, others = ([*dynamics.system.elements_with_inputs()] for dynamics in (self, other))
+        if len(own) == len(others) and all(one is another for one, another in zip(own, others, strict=True)):
+            self._features, self._input_end = other._features, other._input_end
 
     def return_to_start(self) -> None:
         """Put the state to the system's start, as described, without multipliers and relaxation: as it is when new."""

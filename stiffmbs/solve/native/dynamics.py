@@ -258,11 +258,12 @@ def _led_astray(s, q, violation):
 @compiled
 def _output_point(s, m, t, q, project, tolerance, largest):
     """Bring the state, from coordinates q, back to the constraints where asked, then accelerations, multipliers and output terms."""
-    largest[2] = 0.0
+    for k in range(3):
+        largest[k] = 0.0
     take_unit_length(s)
     for k in range(s.n_q):
         q[k] = s.q[k]
-    if project:
+    if project and s.n_c > 0:
         largest[2] = _largest_violation(s, evaluate(s, POSITION, t))
         status = to_position_constraints(s, m, t, tolerance, MOST_MOVES)
         if status < 0:
@@ -272,9 +273,10 @@ def _output_point(s, m, t, q, project, tolerance, largest):
         status = to_velocity_constraints(s, m, t)
         if status < 0:
             return status
-    values = evaluate(s, MOTION, t)
-    largest[0] = _largest_violation(s, values)
-    largest[1] = _largest_violation(s, shifted(values, s.n_c))
+    if s.n_c > 0:
+        values = evaluate(s, MOTION, t)
+        largest[0] = _largest_violation(s, values)
+        largest[1] = _largest_violation(s, shifted(values, s.n_c))
     status = to_accelerations(s, m, t)
     if status < 0:
         return status
