@@ -43,7 +43,9 @@ class AxleOnRig:
             curve = CubicSpline(1e-3 * bump.abscissa, bump.channels[f"left.{channel}"])(np.array([0, lift]), 1)
             return slope("roll", channel, 1e-3) + curve[1] - curve[0]
 
-        self.track, self.tyre, self.load, self.radius = track, tyre, load, radius
+        self.track, self.tyre, self.load, self.radius, self.lift = track, tyre, load, radius, lift
+        bump = found.sweeps["bump"]
+        self.toe = CubicSpline(1e-3 * bump.abscissa, np.radians(bump.channels["left.toe"]))
         self.rate, self.jacking = in_roll("load"), slope("lateral_parallel", "load", 1e3)
         self.centre = 1e-3 * in_roll("lateral") * track / 2  # height of the roll centre
         self.aside = 1e-3 * slope("lateral_parallel", "lateral", 1e3)
@@ -93,10 +95,15 @@ class AxleOnRig:
         """
         shifted, travel = self.shifted(roll, force, self.overturning(force, gyroscopic))
         camber = roll + self.roll_camber * travel + self.force_camber * force / 2
+        apart = (
+            float(self.toe(self.lift + travel) + self.toe(self.lift - travel)) / 2
+        )  # slip angle of the left wheel, by toe
         loads = np.array([self.load - shifted, self.load + shifted])
 
         def of(angle):
-            return self.tyre.wrench(loads, slip_angle=angle, camber=camber, speed=speed)
+            return self.tyre.wrench(
+                loads, slip_angle=np.array([angle + apart, angle - apart]), camber=camber, speed=speed
+            )
 
         angle = brentq(lambda alpha: np.sum(of(alpha)["lateral"]) - force, -0.3, 0.3, xtol=LITTLE)
         forces, torques = of(angle)["lateral"], of(angle)["aligning"]

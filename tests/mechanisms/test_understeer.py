@@ -11,7 +11,7 @@ from ..conftest import EXAMPLES
 from .bicycle import AxleOnRig, Car, turning
 
 WHEELBASE, TRACK = 2.7, 1.52
-RADIUS, ACCELERATIONS = 100.0, (0.5, 1.0, 2.0, 3.0, 4.0)
+RADIUS, ACCELERATIONS = 100.0, (0.5, 1.0, 1.5, 2.0, 2.5)
 
 
 def car(word, *changes):
@@ -44,7 +44,7 @@ def by_axles(word):
     tyre, axles, steer = TyreProperties.from_file(EXAMPLES / "car.tir"), [], None
     for name in ("front", "rear"):
         rig = stiffmbs.kinematics_and_compliance(
-            scene, name, bump=20, steer=10, lateral=0, brake=0, traction=0, aligning=0
+            scene, name, bump=50, steer=10, lateral=0, brake=0, traction=0, aligning=0
         )
         wheel, load = rest[f"{name}.left.wheel.z"], rest[f"{name}.left.tyre.load"]
         axles.append(AxleOnRig(rig, TRACK, tyre, load, wheel, lift=wheel - 0.30 - (rest["chassis.z"] - 0.55)))
@@ -71,8 +71,7 @@ def test_the_understeer_gradient_is_that_of_the_axles(word):
     measured, expected = (
         gradient(accelerations, angle - WHEELBASE / radii) for angle in (steer(racks), np.array(turns))
     )
-    assert measured == pytest.approx(expected, rel=0.06)
-    print(f"{word}: {measured:.3e} on the circle, {expected:.3e} by the axles")
+    assert measured == pytest.approx(expected, rel=0.05)
     by_tyres = [
         vehicle.mass * share / WHEELBASE / 2 / stiffness(axle)
         for axle, share in zip(axles, (vehicle.to_rear, vehicle.to_front), strict=True)
