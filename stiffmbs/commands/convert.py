@@ -10,11 +10,17 @@ import click
 from ..errors import InputError, StiffmbsError
 from .scene import CHANGES, STOPPED_EARLY, refuse, refuse_own_input
 
+DATASET = ".adm"
 
-@click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene.")
+
+@click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene; or a scene as a dataset.")
 @click.argument("scene")
 @click.option(
-    "-o", "--output", "output", type=click.Path(path_type=Path), help="The scene file; standard output without."
+    "-o",
+    "--output",
+    "output",
+    type=click.Path(path_type=Path),
+    help="The scene file, or a dataset where it ends in .adm; standard output without.",
 )
 @click.option("--in-space", is_flag=True, help="Take a planar SCENE, and write it in the x-y plane of space.")
 @click.option(
@@ -30,24 +36,56 @@ def convert(
 ) -> None:
     """Write the scene that an Adams/Solver dataset (.adm) or a robot (URDF, MJCF) is run as, or a planar scene in space.
 
+    Where OUTPUT ends in .adm, any of these is written as a dataset, and a command file (.acf) with its run is put beside it.
+
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
     try:
         if output is not None:
             refuse_own_input("-o", scene, output)
-        text = _in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
+        if output is not None and output.suffix.lower() == DATASET:
+            texts = _as_dataset(scene, output, coordinates, changes)
+        else:
+            text = _in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
+            texts = {output: text}
     except StiffmbsError as error:
         refuse(scene, error)
-    if output is None:
+    for path, text in texts.items():
+        _write(path, text)
+
+
+def _write(path: Path | None, text: str) -> None:
+    if path is None:
         click.echo(text, nl=False)
         return
     from ..results import files
 
     try:
-        files.written_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+        files.written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
     except OSError as error:
-        click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
+        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
         sys.exit(STOPPED_EARLY)
+
+
+def _as_dataset(
+    path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
+) -> dict[Path | None, str]:
+    """A dataset and its command file, by the names that they get."""
+    from ..adams.export.dataset_text import command_text, dataset_text
+    from ..adams.load import COMMANDS
+    from ..describe.spatial.scene import SpatialScene
+    from ..jobs.in_space import in_space
+    from ..jobs.load_scene import ROBOTS, load_scene
+    from ..robots.load import load_robot
+
+    beside = output.with_suffix(COMMANDS)
+    refuse_own_input("-o", path, beside)
+    if coordinates and Path(path).suffix.lower() in ROBOTS:
+        scene = load_robot(path, changes, coordinates=dict(map(_coordinate, coordinates)))
+    else:
+        scene = load_scene(path, changes)
+    spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
+    return {output: dataset_text(spatial, path), beside: command_text(spatial)}
 
 
 def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:

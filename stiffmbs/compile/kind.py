@@ -308,11 +308,15 @@ class _FormulaShape(ast.NodeTransformer):
         return ast.unparse(self.visit(copy.deepcopy(self.formula.tree)))
 
     def _read_once(self) -> str:
-        """The same of a formula without states, kept with it: studies compile the same formulas again and again."""
-        if TAKEN_OUT not in self.formula.kept:
+        """The same of a formula without states, kept with it: studies compile the same formulas again and again.
+
+        The slots of bodies follow from those that an element has before.
+        """
+        kept, before = self.formula.kept, (TAKEN_OUT, tuple(self.data.bodies))
+        if before not in kept:
             text = self._read()
-            self.formula.kept[TAKEN_OUT] = text, self.numbers, self.measures, self.tables, self.reactions
-        text, self.numbers, self.measures, self.tables, self.reactions = self.formula.kept[TAKEN_OUT]
+            kept[before] = text, list(self.data.bodies), self.numbers, self.measures, self.tables, self.reactions
+        text, self.data.bodies, self.numbers, self.measures, self.tables, self.reactions = map(copy.copy, kept[before])
         return str(text)
 
     def visit(self, node: ast.AST) -> Any:

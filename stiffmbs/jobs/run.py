@@ -81,6 +81,11 @@ class Job:
         """Whether states are on the constraints but for the tolerance."""
         return near_constraints(self.settings)
 
+    def evaluations(self) -> int:
+        """How often the equations of the system and of its parts were evaluated so far."""
+        parts = (self.dynamics, *(subsystem.dynamics for subsystem in self.subsystems))
+        return sum(dynamics.state.evaluations for dynamics in parts)
+
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver].solve, watch or unwatched

@@ -100,8 +100,8 @@ class Formula:
         return [(node.func.id, joint_of(node)) for node in calls]  # type: ignore[attr-defined]
 
     @cached_property
-    def kept(self) -> dict[str, Any]:
-        """What is worked out of it once, under the name of what it is; nothing at first."""
+    def kept(self) -> dict[Any, Any]:
+        """What is worked out of it once, by what it is; nothing at first."""
         return {}
 
     def bodies(self) -> Iterator[str]:
