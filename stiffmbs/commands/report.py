@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..describe.files.text_file import STANDARD_INPUT, file_text
-from ..describe.scene import Scene
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
 from .scene import (  # fmt: skip
@@ -25,6 +24,7 @@ from .scene import (  # fmt: skip
 )
 
 if TYPE_CHECKING:
+    from ..describe.scene import Scene
     from ..results.solution import Solution
     from ..show.sections import Section
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
-from ..describe.scene import Scene, read_scene
+
+if TYPE_CHECKING:
+    from ..describe.scene import Scene
 
 DATASET = ".adm"
 """How the name of an Adams/Solver dataset ends."""
@@ -44,5 +47,7 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
+    from ..describe.scene import read_scene
+
     file = None if str(path) == STANDARD_INPUT else Path(path)
     return read_scene(file_text(path), changes, source_name(path), file)
