@@ -1,0 +1,89 @@
+"""Cars on manoeuvres of 10 s, on bushings and on ideal joints, by `bdf`, `dop853` and `auto`; `bdf` beside what its kernels take alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ...describe.model_data import ModelData
+from ...jobs.run import prepare
+from ..benchmark import Row
+from ..drives import CARS, SOLVERS, Car, Seen, converged, seen
+from ..turns import seconds_of
+from .linear_algebra import kernel_seconds
+
+RTOLS, ROUNDS = (1e-4, 1e-6), 3
+STIFFNESSES = ("1e6", "1e7", "1e8", "1e9")
+"""Radial, of the suspensions' bushings, N/m."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A car on one of its manoeuvres; errors are against dop853 at a far tighter tolerance.
+
+    Forces are those of all bushings, relative to the largest of them.
+    """
+
+    car: Car
+    manoeuvre: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.car.name}_{self.manoeuvre}"
+
+    def measured(self) -> list[Row]:
+        """The shortest of repeated solutions, set-up left out."""
+        return self._rows(RTOLS, ROUNDS)
+
+    def glanced(self) -> list[Row]:
+        """One solution each, at the tighter tolerance."""
+        return self._rows(RTOLS[1:], 1)
+
+    def _rows(self, rtols: Sequence[float], rounds: int) -> list[Row]:
+        model = self.car.model(self.manoeuvre)
+        exact = converged(model)
+        return [row for rtol in rtols for solver in SOLVERS for row in _rows(model, solver, rtol, exact, rounds)]
+
+
+@dataclass(frozen=True)
+class OverStiffness:
+    """A manoeuvre with stiffer and stiffer bushings, by `bdf`; errors are against a tighter tolerance."""
+
+    car: Car
+    manoeuvre: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.car.name}_{self.manoeuvre}_over_stiffness"
+
+    def measured(self) -> list[Row]:
+        """The shortest of repeated solutions, set-up left out."""
+        return [row for stiffness in STIFFNESSES for row in self._rows(stiffness, ROUNDS)]
+
+    def glanced(self) -> list[Row]:
+        """One solution with the softest bushings."""
+        return list(self._rows(STIFFNESSES[0], 1))
+
+    def _rows(self, stiffness: str, rounds: int) -> Iterator[Row]:
+        model = self.car.model(self.manoeuvre, **{self.car.stiffness: stiffness})
+        exact = seen(model, prepare(model, rtol=RTOLS[1], **SOLVERS["bdf"]))
+        for row in _rows(model, "bdf", RTOLS[0], exact, rounds):
+            yield Row(row.solver, f"{stiffness} N/m, {row.setting}", row.error, row.seconds, row.peer)
+
+
+def _rows(model: ModelData, solver: str, rtol: float, exact: Seen, rounds: int) -> Iterator[Row]:
+    """A row for each quantity, with the number of steps, and for `bdf` how many times as long as its kernels alone it takes."""
+    job = prepare(model, rtol=rtol, **SOLVERS[solver])
+    timed = [seconds_of(job.integrate) for _ in range(rounds)]
+    seconds, trajectory = min(seconds for seconds, _ in timed), timed[0][1]
+    setting = f"rtol {rtol:.0e}, {trajectory.statistics['steps']} steps"
+    if solver == "bdf":
+        setting += f", {seconds / kernel_seconds(job, trajectory):.1f} times its kernels"
+    for quantity, error in seen(model, job).errors(exact).items():
+        yield Row(f"{solver}: {quantity}", setting, error, seconds, False)
+
+
+BENCHMARKS = (
+    *(Drive(car, manoeuvre) for car in reversed(CARS) for manoeuvre in car.manoeuvres),
+    *(OverStiffness(car, "sweep") for car in CARS if car.stiffness),
+)
