@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from ..solve.trajectory import Outcome
 from .error_control import EXAMPLES
 
 SCENES = Path(__file__).parent / "scenes"
-SOLVERS: dict[str, dict[str, str]] = {
+SOLVERS: dict[str, dict[str, Any]] = {
     "bdf": {"solver": "bdf"},
     "dop853": {"solver": "projected", "scheme": "dop853"},
     "auto": {"solver": "auto"},
