@@ -25,6 +25,7 @@ from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows,
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
+from .stable_step import StableStep
 
 ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)")
 WORTH_TELLING = 0.1
@@ -73,6 +74,7 @@ class AdaptiveRun:
         self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
         work.step_bound.follow(features)
         self._tolerances = settings.rtol, work.atol
+        self._stable_step = StableStep(scheme, dynamics)
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present segment
@@ -122,9 +124,11 @@ class AdaptiveRun:
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
+        stable_step = self._stable_step
         while status == PAUSED:
             held = max(1, most // SOON) if leaving else most
-            status = advance(stop, most, held, self._grid.times is None, work.at)
+            wait = stable_step.wait(work)
+            status = advance(stop, min(most, wait), held, self._grid.times is None, work.at)
             work.collect(self._rows)
             if is_logged():
                 log_step(work.t, work.h)
@@ -133,6 +137,9 @@ class AdaptiveRun:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
+                stable_step.look(work, stop)
+                if wait < most:
+                    continue
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.capacity) if leaving else most
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
@@ -140,6 +147,7 @@ class AdaptiveRun:
                 return status
         if status == AT_EVENT and work.t < self._grid.end:
             event_function = self._start_anew()
+            self._stable_step.begin_behind_event(work)
             self._events += 1
             self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
         return status
@@ -151,6 +159,7 @@ class AdaptiveRun:
         self.work.t = min(just_after(breakpoint), self._grid.end)
         before = self.work.u.copy()
         self._start_anew()
+        self._stable_step.begin_behind_breakpoint(self.work)
         self._jumps.note(breakpoint, self._start.u - before)
 
     def _start_anew(self) -> int:

@@ -35,7 +35,10 @@ number of the state: some ten minutes."""
 
 @compiled
 def _watch_stiffness(x, c, h):
-    """Count steps whose h |lambda|, seen from two stages at the step's end, is beyond what accuracy alone allows."""
+    """Count steps that stability bounds, or whose h |lambda|, seen from two stages at the step's end, is beyond what accuracy alone allows."""
+    if x.h > x.stable:
+        x.stiff_steps += 1
+        return
     k_end = shifted(x.k, c.stages * x.n)
     k_last = shifted(x.k, (c.stages - 1) * x.n)
     rate = 0.0
@@ -76,7 +79,7 @@ def _step(x, c, s, m, end):
     """One accepted step, as long as the error allows; 0 or a negative status (the state is then as before)."""
     _depart(x, c)
     t = x.t
-    h = min(x.h, x.longest)
+    h = min(x.h, x.longest, x.stable)
     bound = step_bound_view(x.step_bound)
     if bound.n > 0:
         h = min(h, longest_step(bound, t))
