@@ -18,7 +18,7 @@ from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
-from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED
+from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED, UNSTABLE
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
@@ -125,32 +125,42 @@ class AdaptiveRun:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
         stable_step = self._stable_step
+        stable_step.begin(work)
+        look_at, held_at = self._begun + most, work.count("stiff_steps") + self._held(most, leaving)
         while status == PAUSED:
-            held = max(1, most // SOON) if leaving else most
-            wait = stable_step.wait(work)
-            status = advance(stop, min(most, wait), held, self._grid.times is None, work.at)
+            wait = min(look_at - work.count("steps"), stable_step.wait(work))
+            status = advance(stop, wait, held_at - work.count("stiff_steps"), self._grid.times is None, work.at)
             work.collect(self._rows)
             if is_logged():
                 log_step(work.t, work.h)
             self._watch(work.t)
             if work.t < self._grid.end:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))
+            if status == UNSTABLE:
+                stable_step.ask(work, stop)
+                status = PAUSED
+                continue
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
                 stable_step.look(work, stop)
-                if wait < most:
+                if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
                     continue
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.capacity) if leaving else most
+            look_at, held_at = work.count("steps") + most, work.count("stiff_steps") + self._held(most, leaving)
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
                 self._store_rows()
                 return status
         if status == AT_EVENT and work.t < self._grid.end:
             event_function = self._start_anew()
-            self._stable_step.begin_behind_event(work)
             self._events += 1
             self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
         return status
+
+    @staticmethod
+    def _held(most: int, leaving: Leaving | None) -> int:
+        """Steps that stability must hold back for a look before so many are taken."""
+        return max(1, most // SOON) if leaving else most
 
     def _go_past(self, breakpoint: float) -> None:
         """Start anew behind a breakpoint, where min(2*t, 1) has its new slope; what is asked for at it is the state before."""
@@ -159,7 +169,6 @@ class AdaptiveRun:
         self.work.t = min(just_after(breakpoint), self._grid.end)
         before = self.work.u.copy()
         self._start_anew()
-        self._stable_step.begin_behind_breakpoint(self.work)
         self._jumps.note(breakpoint, self._start.u - before)
 
     def _start_anew(self) -> int:
