@@ -137,12 +137,12 @@ class AdaptiveRun:
             if work.t < self._grid.end:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))
             if status == UNSTABLE:
-                stable_step.ask(work, stop)
+                stable_step.ask(work, self._grid.end)
                 status = PAUSED
                 continue
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
-                stable_step.look(work, stop)
+                stable_step.look(work, self._grid.end)
                 if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
                     continue
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.capacity) if leaving else most

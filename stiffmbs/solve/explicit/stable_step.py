@@ -14,7 +14,7 @@ from .scheme import Scheme
 
 SOON, LONGER, MOST_APART = 8, 8, 512
 """Steps between the first two looks at a bound, which may belong to a pose that is soon left; times how many from one to the next, up to that."""
-WORTH = 500
+WORTH = 128
 """Steps that must be left for one more, which the rate costs, to be hardly felt."""
 NOT_ASKED, UNBOUNDED = 0.0, float("inf")
 
@@ -34,17 +34,19 @@ class StableStep:
 
     def wait(self, work: Integration) -> int:
         """Steps up to the next look, at the most."""
-        return max(1, self._next - work.count("steps")) if NOT_ASKED < work.stable < UNBOUNDED else work.capacity
+        return work.capacity if work.stable == NOT_ASKED else max(1, self._next - work.count("steps"))
 
     def begin(self, work: Integration) -> None:
         """Forget the bound, as a force may have changed its law."""
         work.stable, self._apart = NOT_ASKED, SOON
 
     def look(self, work: Integration, end: float) -> None:
-        """Ask anew where that is due: some steps after the last time, where they have grown to the bound."""
-        if work.count("steps") < self._next:
+        """Ask anew where that is due: some steps after the last time, where they have grown to the bound, or where there was none."""
+        if work.stable == NOT_ASKED or work.count("steps") < self._next:
             return
-        if NOT_ASKED < work.stable < work.h:
+        if work.stable == UNBOUNDED:
+            work.stable = NOT_ASKED
+        elif work.stable < work.h:
             self.ask(work, end)
         else:
             self._next = work.count("steps") + self._apart
@@ -54,8 +56,12 @@ class StableStep:
 
         Beside a pose where branches of the motion meet, the rate tells of the pose alone: such steps go on without a bound.
         """
-        self._next, self._apart = work.count("steps") + self._apart, min(LONGER * self._apart, MOST_APART)
         bound, work.stable = work.stable or UNBOUNDED, UNBOUNDED
-        if end - work.t > WORTH * min(work.h, bound) and not work.count("uncertain"):
-            rate = fastest_rate(self._dynamics, work.t, work.q.copy(), work.u.copy())
-            work.stable = self._stability / rate if rate > 0 else UNBOUNDED
+        self._next = work.count("steps") + WORTH
+        if end - work.t < WORTH * min(work.h, bound) or work.count("uncertain"):
+            return
+        rate = fastest_rate(self._dynamics, work.t, work.q.copy(), work.u.copy())
+        if rate > 0:
+            work.stable = self._stability / rate
+            self._next = work.count("steps") + self._apart
+            self._apart = min(LONGER * self._apart, MOST_APART)
