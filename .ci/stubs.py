@@ -111,7 +111,7 @@ MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "",
 def stub(file: str) -> str:
     """The content of a stub, before it is formatted."""
     exports, others, module = MODULES[file]
-    elements = sorted(elements_of(*module._KINDS).items())
+    elements = sorted(elements_of(module._MODEL).items())
     imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"

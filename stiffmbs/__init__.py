@@ -15,29 +15,19 @@ quiet_while_loading()
 
 from typing import Any
 
-from .describe.body import Body
-from .describe.element import Force, Joint
-from .describe.marker import GROUND as ground
-from .describe.marker import Marker
-from .describe.model import FORCES, JOINTS, Model
-from .describe.own_elements import register
-from .describe.python_function import PythonFunction
-from .describe.scene import Scene, read_scene
-from .describe.schema import scene_schema
-from .describe.settings import RunSettings, SteadyMotion
-from .describe.states.algebraic_state import AlgebraicState
-from .describe.states.linear_system import PID, LinearSystem, TransferFunction
-from .describe.states.state import State
-from .describe.table import Table
-from .describe.units import si
 from .errors import AssemblyError, InputError, SolverError, StiffmbsError
-from .jobs.load_scene import load_scene
 from .loaded_later import elements_of, loaded
 
 __version__ = "0.1.0"
 
-_KINDS = JOINTS, FORCES
+_MODEL = ".describe.model"
 _LATER = {
+    "AlgebraicState": ".describe.states.algebraic_state", "Body": ".describe.body", "Force": ".describe.element", "Joint": ".describe.element",
+    "LinearSystem": ".describe.states.linear_system", "Marker": ".describe.marker", "Model": _MODEL, "PID": ".describe.states.linear_system",
+    "PythonFunction": ".describe.python_function", "RunSettings": ".describe.settings", "Scene": ".describe.scene", "State": ".describe.states.state",
+    "SteadyMotion": ".describe.settings", "Table": ".describe.table", "TransferFunction": ".describe.states.linear_system",
+    "ground": ".describe.marker:GROUND", "load_scene": ".jobs.load_scene", "read_scene": ".describe.scene", "register": ".describe.own_elements",
+    "scene_schema": ".describe.schema", "si": ".describe.units:si",
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "quasi_static": ".jobs.quasi_static", "modes": ".jobs.modes", "run": ".jobs.run",
@@ -52,24 +42,20 @@ _LATER = {
     "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
-"""The modules of what is loaded when it is used."""
+"""The modules of what is loaded when it is used, and its name there where that is another."""
 
-_OFFERED = (
-    "AlgebraicState", "AssemblyError", "Body", "Force", "InputError", "Joint", "LinearSystem", "Marker", "Model", "PID", "PythonFunction", "RunSettings", "Scene",
-    "SolverError", "State", "SteadyMotion", "StiffmbsError", "Table", "TransferFunction", "ground", "load_scene", "read_scene", "register", "scene_schema", "si",
-    *_LATER,
-)  # fmt: skip
+_OFFERED = "AssemblyError", "InputError", "SolverError", "StiffmbsError", *_LATER
 
 
 def __getattr__(name: str) -> Any:
     if name == "__all__":
-        return [*_OFFERED, *elements_of(*_KINDS)]
+        return [*_OFFERED, *elements_of(_MODEL)]
     if name == "spatial":
         from importlib import import_module
 
         return import_module(".spatial", __name__)
-    return loaded(name, __name__, _KINDS, _LATER)
+    return loaded(name, __name__, _MODEL, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_OFFERED, *elements_of(*_KINDS), "spatial"})
+    return sorted({*globals(), *_OFFERED, *elements_of(_MODEL), "spatial"})

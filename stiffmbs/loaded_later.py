@@ -4,28 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .describe.kinds import Kinds
+from typing import Any
 
 
-def elements_of(*kinds: Kinds) -> dict[str, type[Any]]:
-    """The classes of shipped elements by their names."""
-    return {element.__name__: element for some in kinds for element in some.shipped.values()}
+def elements_of(model: str) -> dict[str, type[Any]]:
+    """The classes of shipped elements by their names.
+
+    Parameters
+    ----------
+    model : str
+        The module of the package that holds the ``JOINTS`` and ``FORCES`` of models, beginning with a dot.
+    """
+    kinds = import_module(model, __package__)
+    return {element.__name__: element for some in (kinds.JOINTS, kinds.FORCES) for element in some.shipped.values()}
 
 
-def loaded(name: str, package: str, kinds: tuple[Kinds, ...], later: Mapping[str, str]) -> Any:
+def loaded(name: str, package: str, model: str, later: Mapping[str, str]) -> Any:
     """An attribute of a module of the package that is not there yet.
 
     Parameters
     ----------
     name, package : str
         Of the attribute, and of the module.
-    kinds : tuple of Kinds
-        The elements that it offers.
+    model : str
+        The module with the elements that it offers (`elements_of`).
     later : mapping of str to str
-        The module that defines each name, beginning with a dot.
+        The module that defines each name, beginning with a dot; behind a colon its name there, where that is another.
 
     Raises
     ------
@@ -33,8 +37,9 @@ def loaded(name: str, package: str, kinds: tuple[Kinds, ...], later: Mapping[str
         When the module does not offer it.
     """
     if name in later:
-        return getattr(import_module(later[name], __package__), name)
-    elements = {} if name.startswith("_") else elements_of(*kinds)
+        module, _, own_name = later[name].partition(":")
+        return getattr(import_module(module, __package__), own_name or name)
+    elements = {} if name.startswith("_") else elements_of(model)
     if name in elements:
         return elements[name]
     raise AttributeError(f"module '{package}' has no attribute '{name}'")

@@ -8,26 +8,22 @@ Examples
 >>> model.add("tip", Spherical(i=top.at(0, 0, -0.2), j="ground"))
 """
 
-# ruff: noqa: F401 what is imported is offered
 from typing import Any
 
-from .describe.element import Force, Joint
-from .describe.spatial.body import Body
-from .describe.spatial.marker import Marker
-from .describe.spatial.model import FORCES, JOINTS, Model
 from .loaded_later import elements_of, loaded
 
-_KINDS = JOINTS, FORCES
-_LATER = {"in_space": ".jobs.in_space"}
-
-_OFFERED = "Body", "Force", "Joint", "Marker", "Model", *_LATER
+_MODEL = ".describe.spatial.model"
+_LATER = {
+    "Body": ".describe.spatial.body", "Force": ".describe.element", "Joint": ".describe.element", "Marker": ".describe.spatial.marker",
+    "Model": _MODEL, "in_space": ".jobs.in_space",
+}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
     if name == "__all__":
-        return [*_OFFERED, *elements_of(*_KINDS)]
-    return loaded(name, __name__, _KINDS, _LATER)
+        return [*_LATER, *elements_of(_MODEL)]
+    return loaded(name, __name__, _MODEL, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_OFFERED, *elements_of(*_KINDS)})
+    return sorted({*globals(), *_LATER, *elements_of(_MODEL)})

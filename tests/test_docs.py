@@ -118,14 +118,22 @@ def test_what_a_page_shows_is_true(page, workplace):
                 read_yaml(text)
             case "python":
                 printed = run_python(text, line, page, names)
-            case "{eval-rst}" if text.startswith(PLOT):
-                code = re.sub(OPTION, "\n", text.removeprefix(PLOT))
-                run_python(dedent(code), line + 2, page, {})
             case "console" if re.match(QUICK, text):
                 found = run_command(text)
                 assert as_expected(text, found), f"{page.name}:{line}: found {found}"
             case "text" if shown is not None:
                 assert as_expected(text, shown), f"{page.name}:{line}: found {shown}"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if PLOT in page.read_text(encoding="utf-8")], ids=lambda page: page.stem
+)
+def test_figures_of_a_page_are_drawn(page, workplace):
+    for kind, text, line in blocks(page):
+        if kind == "{eval-rst}" and text.startswith(PLOT):
+            code = re.sub(OPTION, "\n", text.removeprefix(PLOT))
+            run_python(dedent(code), line + 2, page, {})
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,11 @@ import stiffmbs
 
 ROOT = Path(stiffmbs.__file__).parent
 ORDER = (
-    "describe", "adams", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
+    "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
     "bench", "comparison", "stress", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
-ANYWHERE = {"errors", "interrupts"}
+ANYWHERE = {"errors", "interrupts", "solver_names"}
 METHODS = {
     (ROOT.name, "describe", "model_builder"): {"studies", "jobs", "results", "show", "verification"},
     (ROOT.name, "describe", "model_data"): {"show"},
@@ -94,6 +94,13 @@ def test_a_planar_scene_loads_nothing_of_space():
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not found.stdout.split()
+
+
+def test_help_loads_nothing_heavy():
+    """The package, and the command with all its subcommands: what describes, computes or draws is loaded where it is used."""
+    program = "import sys, stiffmbs, stiffmbs.commands.main; print(*sys.modules)"
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert not {"numpy", "pydantic", "yaml", "sympy", "scipy", "rich"} & set(found.stdout.split())
 
 
 def test_a_warm_run_changes_package_rarely(monkeypatch):

@@ -52,7 +52,6 @@ def followed(
     unchanged = all(s.changes == segments[0].changes and s.settings == over_time[0].settings for s in over_time)
     whole = one_run([s.simulation for s in over_time], units) if unchanged else None
     if whole is not None:
-        whole = _solvable(whole, described)
         start = {"start": "equilibrium"} if settled else {}
         notes = [f"duration and output are those of {source}"]
         return {"run": whole | _in_si(over_time[0], units), **start, "notes": notes}
@@ -74,19 +73,13 @@ def _staged(
             stage |= _changed(known, now, segment)
             notes += [f"from simulation {k} on {told}" for told in segment.changes.told_since(before.changes, source)]
             known = now
-        run = _solvable(simulation.settings(time, units), known) | _in_si(segment, units)
+        run = simulation.settings(time, units) | _in_si(segment, units)
         stages.append(stage | ({"run": run} if run else {}))
         time += simulation.length(time) if simulation.takes_time else 0.0
         before = segment
     if any(segment.simulation.kind == STATICS for segment in segments[1:]):
         notes.append("all velocities are zero after a static simulation")
     return {"run": {}, "stages": stages, "notes": notes}
-
-
-def _solvable(run: dict[str, Any], described: Described) -> dict[str, Any]:
-    """The settings of a run, as of dynamics where a motion of a kinematic analysis prescribes a velocity."""
-    driven = any("velocity" in joint for joint in described[1].get("joints", {}).values())
-    return {name: value for name, value in run.items() if not (name == "solver" and driven)}
 
 
 def _in_si(segment: Segment, units: Units) -> dict[str, float]:

@@ -7,9 +7,12 @@ import sys
 
 import click
 
-from ..compile.machine.cache import DIRECTORY_VARIABLE, KERNEL, RECORD, ROUTINE, cache_directory
-
-WORDS = {RECORD: "derived kinds", KERNEL: "kernels", ROUTINE: "routines", "other": "of other versions or machines"}
+WORDS = {
+    "record": "derived kinds",
+    "kernel": "kernels",
+    "routine": "routines",
+    "other": "of other versions or machines",
+}
 
 
 @click.group()
@@ -24,6 +27,7 @@ def cache() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def show(as_json: bool) -> None:
     """Say where the cache lies and what it holds."""
+    from ..compile.machine.cache import DIRECTORY_VARIABLE, cache_directory
     from ..compile.machine.cache_contents import stored
 
     found = stored()
@@ -39,6 +43,7 @@ def show(as_json: bool) -> None:
 @cache.command()
 def clear() -> None:
     """Remove all entries; the next runs compile anew."""
+    from ..compile.machine.cache import cache_directory
     from ..compile.machine.cache_contents import clear as cleared
 
     try:
@@ -52,6 +57,7 @@ def clear() -> None:
 @cache.command(short_help="Compile all usual elements and all solvers ahead.")
 def warm() -> None:
     """Compile all kinds of elements in their usual forms and all solvers, so that first runs need not wait."""
+    from ..compile.machine.cache import KERNEL, RECORD, ROUTINE, cache_directory
     from ..compile.machine.cache_contents import stored
     from ..jobs.warm import warm as fill
 

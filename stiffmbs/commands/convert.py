@@ -10,35 +10,82 @@ import click
 from ..errors import InputError, StiffmbsError
 from .scene import CHANGES, STOPPED_EARLY, refuse, refuse_own_input
 
+DATASET = ".adm"
 
-@click.command(short_help="Write a dataset, or a planar scene, anew.")
+
+@click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene; or a scene as a dataset.")
 @click.argument("scene")
 @click.option(
-    "-o", "--output", "output", type=click.Path(path_type=Path), help="The scene file; standard output without."
+    "-o",
+    "--output",
+    "output",
+    type=click.Path(path_type=Path),
+    help="The scene file, or a dataset where it ends in .adm; standard output without.",
 )
 @click.option("--in-space", is_flag=True, help="Take a planar SCENE, and write it in the x-y plane of space.")
+@click.option(
+    "--at",
+    "coordinates",
+    multiple=True,
+    metavar="JOINT=VALUE",
+    help="Where a hinge or slide of a robot starts, rad or m; as drawn without it.",
+)
 @CHANGES
-def convert(scene: str, output: Path | None, in_space: bool, changes: list[tuple[str, str]]) -> None:
-    """Write the scene that an Adams/Solver dataset (.adm) is run as, or a planar scene in space.
+def convert(
+    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
+) -> None:
+    """Write the scene that an Adams/Solver dataset (.adm) or a robot (URDF, MJCF) is run as, or a planar scene in space.
+
+    Where OUTPUT ends in .adm, any of these is written as a dataset, and a command file (.acf) with its run is put beside it.
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
     try:
         if output is not None:
             refuse_own_input("-o", scene, output)
-        text = _in_space(scene, changes) if in_space else _of_dataset(scene, changes)
+        if output is not None and output.suffix.lower() == DATASET:
+            texts = _as_dataset(scene, output, coordinates, changes)
+        else:
+            text = _in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
+            texts = {output: text}
     except StiffmbsError as error:
         refuse(scene, error)
-    if output is None:
+    for path, text in texts.items():
+        _write(path, text)
+
+
+def _write(path: Path | None, text: str) -> None:
+    if path is None:
         click.echo(text, nl=False)
         return
     from ..results import files
 
     try:
-        files.written_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+        files.written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
     except OSError as error:
-        click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
+        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
         sys.exit(STOPPED_EARLY)
+
+
+def _as_dataset(
+    path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
+) -> dict[Path | None, str]:
+    """A dataset and its command file, by the names that they get."""
+    from ..adams.export.dataset_text import command_text, dataset_text
+    from ..adams.load import COMMANDS
+    from ..describe.spatial.scene import SpatialScene
+    from ..jobs.in_space import in_space
+    from ..jobs.load_scene import ROBOTS, load_scene
+    from ..robots.load import load_robot
+
+    beside = output.with_suffix(COMMANDS)
+    refuse_own_input("-o", path, beside)
+    if coordinates and Path(path).suffix.lower() in ROBOTS:
+        scene = load_robot(path, changes, coordinates=dict(map(_coordinate, coordinates)))
+    else:
+        scene = load_scene(path, changes)
+    spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
+    return {output: dataset_text(spatial, path), beside: command_text(spatial)}
 
 
 def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:
@@ -47,11 +94,29 @@ def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:
     return text_in_space(scene, changes)
 
 
-def _of_dataset(dataset: str, changes: list[tuple[str, str]]) -> str:
+def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
+    """The text of a scene from a file of another program."""
     from ..adams.load import convert_file
+    from ..jobs.load_scene import ROBOTS
+    from ..robots.load import convert_robot
 
+    suffix = Path(path).suffix.lower()
     if changes:
-        raise InputError(f"{dataset}: found --set, expected it with --in-space alone")
-    if Path(dataset).suffix in (".yaml", ".yml"):
-        raise InputError(f"{dataset}: found a scene, expected an Adams/Solver dataset (.adm), or --in-space")
-    return convert_file(dataset)
+        raise InputError(f"{path}: found --set, expected it with --in-space alone")
+    if suffix in ROBOTS:
+        return convert_robot(path, coordinates=dict(map(_coordinate, coordinates)))
+    if coordinates:
+        raise InputError(f"{path}: found --at, expected it with a robot alone")
+    if suffix in (".yaml", ".yml"):
+        raise InputError(
+            f"{path}: found a scene, expected an Adams/Solver dataset (.adm), a robot ({', '.join(ROBOTS)}), or --in-space"
+        )
+    return convert_file(path)
+
+
+def _coordinate(text: str) -> tuple[str, float]:
+    joint, _, value = text.partition("=")
+    try:
+        return joint.strip(), float(value)
+    except ValueError:
+        raise InputError(f"--at: found '{text}', expected JOINT=VALUE with a number") from None

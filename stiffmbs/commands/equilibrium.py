@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..describe.settings import SteadyMotion
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
 from .scene import (
@@ -22,6 +21,9 @@ from .scene import (
     start_of,
     state_options,
 )  # fmt: skip
+
+if TYPE_CHECKING:
+    from ..describe.settings import SteadyMotion
 
 
 @click.command(short_help="The pose in which forces balance.")
@@ -86,6 +88,8 @@ def _motion(
         "about": _numbers(about), "rolling": rolling or None,
     }  # fmt: skip
     given = {name: value for name, value in given.items() if value is not None}
+    from ..describe.settings import SteadyMotion
+
     return SteadyMotion(**given) if given else None
 
 

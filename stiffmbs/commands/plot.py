@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..describe.figure import Figure
 from ..errors import InputError, StiffmbsError
 from ..jobs.load_scene import load_scene
 from .runs import RESULTS, runs_of
 from .scene import STOPPED_EARLY, changes_of, refuse, refuse_own_input, solving_options
+
+if TYPE_CHECKING:
+    from ..describe.figure import Figure
 
 
 @click.command(short_help="Plots of any channels.")

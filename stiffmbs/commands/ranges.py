@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ..describe.formula.text import FormulaError
-from ..describe.units.quantity import quantity
-from ..describe.units.units import Dimension, Quantity
 from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..describe.units.units import Dimension, Quantity
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 RANGE = re.compile(rf"\s*({NUMBER})\s*(?:\.\.|:)\s*({NUMBER})\s*(?::\s*(\d+)\s*)?")
@@ -36,6 +35,8 @@ def numbers_in(option: str, text: str, per_decade: int = 1) -> tuple[float, ...]
     ------
     InputError
     """
+    import numpy as np
+
     found = RANGE.fullmatch(text.replace("...", ".. ."))
     if found is None:
         return _listed(option, text)
@@ -96,6 +97,9 @@ def values_in(option: str, text: str) -> Values:
 
 def _in_si(option: str, found: re.Match[str] | None, unit: str, text: str) -> Quantity:
     """A number with its unit, or with the one of the last number."""
+    from ..describe.formula.text import FormulaError
+    from ..describe.units.quantity import quantity
+
     if not found:
         raise InputError(f"{option}: found '{text}', {EXPECTED}")
     try:

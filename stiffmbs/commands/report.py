@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..describe.files.text_file import STANDARD_INPUT, file_text
-from ..describe.scene import Scene
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
 from .scene import (  # fmt: skip
@@ -23,6 +22,7 @@ from .scene import (  # fmt: skip
 )
 
 if TYPE_CHECKING:
+    from ..describe.scene import Scene
     from ..show.sections import Section
 
 

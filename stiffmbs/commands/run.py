@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..describe.scene import Scene
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
 from .scene import (
@@ -26,6 +25,8 @@ from .scene import (
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+    from ..describe.scene import Scene
 
 
 @click.command(short_help="Solve a scene.")

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, get_args
 import click
 
 from ..describe.files.text_file import STANDARD_INPUT, source_name
-from ..describe.scene import Scene
-from ..describe.settings import SchemeName, SolverName
 from ..errors import AssemblyError, InputError, SolverError, StiffmbsError
+from ..solver_names import SchemeName, SolverName
 
 if TYPE_CHECKING:
+    from ..describe.scene import Scene
     from ..results.solution import Solution
 
 WRONG_INPUT, STOPPED_EARLY = 2, 1

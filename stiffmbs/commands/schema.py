@@ -6,10 +6,10 @@ import json
 
 import click
 
-from ..describe.schema import scene_schema
-
 
 @click.command()
 def schema() -> None:
     """Print the JSON schema of scene files."""
+    from ..describe.schema import scene_schema
+
     click.echo(json.dumps(scene_schema(), indent=2))

@@ -34,7 +34,8 @@ def stress(
     CASE is the name of a case or of a family of cases.
 
     With --fuzz random cases are made from seeds and tried in a process of their own.  Those that are WRONG are printed: with a
-    silent difference, a traceback, a crash of the process, or no end within 30 s.  --fuzz without a name lists the fuzzers.
+    silent difference, a traceback, a crash of the process, or no end within 30 s of processor time.  --fuzz without a name
+    lists the fuzzers.
 
     Exit status: 0 none is wrong, 1 some are, 2 there is no such case.
     """

@@ -34,6 +34,8 @@ STATE_RATES = "state_rates"
 """The field of a joint's kind with the rates of the states in its equations."""
 STATE = "state"
 """Before the slot of a state in a formula's shape."""
+TAKEN_OUT = "taken_out"
+"""Under which a formula keeps what stands in it in place of placeholders."""
 OWN = "own_"
 """Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
 
@@ -285,7 +287,7 @@ class _FormulaShape(ast.NodeTransformer):
 
     def shape(self) -> Shape:
         """The formula's shape; its numbers and markers are appended to the data."""
-        tree = self.visit(copy.deepcopy(self.formula.tree))
+        text = self._read() if self.formula.states else self._read_once()
         self.data.numbers += self.numbers
         measures = tuple(
             (name, tuple(_marker_shape(marker, self.data) for marker in markers)) for name, markers in self.measures
@@ -299,7 +301,23 @@ class _FormulaShape(ast.NodeTransformer):
             for joint in dict.fromkeys(j for _, j in self.reactions)
         }
         reactions = tuple((name, joints[joint]) for name, joint in self.reactions)
-        return ("formula", ast.unparse(tree), counts, measures, *([reactions] if reactions else []))
+        return ("formula", text, counts, measures, *([reactions] if reactions else []))
+
+    def _read(self) -> str:
+        """What is left of the formula once numbers, markers and tables are taken out."""
+        return ast.unparse(self.visit(copy.deepcopy(self.formula.tree)))
+
+    def _read_once(self) -> str:
+        """The same of a formula without states, kept with it: studies compile the same formulas again and again.
+
+        The slots of bodies follow from those that an element has before.
+        """
+        kept, before = self.formula.kept, (TAKEN_OUT, tuple(self.data.bodies))
+        if before not in kept:
+            text = self._read()
+            kept[before] = text, list(self.data.bodies), self.numbers, self.measures, self.tables, self.reactions
+        text, self.data.bodies, self.numbers, self.measures, self.tables, self.reactions = map(copy.copy, kept[before])
+        return str(text)
 
     def visit(self, node: ast.AST) -> Any:
         """A placeholder for a number, and the number noted."""

@@ -5,6 +5,7 @@ The record is all that a later run needs, so that SymPy is imported only where a
 
 from __future__ import annotations
 
+import ast
 import inspect
 import json
 import logging
@@ -219,15 +220,27 @@ def _equations(kind: Kind) -> list[str]:
 
 def _helpers(elements: list[type]) -> set[Path]:
     """The files of the functions and classes that elements' equations may call: what their own modules import by name from
-    the same package."""
+    the same package, at the top or where it is used."""
     found = set()
-    for element in elements:
-        package = element.__module__.partition(".")[0]
-        for member in vars(sys.modules[element.__module__]).values():
+    for module in {element.__module__ for element in elements}:
+        package = module.partition(".")[0]
+        for member in vars(sys.modules[module]).values():
             called = inspect.isfunction(member) or inspect.isclass(member)
             if called and member.__module__.partition(".")[0] == package:
                 found.add(Path(inspect.getfile(member)))
+        found |= _imported_later(module)
     return found
+
+
+@cache
+def _imported_later(module: str) -> set[Path]:
+    """The files that the functions of a module import from, relative to it."""
+    file = Path(inspect.getfile(sys.modules[module]))
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    inside = {node for each in ast.walk(tree) if isinstance(each, ast.FunctionDef) for node in ast.walk(each)}
+    imports = [node for node in inside if isinstance(node, ast.ImportFrom) and node.level and node.module]
+    found = [file.parents[node.level - 1].joinpath(*str(node.module).split(".")) for node in imports]
+    return {path.with_suffix(".py") for path in found if path.with_suffix(".py").is_file()}
 
 
 @cache

@@ -6,11 +6,13 @@ write, and which equation and coordinate each belongs to.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
+from ..describe.element import Element
 from .bodies import BodyKind
 from .group import Group
 from .kernels import kernel_of
@@ -292,6 +294,12 @@ class System:
     def kernel(self, term_set: str, group: Group, place: str = "") -> Compiled | None:
         """The compiled kernel with which a group contributes to a set, if it does; `place` as for `kernel_of`."""
         return kernel_of(group.kind, term_set, place)
+
+    def elements_with_inputs(self) -> Iterator[Element]:
+        """Those in which formulas of time or tables may stand."""
+        for group in self.groups:
+            if group.has_inputs:
+                yield from group.elements
 
     def turned(self, term_set: str) -> np.ndarray:
         """The first coordinate of each body what is shared of whose orientation the kernels of a set read."""

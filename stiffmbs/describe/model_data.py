@@ -125,7 +125,6 @@ class ModelData(Described):
                 raise ValueError(
                     f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
                 )
-        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
         check_states(
             self.states, self.bodies, self.markers, self.joints, NAMES[self.dimensions], self.names_in_formulas()
         )
@@ -133,13 +132,18 @@ class ModelData(Described):
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
         }
+        self.check_elements(placed)
+        self.check_requests()
+        return self
+
+    def check_elements(self, placed: Mapping[str, Element]) -> None:
+        """Refuse joints and forces, by their paths, that name what the model does not have, or that cannot stand where they do."""
+        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
         for where, element in placed.items():
             check_element(where, element, *known)
         for where, element in placed.items():  # which looks at all bodies and markers that elements name
             for reason in element.invalid_placement(self):
                 raise ValueError(f"{where}: {reason}")
-        self.check_requests()
-        return self
 
     def check_requests(self) -> None:
         """Refuse requests that name what the model does not have, or themselves, and units that do not fit."""

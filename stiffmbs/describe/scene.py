@@ -23,6 +23,7 @@ from .files.expand import (
     set_value,
     unshared,
 )
+from .files.held import with_held
 from .files.include import read_including
 from .files.quoted import written
 from .files.stages import Stage, written_stages
@@ -62,12 +63,16 @@ class Scene(ModelData):
         description="where a run starts: as described, at rest in the equilibrium found from there, in its pose with the "
         "described velocities (settled), or in steady motion",
     )
+    at_start: dict[str, Any] = Field(
+        default_factory=dict, description="joints and drives that hold at the start alone, by name"
+    )
     stages: tuple[Stage, ...] = Field((), description="runs one after the other, each with its own changes")
     figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
     _written: WrittenScene | None = PrivateAttr(default=None)
     _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
+    _held_at_start: Scene | None = PrivateAttr(default=None)
 
     def check_requests(self) -> None:
         """The same for variables, whose formulas are read as those of requests."""
@@ -89,6 +94,11 @@ class Scene(ModelData):
     def stage_scenes(self) -> tuple[Scene, ...]:
         """The scene of each stage, in their order."""
         return self._stage_scenes
+
+    @property
+    def held_at_start(self) -> Scene | None:
+        """The scene with the joints and drives that hold at the start alone; None without any."""
+        return self._held_at_start
 
     @property
     def whole_duration(self) -> float:
@@ -215,6 +225,8 @@ def made_scene(
     scene._written = scene_as_written
     if scene.stages:
         scene._stage_scenes = _stage_scenes(scene, source)
+    elif scene.at_start:
+        scene._held_at_start = _held_at_start(scene, source)
     return scene
 
 
@@ -246,6 +258,14 @@ def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
         made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
         for k, stage in enumerate(stages)
     )
+
+
+def _held_at_start(scene: Scene, source: str) -> Scene:
+    """The scene with what holds at its start alone; errors as for `made_scene`."""
+    if scene.written is None:
+        raise InputError(f"{source}: found at_start, expected a scene that starts as described")
+    held = with_held(scene.written)
+    return made_scene(dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder)
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, U
 
 from pydantic import Field, model_validator
 
+from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 from .fields import Described, Measured
 from .given import Number
 from .units import si
@@ -18,16 +19,6 @@ FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Stretches of time that a run must be able to tell apart, and how long each must be, relative to the times themselves."""
 
 MANY = 1e300
-
-SolverName = Literal["bdf", "projected", "kinematic", "auto"]
-SchemeName = Literal["euler_cromer", "rk4", "dopri5", "dop853"]
-FormulationName = Literal["SI2", "SI2_exact", "SI1", "I3", "index1"]
-"""The names of what `stiffmbs.solve` holds; schema, messages, help and types follow from these."""
-CHOICES: dict[str, object] = {
-    "SolverName": SolverName,
-    "SchemeName": SchemeName,
-    "FormulationName": FormulationName,
-}
 
 
 class Settings(TypedDict, total=False):

@@ -74,6 +74,11 @@ class PosesOnTheWay:
         looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), USUAL_POSES)).astype(int)
         return max(self._least(int(k))[0] for k in looked_at)
 
+    @property
+    def products(self) -> float:
+        """About how many products of numbers the decompositions at all poses looked at so far took."""
+        return float(len(self._known) * len(self._rows) ** 2 * self._system.n_u)
+
     def distance(self, k: int) -> float:
         """How far pose k is from a singular one: 0 at one, about 1 at most; always 1 without loops."""
         if not self._loops:

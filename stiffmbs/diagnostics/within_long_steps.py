@@ -11,7 +11,7 @@ import numpy as np
 from ..describe.settings import RunSettings
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
-from ..solve.events.long_steps import LongSteps, Motion
+from ..solve.events.long_steps import APART, LongSteps, Motion
 from ..solve.settings import near_constraints
 from .overlooked import PART, Overlooked, acting
 
@@ -20,6 +20,8 @@ TOLERANCES = 1e4
 1.2e3 in steps of stick and slip, with the slopes of all forces taken into account."""
 FINE = 20_000
 """Parts of a run's time in which Python functions are looked at: nothing else tells where these have features."""
+DOUBTFUL = 0.1
+"""Part of both bounds up to which nothing was overlooked, by accelerations at states that are not brought back to the constraints."""
 SLIGHT = 0.01
 """Part of the tolerance by which positions and velocities within a step may be off: a stiff force makes much of that."""
 
@@ -36,17 +38,25 @@ def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float
     end : float
         Of what is reported: later steps do not count, s.
     """
-    steps = np.arange(np.searchsorted(found.begin, end))
+    count = int(np.searchsorted(found.begin, end))
+    steps = np.arange(count) if found.whole else _doubtful(found, count, settings)
     if not len(steps):
         return None
     if found.whole:
         steps, parts = _all_along(found, steps, settings)
         motion = found.at(steps, parts)
     else:
-        motion = found.middles()
-    count = len(steps)
-    rows = found.dynamics.report(motion.t[:count], motion.q[:count], motion.u[:count], near_constraints(settings))
+        motion = found.middles(steps)
+    rows = found.dynamics.report(motion.t, motion.q, motion.u, near_constraints(settings))
     return _judged(found, steps, motion, rows, settings)
+
+
+def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray:
+    """Which of the first `count` steps are to be judged; few, so that the others cost nothing."""
+    n_q = found.dynamics.system.n_q
+    tolerances = settings.rtol, absolute_tolerances(found.dynamics.system, settings)[n_q:]
+    ends, states = (found.begin[:count], found.end[:count]), (found.q[:count], found.u[:count])
+    return found.dynamics.contradicting(ends, APART, states, tolerances, (DOUBTFUL * PART, DOUBTFUL * TOLERANCES))
 
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:

@@ -81,6 +81,11 @@ class Job:
         """Whether states are on the constraints but for the tolerance."""
         return near_constraints(self.settings)
 
+    def evaluations(self) -> int:
+        """How often the equations of the system and of its parts were evaluated so far."""
+        parts = (self.dynamics, *(subsystem.dynamics for subsystem in self.subsystems))
+        return sum(dynamics.state.evaluations for dynamics in parts)
+
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver].solve, watch or unwatched
@@ -151,7 +156,13 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         return replace(
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
         )
-    start = initial_values(dynamics, t)
+    if isinstance(data, Scene) and data.at_start:
+        from .held_at_start import hold_at_start
+
+        hold_at_start(dynamics, data, t)
+        start = initial_values(dynamics, t).as_asked_by([*data.at_start])
+    else:
+        start = initial_values(dynamics, t)
     asked = data.start if isinstance(data, Scene) else "described"
     if isinstance(asked, SteadyMotion):
         from .steady import settled_in_motion

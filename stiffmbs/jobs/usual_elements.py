@@ -32,6 +32,19 @@ def usual_elements(dimensions: int) -> ModelBuilder:
     return model
 
 
+def usual_bearings() -> ModelBuilder:
+    """A model in space of all joints that a body is mostly free to spin in: body ``a``, beside another."""
+    from ..describe.spatial.joints.cylindrical import Cylindrical
+    from ..describe.spatial.joints.revolute import Revolute
+    from ..describe.spatial.joints.spherical import Spherical
+
+    model = _bodies_in_space()
+    for bearing in (Revolute, Cylindrical, Spherical):
+        for i, j in (("a", "b"), ("b", "a")):
+            model.add(f"{bearing.kind}_{i}_{j}", bearing(i=i, j=j))  # type: ignore[arg-type]
+    return model
+
+
 def _in_plane() -> ModelBuilder:
     model = Model(gravity=(0, -9.81))
     for k, name in enumerate(BODIES):
@@ -41,19 +54,25 @@ def _in_plane() -> ModelBuilder:
 
 
 def _in_space() -> ModelBuilder:
-    from ..describe.spatial.body import Body
     from ..describe.spatial.joints.cylindrical import Cylindrical
     from ..describe.spatial.joints.prismatic import Prismatic
     from ..describe.spatial.joints.revolute import Revolute
     from ..describe.spatial.joints.spherical import Spherical
+
+    model = _bodies_in_space()
+    _add_joints(model, Revolute, Prismatic)
+    model.add("ball", Spherical(i="a", j="ground"))  # type: ignore[arg-type]
+    model.add("sleeve", Cylindrical(i="a", j="ground"))  # type: ignore[arg-type]
+    return model
+
+
+def _bodies_in_space() -> ModelBuilder:
+    from ..describe.spatial.body import Body
     from ..describe.spatial.model import Model
 
     model = Model(gravity=(0, 0, -9.81))
     for k, name in enumerate(BODIES):
         model.add(name, Body(mass=1, inertia=(1, 1, 1), position=(k, 0, 0)))
-    _add_joints(model, Revolute, Prismatic)
-    model.add("ball", Spherical(i="a", j="ground"))  # type: ignore[arg-type]
-    model.add("sleeve", Cylindrical(i="a", j="ground"))  # type: ignore[arg-type]
     return model
 
 

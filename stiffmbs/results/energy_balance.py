@@ -107,7 +107,8 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
         t, kinetic = rows.t[thinned], rows.kinetic[thinned]
         potential, power = rows.potential[thinned], rows.power[thinned]
         known = np.isfinite(kinetic + potential + power) & (np.diff(t, prepend=-np.inf) > 0)
-        t, kinetic, potential, power = t[known], kinetic[known], potential[known], power[known]
+        if not known.all():
+            t, kinetic, potential, power = t[known], kinetic[known], potential[known], power[known]
         if not len(t):
             nothing = np.empty(0)
             return Balance(t, np.zeros(1), np.zeros(1), nothing, nothing, 0.0, 0.0, keeps_energy)

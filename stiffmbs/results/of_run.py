@@ -55,7 +55,8 @@ def results_of_run(
     """
     channels, balance = channels_of(model, system, rows), energy_balance(system, rows, steps)
     solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
-    known = {name: values[solved_there] for name, values in with_gaps(channels).items()}
+    gaps = with_gaps(channels) if model.requests or not rows.finite else {}
+    known = {name: values[solved_there] for name, values in gaps.items()}
     return RunResults(
         channels, balance, turns_of(system, rows.q), tuple(balance_notes(system, balance, rows, settings, steps)),
         tuple(no_number_sentences(rows.t[solved_there], known)) if known else (),

@@ -14,9 +14,11 @@ SHOWN = {
     "roll": ("toe", "camber", "load"),
     "steer": ("toe", "camber"),
     "lateral": ("toe", "camber", "lateral"),
+    "lateral_parallel": ("toe", "camber", "lateral"),
     "brake": ("toe", "camber", "longitudinal"),
     "traction": ("toe", "camber", "longitudinal"),
     "aligning": ("toe", "camber"),
+    "aligning_parallel": ("toe", "camber"),
 }
 """What is usually read off each load case."""
 

@@ -18,14 +18,15 @@ from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
-from .storage import allocated, blocks, release
+from .storage import all_finite, allocated, blocks, release
 
 T = TypeVar("T")
-ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, OUTPUT_POINTS = together(
+ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, CONTRADICTING, OUTPUT_POINTS = together(
     "stiffmbs.solve.native.dynamics",
     assemble="int64(float64, float64, int64, int64*)",
     correct_velocities="int64(float64, int64*)",
     accelerate="int64(float64, float64*, int64*)",
+    contradicting="int64(int64, float64*, float64*, float64, float64*, float64*, float64*, float64, float64*, float64, float64, float64*, int64*, int64*)",
     output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
 )
 
@@ -63,6 +64,14 @@ class OutputRows:
     velocity_violation: np.ndarray
     drift: np.ndarray
     status: int
+
+    @property
+    def finite(self) -> bool:
+        """Whether every instant has all values: nothing that channels are made of is nan or infinite."""
+        return all_finite(
+            self.q, self.u, self.acceleration, self.values, self.kinetic, self.potential, self.position_violation,
+            self.velocity_violation,
+        )  # fmt: skip
 
 
 class Dynamics:
@@ -147,6 +156,12 @@ class Dynamics:
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end = np.nan, np.nan, None
 
+    def take_input_features(self, other: Dynamics) -> None:
+        """Take over the features of inputs of another system where these stand in the very same elements."""
+        own, others = ([*dynamics.system.elements_with_inputs()] for dynamics in (self, other))
+        if len(own) == len(others) and all(one is another for one, another in zip(own, others, strict=True)):
+            self._features, self._input_end = other._features, other._input_end
+
     def return_to_start(self) -> None:
         """Put the state to the system's start, as described, without multipliers and relaxation: as it is when new."""
         state, system = self.state, self.system
@@ -188,6 +203,33 @@ class Dynamics:
         """0 or a failure (`stiffmbs.solve.native.statuses`), and u' from the block system; the multipliers are in the state's lam."""
         acceleration = np.empty(self.system.n_u)
         return ACCELERATE.call(t, acceleration.ctypes.data, self._at), acceleration
+
+    def contradicting(
+        self, ends: tuple[np.ndarray, np.ndarray], apart: float, states: tuple[np.ndarray, np.ndarray],
+        tolerances: tuple[float, np.ndarray], bounds: tuple[float, float],
+    ) -> np.ndarray:  # fmt: skip
+        """Numbers of the steps whose polynomial contradicts the accelerations in its middle.
+
+        Parameters
+        ----------
+        ends : tuple of ndarrays, shape (n,)
+            Begin and end of each step, s.
+        apart : float
+            Part of a step on both sides of its middle at which `states` are given.
+        states : tuple of ndarrays, shapes (n, 2, n_q), (n, 2, n_u)
+        tolerances : tuple of float and ndarray, shape (n_u,)
+            Of velocities: rtol and atol.
+        bounds : tuple of floats
+            Difference, as a part of accelerations weighted with masses and in tolerances over the step, that is exceeded.
+        """
+        (begin, end), (q, u), (rtol, atol) = ends, states, tolerances
+        found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
+        arrays = [np.ascontiguousarray(array) for array in (begin, end, q, u, self.system.mass, atol)]
+        at_begin, at_end, at_q, at_u, at_mass, at_atol = (array.ctypes.data for array in arrays)
+        count = CONTRADICTING.call(
+            len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, rate.ctypes.data, found.ctypes.data, self._at
+        )  # fmt: skip
+        return np.flatnonzero(found) if count else np.empty(0, dtype=int)
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known.

@@ -8,7 +8,8 @@ Anal. 35, 1998), which lead to stable equilibria alone: from the pose q_n each s
 by Newton's method on (s M - f_q + d(J^T lam)/dq) d = what is left.  s falls where Newton's moves become smaller quickly, as
 where forces change along the step as their derivatives predict, and rises where they do not, as where a wheel meets the
 road.  With s = 0 this is Newton's method for the equilibrium itself.  States x of the user's own are unknowns too: a step
-seeks sqrt(s) (x - x_n) = x'(q, x), as the implicit Euler step of its length.  The equations of algebraic states have no such term.
+seeks sqrt(s) (x - x_n) = x'(q, v, x) with v = sqrt(s) (q - q_n), as the implicit Euler step of its length: the deflection of a
+standing tyre follows the wheel.  The equations of algebraic states are those at rest.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_array, diags_array
+from scipy.sparse import block_array, csc_array, diags_array, hstack
 from scipy.sparse.linalg import splu
 
 from ..errors import SolverError
@@ -137,14 +138,19 @@ def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, know
 
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
     """Newton's move in a step that has come so far as a whole; `shift` is the root of s."""
-    system, jacobian = dynamics.system, known.jacobian
-    inertia = np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift))
-    matrix = block_array([[diags_array(inertia) + known.stiffness, known.reactions], [jacobian, None]], format="csc")
-    right = np.concatenate([known.left - inertia * whole, np.zeros(jacobian.shape[0])])
+    system, jacobian, n = dynamics.system, known.jacobian, len(known.left)
+    inertia = diags_array(np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift)))
+    if system.states:
+        dragged = block_array(
+            [[csc_array((system.n_u, n))], [hstack([known.dragged, csc_array((n - system.n_u,) * 2)])]]
+        )
+        inertia = csc_array(inertia - shift * dragged)
+    matrix = block_array([[inertia + known.stiffness, known.reactions], [jacobian, None]], format="csc")
+    right = np.concatenate([known.left - inertia @ whole, np.zeros(jacobian.shape[0])])
     try:
-        found: np.ndarray = splu(matrix).solve(right)[: len(inertia)]
+        found: np.ndarray = splu(matrix).solve(right)[:n]
     except RuntimeError:  # exactly singular: a larger shift ends it
-        return np.full(len(inertia), np.inf)
+        return np.full(n, np.inf)
     return found
 
 

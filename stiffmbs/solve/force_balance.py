@@ -17,6 +17,8 @@ from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
 """Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
+SLOW = 1e-3
+"""Rate of a state beside itself, 1/s, of which the same part counts as none as of forces."""
 PASSED_ON = 1e-8
 """Imbalance, relative to the largest force, up to which rounding counts that joints have passed on from other bodies."""
 FOLLOWED = 1e-9
@@ -40,7 +42,6 @@ class Balance:
         How what is left falls with moves of the pose, and changes of states.
     jacobian, reactions : sparse arrays
         J of the equations that are not redundant, and how what is left falls with multipliers.
-    n_states : int
     """
 
     left: np.ndarray
@@ -50,12 +51,12 @@ class Balance:
     stiffness: csc_array
     jacobian: csc_array
     reactions: csc_array
-    n_states: int = 0
+    dragged: csc_array
 
     @property
     def imbalance(self) -> float:
         """Of forces, relative to the largest."""
-        forces = self.left[: len(self.left) - self.n_states]
+        forces = self.left[: self.dragged.shape[1]]
         return float(np.max(np.abs(forces), initial=0.0) / (self.largest or 1.0))
 
     @property
@@ -100,6 +101,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
         stiffness,
         jacobian,
         jacobian.T,
+        csc_array((0, len(left))),
     )
     return with_states(dynamics, found, rates, motion, t) if system.states else found
 
@@ -123,21 +125,21 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
         sparse_term(dynamics, "rate_q")[own],
         (sparse_term(dynamics, "f_q") - sparse_term(dynamics, "G_lam"))[:, own],
     )
-    by_pose = -of_rates @ by_velocity
+    by_pose, of_velocities = -of_rates @ by_velocity, sparse_term(dynamics, "rate_u")[own]
     if not motion.is_rest:
         velocity, _ = motion.derivatives(dynamics, t, by_velocity)
-        by_pose = by_pose - sparse_term(dynamics, "rate_u")[own] @ velocity
+        by_pose = by_pose - of_velocities @ velocity
     stiffness = [[known.stiffness, -of_states], [by_pose, -of_rates[:, own]]]
     by_states = sparse_term(dynamics, "C_x")[active][:, own]
     reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
     sizes = system.per_coordinate(system.size, 1.0)
     sizes[own] = system.state_scales
-    allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)))
+    allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)) + SLOW * sizes[own])
     rounding = ROUNDING * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
     return Balance(
         np.append(known.left, rates), known.lam, known.largest, np.append(np.maximum(known.allowed, rounding), allowed),
         block_array(stiffness, format="csc"), block_array([[known.jacobian, by_states]], format="csc"),
-        block_array(reactions, format="csc"), len(system.states),
+        block_array(reactions, format="csc"), csc_array(diags_array(np.where(system.algebraic, 0.0, 1.0)) @ of_velocities),
     )  # fmt: skip
 
 

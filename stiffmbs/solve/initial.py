@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,8 +45,16 @@ class InitialValues:
 
     def sentence(self) -> str:
         """What was changed, in words: the largest moves of bodies, and of their velocities; empty where nothing was."""
+        return self._changed(self._levels())
+
+    def _levels(self) -> str:
         levels = [words(self.moved, self.size, MOST_TOLD) for words in (position_words, velocity_words)]
-        return self._changed(" and ".join(filter(None, levels)))
+        return " and ".join(filter(None, levels))
+
+    def as_asked_by(self, names: Sequence[str]) -> InitialValues:
+        """The same where the moves are asked for, by joints that hold at the start alone: a note tells them."""
+        told = f"to satisfy {', '.join(names)} at the start, assembly changed {self._levels() or 'nothing'}"
+        return replace(self, moved=(), notes=(*self.notes, told))
 
     def position_sentence(self, most: int) -> str:
         """The bodies that were moved, in words, up to so many by name; empty where none was."""

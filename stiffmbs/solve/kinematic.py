@@ -9,11 +9,12 @@ from ..compile.inputs.of_time import inputs_of
 from ..describe.settings import RunSettings
 from ..errors import InputError, SolverError
 from .algebraic_states import failure
+from .driven.states import Instant, states_after
+from .driven.velocities import IntegratedMotion
 from .dynamics import Dynamics
 from .events.limits import refuse_beyond_limits
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .initial import InitialValues
-from .kinematic_states import Instant, states_after
 from .native.statuses import NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
@@ -41,9 +42,10 @@ def solve(
     """Follow the motion that the drives prescribe; the contract is in `stiffmbs.solve.trajectory`.
 
     Each step predicts q + h u + h^2/2 u' and corrects it by Newton; it is halved until positions and velocities come
-    out near their prediction, so that the solution cannot jump to another branch.  A mechanism that locks (a dead
-    centre under its drive) stops there with a message that names instant and pose.  At breakpoints of the drives in time,
-    where velocities may jump, they are taken anew, and no step is longer than what the drives do in between.
+    out near their prediction, so that the solution cannot jump to another branch.  Velocities that drives prescribe are
+    integrated to 1e-11 (`IntegratedMotion`).  A mechanism that locks (a dead centre under its drive) stops there with a
+    message that names instant and pose.  At breakpoints of the drives in time, where velocities may jump, they are taken
+    anew, and no step is longer than what the drives do in between.
 
     Raises
     ------
@@ -56,7 +58,13 @@ def solve(
     system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
     features = dynamics.input_features(grid.start, grid.end)
-    motion = _Motion(dynamics, start, times[0], SHORTEST * (grid.end - grid.start), features)
+    shortest = SHORTEST * (grid.end - grid.start)
+    motion: _Motion | IntegratedMotion
+    if _by_velocities(dynamics):
+        longest = float(np.min(features.longest, initial=np.inf))
+        motion = IntegratedMotion(dynamics, start, times[0], shortest, max(longest, 2 * shortest))
+    else:
+        motion = _Motion(dynamics, start, times[0], shortest, features)
     breakpoints = iter((*features.breakpoints, np.inf))
     breakpoint = next(breakpoints)
     rows.append(times[0], motion.q, motion.u)
@@ -89,12 +97,18 @@ def _refuse_followed_states(dynamics: Dynamics) -> None:
 
 def _refuse_freedoms(dynamics: Dynamics) -> None:
     system = dynamics.system
-    equations = int(np.sum(system.active & system.holonomic))
+    equations = int(np.sum(system.active))
     if equations != system.n_u:
         raise InputError(
-            f"kinematic analysis: found {equations} independent position equations for {system.n_u} freedoms of the bodies, "
+            f"kinematic analysis: found {equations} independent equations for {system.n_u} freedoms of the bodies, "
             "expected as many: joints and drives that fix every coordinate"
         )
+
+
+def _by_velocities(dynamics: Dynamics) -> bool:
+    """Whether some drive or joint prescribes a velocity without a position."""
+    system = dynamics.system
+    return bool(np.any(system.active & ~system.holonomic))
 
 
 class _Motion:

@@ -13,8 +13,12 @@ from multiprocessing.process import BaseProcess
 from .case import Outcome, Verdict, tried
 
 TIME_LIMIT = 30.0
-"""Time, s, in which a trial has to end."""
+"""Processor time, s, in which a trial has to end: what else the machine does has no part in it."""
+WAITING = 20.0
+"""Times that a trial may take longer by the clock: it may wait for the processor, but not for ever."""
 READY = "ready"
+OUT_OF_TIME = getattr(signal, "SIGPROF", 0)
+"""Ends the process of a trial that has used up its processor time, in compiled code as well."""
 
 
 class Child:
@@ -25,7 +29,8 @@ class Child:
     module : str
         Has the function ``trial(seed) -> Verdict``.
     time_limit : float
-        Time, s, after which a trial is given up and its process killed.
+        Processor time, s, after which a trial is given up and its process ends; where the system has no timer of it, 20 times
+        as long by the clock.
     """
 
     def __init__(self, module: str, time_limit: float = TIME_LIMIT) -> None:
@@ -39,7 +44,7 @@ class Child:
             connection = self._connection()
             begun = time.perf_counter()
             connection.send(seed)
-            verdict = connection.recv() if connection.poll(self._time_limit) else self._no_end()
+            verdict = connection.recv() if connection.poll(WAITING * self._time_limit) else self._no_end()
         except (EOFError, OSError):
             verdict = self._crashed()
         return verdict, time.perf_counter() - begun
@@ -70,7 +75,7 @@ class Child:
     def _started(self) -> tuple[BaseProcess, Connection]:
         context = multiprocessing.get_context("spawn")  # a fork would share threads and compiled code
         connection, theirs = context.Pipe()
-        process = context.Process(target=_serve, args=(self._module, theirs), daemon=True)
+        process = context.Process(target=_serve, args=(self._module, theirs, self._time_limit), daemon=True)
         process.start()
         theirs.close()  # so that the end of the child is the end of the pipe
         return process, connection
@@ -84,13 +89,15 @@ class Child:
         process, _ = self._running
         process.join()
         code = process.exitcode or 0
+        if OUT_OF_TIME and code == -OUT_OF_TIME:
+            return self._no_end()
         self.close()
         how = f"by {signal.Signals(-code).name}" if code < 0 else f"with exit status {code}"
         return Verdict(Outcome.WRONG, detail=f"the process ended {how}")
 
 
-def _serve(module: str, connection: Connection) -> None:
-    """Answer seeds with verdicts, until the other end is closed."""
+def _serve(module: str, connection: Connection, time_limit: float) -> None:
+    """Answer seeds with verdicts, until the other end is closed or a trial takes too much processor time."""
     trial = importlib.import_module(module).trial
     connection.send(READY)
     while True:
@@ -98,4 +105,11 @@ def _serve(module: str, connection: Connection) -> None:
             seed = connection.recv()
         except EOFError:
             return
+        _set_timer(time_limit)
         connection.send(tried(partial(trial, seed)))
+
+
+def _set_timer(seconds: float) -> None:
+    """Let the system end this process after so much more processor time."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_PROF, seconds)

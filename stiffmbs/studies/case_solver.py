@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..describe.files.other_forces import OtherForces
 from ..describe.files.unchanged import Unchanged
 from ..describe.files.written_scene import WrittenScene
 from ..describe.scene import Scene, made_scene
@@ -81,7 +82,9 @@ class CaseSolver:
     def __init__(self, task: Task) -> None:
         self._task = task
         self._unchanged = Unchanged()
+        self._other_forces: OtherForces | None = None
         self._jobs: list[Job] = []
+        self._of_scene = self._changed = RunSettings()
 
     def scene(self, values: Sequence[Any]) -> Scene:
         """The scene of a case.
@@ -91,10 +94,16 @@ class CaseSolver:
         InputError
             When a value does not fit.
         """
+        found = self._other_forces.scene(values) if self._other_forces and len(values) else None
+        if found is not None:
+            return found
         written, names = self._task.scene, self._task.names
         content = copy.deepcopy(dict(written.content))
         changes = (*written.changes, *zip(names, values, strict=True))
-        return made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+        scene = made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+        if self._other_forces is None:
+            self._other_forces = OtherForces(written, names, self._unchanged)
+        return scene
 
     def solution(self, values: Sequence[Any]) -> Solution:
         """The solution of a case; errors as for `stiffmbs.run`."""
@@ -120,6 +129,12 @@ class CaseSolver:
         told = "; ".join(([] if done else [solution.message]) + list(solution.notes))
         return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs)
 
+    def _settings(self, of_scene: RunSettings) -> RunSettings:
+        """Those of a scene with the task's changes, checked once as long as the scene's are the same."""
+        if self._of_scene is not of_scene:
+            self._of_scene, self._changed = of_scene, changed(of_scene, dict(self._task.settings))
+        return self._changed
+
     def job(self, scene: Scene, settings: RunSettings | None = None) -> Job:
         """A job for a scene: one of the same structure with other numbers, or a new one; errors as for `stiffmbs.run`.
 
@@ -129,7 +144,7 @@ class CaseSolver:
         settings : RunSettings, optional
             Those of the scene with the task's changes by default.
         """
-        settings = settings or changed(scene.run, dict(self._task.settings))
+        settings = settings or self._settings(scene.run)
         for k, known in enumerate(self._jobs):
             if known.settings == settings:
                 found = renumbered(known, scene)
@@ -137,9 +152,12 @@ class CaseSolver:
                     self._jobs.insert(0, found)
                     del self._jobs[k + 1]
                     return found
-        self._jobs.insert(0, prepare(scene, settings))
+        found = prepare(scene, settings)
+        for known in self._jobs:
+            found.dynamics.take_input_features(known.dynamics)
+        self._jobs.insert(0, found)
         del self._jobs[MOST_STRUCTURES:]
-        return self._jobs[0]
+        return found
 
 
 def _kept(output: Output, solution: Solution, done: bool) -> float | np.ndarray:

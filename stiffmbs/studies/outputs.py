@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,8 @@ from ..results.solution import Solution
 
 Series = np.ndarray
 TIME = "time"
+FORMULAS = 256
+"""Of which the trees are kept."""
 
 
 def _peak(t: Series, x: Series) -> float:
@@ -116,6 +119,7 @@ def outputs_of(found: Mapping[str, str] | list[str] | tuple[str, ...] | str) -> 
     return tuple(Output(name, text) for name, text in pairs.items())
 
 
+@lru_cache(maxsize=FORMULAS)
 def parsed(text: str) -> ast.Expression:
     """The tree of a formula."""
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -27,6 +26,8 @@ MOST_OF_INPUTS = 5000
 """Instants that show what inputs do."""
 MOST_VALUES = 3e7
 """Values of a run; more would fill the memory."""
+MOST_PRODUCTS = 3e9
+"""In the decompositions of poses: a second or so."""
 
 
 @dataclass(frozen=True)
@@ -82,8 +83,9 @@ def apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:
     return more[nearest > AT_ONCE * (found[-1] - found[0]) / len(found)]
 
 
-def dense_samples(job: Job, run: Again, sizes: Mapping[str, float], allowed: float) -> DenseSamples | None:
-    """What a run at many instants shows between the reported ones; None where it did not come to the end, nor this in time.
+def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamples | None:
+    """What a run at many instants shows between the reported ones; None where it did not come to the end, or too many poses ask
+    for a look.
 
     Where accelerations and reactions are far beyond those at output instants, the pose may be singular: there they are
     quotients of roundings, and are left out.
@@ -94,10 +96,7 @@ def dense_samples(job: Job, run: Again, sizes: Mapping[str, float], allowed: flo
     run : Again
     sizes : mapping of str to float
         Scales of the channels.
-    allowed : float
-        Time to look at poses, s.
     """
-    begun = time.perf_counter()
     solution = run.solution
     if solution is None or run.obstacle:
         return None
@@ -111,7 +110,7 @@ def dense_samples(job: Job, run: Again, sizes: Mapping[str, float], allowed: flo
     seen: set[int] = set()
     while peaks := _peaks(solution, strained, sound, run.at, sizes) - seen:
         for k in peaks:
-            if time.perf_counter() - begun > allowed:
+            if poses.products > MOST_PRODUCTS:
                 return None
             sound[poses.at_singular(k)] = False
         sound |= reported

@@ -1,8 +1,9 @@
-"""Solving a prepared job once more with other settings, within a time that one is willing to wait."""
+"""Solving a prepared job once more with other settings, with as much work as one is willing to wait for."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +15,7 @@ from ..results.solution import Solution
 from ..solve.trajectory import Grid, Outcome
 
 LOOKS_AHEAD = 0.3
-"""Part of its time after which a run that will not come to its end is given up."""
+"""Part of what it is allowed after which a run that will not come to its end is given up."""
 
 
 class OutOfTime(KeyboardInterrupt):
@@ -24,21 +25,27 @@ class OutOfTime(KeyboardInterrupt):
 class Deadline:
     """A watch that ends a run when its time is over, or when it is far from its end at a third of its time.
 
+    The time may be any measure of effort that grows as the run goes on.
+
     Parameters
     ----------
     start, end : float
         Of the run, s.
     allowed : float
-        Time to wait, s.
+        Time to wait, s, or what `clock` tells.
+    clock : callable
+        The time that has gone by.
     """
 
-    def __init__(self, start: float, end: float, allowed: float) -> None:
+    def __init__(
+        self, start: float, end: float, allowed: float, clock: Callable[[], float] = time.perf_counter
+    ) -> None:
         self._start, self._end, self._allowed = start, end, allowed
-        self._begun = time.perf_counter()
+        self._clock, self._begun = clock, clock()
         self.passed = False
 
     def __call__(self, t: float) -> None:
-        spent = time.perf_counter() - self._begun
+        spent = self._clock() - self._begun
         done = (t - self._start) / (self._end - self._start)
         hopeless = spent > LOOKS_AHEAD * self._allowed and spent > 2 * done * self._allowed
         if spent > self._allowed or hopeless:
@@ -96,12 +103,12 @@ def solve_again(
     at : ndarray of int
         Which of them are the first run's.
     allowed : float
-        Time to wait, s.
+        Evaluations of the job's equations that it may take: a count is the same on a machine that is busy.
     """
     if allowed <= 0:
-        return Again(name, None, "not begun: no time was left", at[:0])
+        return Again(name, None, "not begun: no effort was left", at[:0])
     grid = Grid(job.grid.start, float(times[-1]), times)
-    deadline = Deadline(grid.start, grid.end, allowed)
+    deadline = Deadline(grid.start, grid.end, allowed, job.evaluations)
     try:
         solution = solved(replace(job, settings=changed(job.settings, changes), grid=grid), deadline)
     except StiffmbsError as error:
@@ -110,7 +117,7 @@ def solve_again(
     if solution.outcome is Outcome.INTERRUPTED:
         if not deadline.passed:
             raise KeyboardInterrupt
-        obstacle = f"given up at t = {solution.time[-1]:.4g} s: it would have taken more than {allowed:.2g} s"
+        obstacle = f"given up at t = {solution.time[-1]:.4g} s: it would have taken more than {allowed:.2g} evaluations"
     how = solution.outcome.value
     remark = solution.message.removeprefix(how).removeprefix("; ") if solution.message.startswith(how) else ""
     return Again(name, solution, obstacle, at[at < len(solution.time)], remark)

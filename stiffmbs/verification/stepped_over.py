@@ -9,7 +9,6 @@ then ends elsewhere, but not with a tighter tolerance alone, something was stepp
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -34,10 +33,10 @@ from .dense_sampling import apart
 from .settings_again import EXPLICIT
 from .solve_again import Deadline
 
-SAMPLES, TIMED = 20_000, 20
-"""Instants at the most, and those of which the time for one is measured."""
-OF_TIME_LEFT = 0.25
-"""Part of the time left that looking may take."""
+SAMPLES, COUNTED = 20_000, 20
+"""Instants at the most, and those of which the evaluations for one are counted."""
+OF_EFFORT_LEFT = 0.25
+"""Part of the evaluations left that looking may take."""
 OPEN_BALANCE = 1e-3
 """Part of the largest velocity, weighted with masses, by which the momentum balance of an interval must be open."""
 ELSEWHERE = 1e-2
@@ -114,7 +113,7 @@ class Along:
 
 
 def looked_along(job: Job, first: Solution, allowed: float) -> Along:
-    """Look along a run at many instants, within a time.
+    """Look along a run at many instants, with limited effort.
 
     Parameters
     ----------
@@ -122,21 +121,21 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     first : Solution
         Of the job.
     allowed : float
-        s.
+        Evaluations of the job's equations.
     """
-    begun = time.perf_counter()
-    times = _instants(job, first, OF_TIME_LEFT * allowed)
+    begun = job.evaluations()
+    times = _instants(job, first, OF_EFFORT_LEFT * allowed)
     grid = Grid(job.grid.start, float(times[-1]), times)
     try:
-        trajectory = replace(job, grid=grid).integrate(Deadline(grid.start, grid.end, allowed))
+        trajectory = replace(job, grid=grid).integrate(Deadline(grid.start, grid.end, allowed, job.evaluations))
     except StiffmbsError as error:
         return Along(None, obstacle=str(error))
     if trajectory.outcome is Outcome.INTERRUPTED:
-        return Along(None, obstacle="not looked along: no time was left")
+        return Along(None, obstacle="not looked along: no effort was left")
     rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
     system = job.dynamics.system
     balance = energy_balance(system, rows, trajectory.step_times)
-    left = allowed - (time.perf_counter() - begun)
+    left = allowed - (job.evaluations() - begun)
     stretches = tuple(_stepped_over(job, rows, trajectory.step_times, left))
     if not _same_way(first, rows.t, rows.kinetic):
         return Along(None, elsewhere=stretches)
@@ -151,13 +150,13 @@ def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
 
 
 def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
-    """Output instants, ends of steps, and as many evenly spread besides as there is time for."""
+    """Output instants, ends of steps, and as many evenly spread besides as there is effort for."""
     reported_at, steps = first.time, first.step_times
     start, end = float(reported_at[0]), float(reported_at[-1])
-    begun = time.perf_counter()
-    q, u = np.tile(job.start.q, (TIMED, 1)), np.tile(job.start.u, (TIMED, 1))
-    job.dynamics.report(np.full(TIMED, start), q, u, True)
-    each = (time.perf_counter() - begun) / TIMED
+    begun = job.evaluations()
+    q, u = np.tile(job.start.q, (COUNTED, 1)), np.tile(job.start.u, (COUNTED, 1))
+    job.dynamics.report(np.full(COUNTED, start), q, u, True)
+    each = (job.evaluations() - begun) / COUNTED
     most = int(np.clip(allowed / each, 2, SAMPLES))
     found = np.union1d(reported_at, apart(steps[(steps > start) & (steps < end)], reported_at))
     spread = np.linspace(start, end, most)[1:-1]
@@ -169,12 +168,12 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
     system = job.dynamics.system
     poses = PosesOnTheWay(system, rows.t, rows.q)
     missing, speed = _momentum(system, rows)
-    end, looked = time.perf_counter() + allowed, np.zeros(len(missing), dtype=bool)
+    end, looked = job.evaluations() + allowed, np.zeros(len(missing), dtype=bool)
     for _ in range(STRETCHES):
         worst = int(np.argmax(np.where(looked, 0.0, missing), axis=0)) if len(missing) else 0
         if not len(missing) or looked[worst] or not missing[worst] > OPEN_BALANCE * speed:
             return
-        left = end - time.perf_counter()
+        left = end - job.evaluations()
         if left <= 0:
             return
         first, last = _stretch(rows.t, steps, worst)
@@ -238,7 +237,7 @@ def _solved_again(
         start = restarted(job.dynamics, begin, rows.q[first], rows.u[first])
         grid = Grid(begin, end, np.array([begin, end]))
         stretch = replace(job, settings=changed(job.settings, how), grid=grid, start=start, subsystems=())
-        found = stretch.integrate(Deadline(begin, end, allowed))
+        found = stretch.integrate(Deadline(begin, end, allowed, job.evaluations))
     except StiffmbsError:
         return None
     return found.u[-1] if found.outcome is Outcome.DONE else None

@@ -14,12 +14,12 @@ and where the scene has laws or events in the state it is solved once more with 
 A tenth of the tolerance is not enough for the first: bdf's error then shrinks by 2 to 10 times, and one peak in twenty has
 nearly the same error in both runs.
 
-The reruns take a few times the first run's time, and looking along it as much again; what was not done is said.
+The reruns take a few times the first run's effort, and looking along it as much again; what was not done is said.  Effort
+is counted in evaluations of the equations, so that what is done does not depend on what else the machine does.
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import Any, Unpack
 
@@ -42,8 +42,9 @@ from .solve_again import Again, solve_again
 from .step_diagnostics import by_luck, step_diagnostics
 from .stepped_over import Along, SteppedOver, looked_along
 
-MOST_EFFORT, PATIENCE = 3.0, 1.0
-"""Time for all that is solved again, in times of the first run; s that nobody minds waiting all the same."""
+MOST_EFFORT, PATIENCE = 10.0, 2.5e7
+"""Evaluations for all that is solved again, in those of the first run; evaluations, times the numbers of a state, that nobody minds
+waiting for all the same (about a second)."""
 OTHER_OF_FIXED = 1e-10
 """Relative tolerance of the other solver where the first has fixed steps."""
 CHANNEL_ROUNDING = 1e-13
@@ -66,7 +67,6 @@ def verify(
         The same that `run` returns, with `errors` (the bars of each channel), `verification` (what was compared) and
         further `notes` where the results are in doubt.
     """
-    begun = time.perf_counter()
     job = prepare(model, settings, start_from, **changes)
     first = solved(job, watch)
     if len(first.time) < 2:
@@ -74,7 +74,7 @@ def verify(
     if first.outcome is Outcome.INTERRUPTED:
         return replace(first, verification=("not verified: interrupted by the user",))
     try:
-        return verified(job, first, max(PATIENCE, MOST_EFFORT * (time.perf_counter() - begun)))
+        return verified(job, first, max(_patience(job), MOST_EFFORT * job.evaluations()))
     except KeyboardInterrupt:
         return replace(first, verification=("verification interrupted by the user",))
 
@@ -89,9 +89,15 @@ def verified(job: Job, first: Solution, allowed: float) -> Solution:
     first : Solution
         Of the job, at two instants at least.
     allowed : float
-        Time for all that is solved again, s.
+        Evaluations of the job's equations for all that is solved again.
     """
     return _Verification(job, first, allowed).result()
+
+
+def _patience(job: Job) -> float:
+    """Evaluations of the equations that nobody minds."""
+    system = job.dynamics.system
+    return PATIENCE / (system.n_q + system.n_u + system.n_c)
 
 
 class _Verification:
@@ -99,7 +105,7 @@ class _Verification:
 
     def __init__(self, job: Job, first: Solution, allowed: float) -> None:
         self._job, self._first = job, first
-        self._begun, self._allowed = time.perf_counter(), allowed
+        self._begun, self._allowed = job.evaluations(), allowed
         self._sizes = scales(first.channels, job.dynamics.system.size, first.requested)
         self._traits = traits_of(job.settings)
         self._exact = self._traits.exact
@@ -189,7 +195,7 @@ class _Verification:
         at = np.searchsorted(times, self._first.time)
         for level in self._levels():
             run = self._run(level, times, at)
-            self._dense = dense_samples(self._job, run, self._sizes, max(self._left(), PATIENCE))
+            self._dense = dense_samples(self._job, run, self._sizes)
             if not run.obstacle:
                 return
 
@@ -236,7 +242,7 @@ class _Verification:
         return {**other_integrator(self._first, settings), **tighter}
 
     def _left(self) -> float:
-        return self._allowed - (time.perf_counter() - self._begun)
+        return self._allowed - (self._job.evaluations() - self._begun)
 
     def _comparison(self) -> Comparison:
         levels = [self._tighter[level] for level in sorted(self._tighter)]

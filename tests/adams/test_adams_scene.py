@@ -370,24 +370,32 @@ def test_notes_tell_what_is_left_out():
 
 
 @pytest.mark.parametrize(
-    "conditions, words",
+    "conditions, held",
     [
-        ("ICROT=90D,3", None),
-        ("ICROT=0,3", "JOINT/1: found the rotational displacement 0 at the start where the parts have 1.5708"),
-        ("ICROT=90D,0", "JOINT/1: found the rotational velocity 0 at the start where the parts have 3"),
-        ("ICTRAN=0.25,2", None),
-        ("IC=0.25,1", "JOINT/1: found the translational velocity 1 at the start where the parts have 2"),
+        ("ICROT=90D,3", {}),
+        ("ICTRAN=0.25,2", {}),
+        ("ICTRAN=,2", {}),
+        ("ICROT=0,3", {"turn_position": 0, "turn_velocity": 3}),
+        ("ICROT=0.5", {"turn_position": 0.5}),
+        ("ICROT=,0", {"turn_velocity": 0}),
+        ("ICTRAN=0.25,1, ICROT=90D", {"slide_position": 0.25, "slide_velocity": 1, "turn_position": np.pi / 2}),
     ],
 )
-def test_initial_conditions_of_joints_must_be_those_of_the_parts(conditions, words):
+def test_initial_conditions_of_joints_that_are_not_those_of_the_parts_hold_at_the_start(conditions, held):
     text = f"""PART/4, MASS=1, CM=41, IP=1,1,1, QG=0,0,0.25, REULER=90D,0,0, VZ=2, WZ=3
 MARKER/41, PART=4
 JOINT/1, CYLINDRICAL, I=41, J=1, {conditions}"""
-    if words is None:
-        assert made(text)["joints"]["JOINT_1"]["type"] == "cylindrical"
-    else:
-        with pytest.raises(InputError, match=words):
-            made(text)
+    drives = made(text).get("at_start", {})
+    assert {
+        name: next(x for key, x in drive.items() if key in ("position", "velocity")) for name, drive in drives.items()
+    } == {f"JOINT_1_{name}": value for name, value in held.items()}
+
+
+def test_initial_conditions_that_a_joint_does_not_have_are_refused():
+    with pytest.raises(InputError, match="JOINT/1: found IC of a CYLINDRICAL joint, expected ICROT or ICTRAN"):
+        made("JOINT/1, CYLINDRICAL, I=21, J=1, IC=1")
+    with pytest.raises(InputError, match="JOINT/1: found ICTRAN of a REVOLUTE joint, expected IC or ICROT"):
+        made("JOINT/1, REVOLUTE, I=21, J=1, ICTRAN=1")
 
 
 SPLINE = "SPLINE/3, X=0,1,2,3,5, Y=0,2,1,4,4\n"

@@ -167,3 +167,15 @@ def test_a_converted_scene_has_the_same_stages(run_with, tmp_path):
     (tmp_path / "scene.yaml").write_text(convert_file(tmp_path / "model.adm"))
     again = stiffmbs.run(tmp_path / "scene.yaml", rtol=1e-10)
     np.testing.assert_allclose(again["PART_2.x"], found["PART_2.x"], rtol=0, atol=1e-14)
+
+
+def test_kinematics_under_a_driven_velocity_stay_kinematics(run_with):
+    """A motion by its velocity, and another one from where it ends; with a freedom left there is no kinematic analysis."""
+    text = BAR + "MOTION/5, ROTATIONAL, JOINT=1, VELOCITY, FUNCTION=-1.5-TIME\n"
+    found = run_with(text, "SIM/KIN, END=0.5, STEPS=5\nMOTION/5, VELOCITY, FUNCTION=-2\nSIM/KIN, END=1, STEPS=5\n")
+    first = np.linspace(0, 0.5, 6)
+    angles = np.concatenate([1.5 * first + first**2 / 2, 0.875 + 2 * first])
+    np.testing.assert_allclose(found["PART_2.z"], -np.sin(angles), atol=1e-10)
+    np.testing.assert_allclose(found["PART_2.wy"][[0, -1]], [1.5, 2], atol=1e-10)
+    with pytest.raises(stiffmbs.InputError, match="independent equations for 6 freedoms"):
+        run_with(BAR, "SIM/KIN, END=0.5, STEPS=5")

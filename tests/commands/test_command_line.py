@@ -294,7 +294,9 @@ def test_importing_the_package_needs_none_of_its_heavy_parts():
             ["bench", "cart_pendulum", "--quick"],
             "stiffmbs: found no numba, expected it installed: pip install 'stiffmbs[bench]'",
         ),
-        (["stress", "--fuzz", "contacts", "--count", "1"], "pip install 'stiffmbs[bench]'"),
+        pytest.param(
+            ["stress", "--fuzz", "contacts", "--count", "1"], "pip install 'stiffmbs[bench]'", marks=pytest.mark.long
+        ),
         (["stress", "--fuzz"], "contacts (found no numba"),
     ],
 )
@@ -305,6 +307,7 @@ def test_yardsticks_tell_the_extra_that_they_need(command, words):
     assert "Traceback" not in found.stderr
 
 
+@pytest.mark.long
 def test_a_scene_is_run_without_numba(in_folder, tmp_path, monkeypatch):
     monkeypatch.setenv("STIFFMBS_CACHE", str(tmp_path / "cache"))  # nothing compiled before
     without = "import sys; sys.modules['numba'] = None; from stiffmbs.commands.main import main; main()"

@@ -173,6 +173,7 @@ def test_a_report_with_all_sections(examples, tmp_path):
     assert "agree within" in text
 
 
+@pytest.mark.long
 def test_a_report_says_why_there_is_no_equilibrium(tmp_path):
     page, scene = tmp_path / "page.html", tmp_path / "falling.yaml"
     scene.write_text("{gravity: [0, -9.81], bodies: {ball: {mass: 1, inertia: 1}}, run: {duration: 1, points: 11}}")

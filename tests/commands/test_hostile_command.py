@@ -94,7 +94,7 @@ def started(*arguments, **options):
 @pytest.mark.parametrize(
     "arguments", [["check", "scene.yaml"], ["run", "scene.yaml", "--json"], ["schema"], ["--help"]]
 )
-@pytest.mark.parametrize("buffered", [True, False])
+@pytest.mark.parametrize("buffered", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_full_standard_output_is_told(folder, arguments, buffered):
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     with open("/dev/full", "w") as full:

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
-from stiffmbs.commands.starting import shipped, version
+from stiffmbs.commands.starting import shipped
 from stiffmbs.commands.starting.init import FIRST_SCENE
 
 ROOT = Path(__file__).parents[2]
@@ -46,10 +46,10 @@ def test_installed_examples_are_found_by_the_record_of_the_installation(tmp_path
     (tmp_path / "share/stiffmbs/examples/one.yaml").write_text("# One. Two.\n")
     recorded = ["stiffmbs/a.py", "share/stiffmbs/examples/parts/p.yaml", "share/stiffmbs/examples/one.yaml"]
     monkeypatch.setattr(shipped, "__file__", str(tmp_path / "stiffmbs/commands/starting/shipped.py"))
-    monkeypatch.setattr(shipped, "files", lambda _: [File(name) for name in recorded])
+    monkeypatch.setattr("importlib.metadata.files", lambda _: [File(name) for name in recorded])
     assert shipped.examples_folder() == tmp_path / "share/stiffmbs/examples"
     assert shipped.first_words(shipped.scene_file("one.yaml")) == "One"
-    monkeypatch.setattr(shipped, "files", lambda _: None)
+    monkeypatch.setattr("importlib.metadata.files", lambda _: None)
     with pytest.raises(shipped.InputError, match="found no examples"):
         shipped.examples_folder()
 
@@ -88,7 +88,7 @@ def test_the_first_scene_runs_and_is_not_written_over(call):
 
 def test_versions_are_those_of_what_a_plain_run_needs(call, monkeypatch):
     stated = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
-    monkeypatch.setattr(version, "requires", lambda _: [*stated, 'furo>=2024.8; extra == "docs"'])
+    monkeypatch.setattr("importlib.metadata.requires", lambda _: [*stated, 'furo>=2024.8; extra == "docs"'])
     needed = {re.match(r"[\w.-]+", text)[0] for text in stated}
     found = json.loads(call("version", "--json").output)
     assert {"stiffmbs", "python", "platform", *needed} == found.keys()

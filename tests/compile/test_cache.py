@@ -20,8 +20,10 @@ from stiffmbs.compile.machine import compiler as machine
 from stiffmbs.compile.machine.cache_contents import OTHERS, clear, stored
 from stiffmbs.describe import model
 from stiffmbs.describe.spatial import model as spatial_model
+from stiffmbs.describe.tyres.names import SAMPLE
 from stiffmbs.jobs.usual_elements import usual_elements
 from stiffmbs.jobs.warm import routines
+from stiffmbs.tyres import TyreProperties
 
 NAME = f"kernel-{'0' * 40}"
 SOURCE = "def twice(x):\n    return 2.0*x\n"
@@ -190,18 +192,20 @@ def test_one_equation_in_the_plane_and_in_space_has_a_record_for_each(directory)
     assert columns == [[0, 4], [0, 7]]
 
 
-def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch):
-    body = spatial.Body(mass=1, inertia=(1, 1, 1))
+BUSHING = spatial.Bushing(i="block", j="ground", stiffness=(1, 1, 1, 1, 1, 1))
+TYRE = spatial.MagicFormulaTyre(i="block", properties=TyreProperties(coefficients=SAMPLE))
+
+
+@pytest.mark.parametrize(("element", "called"), [(BUSHING, "matrix.py"), (TYRE, "magic_formula.py")])
+def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch, element, called):
     model = spatial.Model()
-    model.add("block", body)
-    model.add("mount", spatial.Bushing(i="block", j="ground", stiffness=(1, 1, 1, 1, 1, 1)))
+    model.add("block", spatial.Body(mass=1, inertia=(1, 1, 1)))
+    model.add("mount", element)
     described = model.data()
     kind, _ = sorted_out("mount", described.forces["mount"], described)
     before, read = record._entry(kind), Path.read_text
     assert record._entry(kind) == before
-    monkeypatch.setattr(
-        Path, "read_text", lambda path, **how: read(path, **how) + ("#" if path.name == "matrix.py" else "")
-    )
+    monkeypatch.setattr(Path, "read_text", lambda path, **how: read(path, **how) + ("#" if path.name == called else ""))
     assert record._entry(kind) != before
 
 

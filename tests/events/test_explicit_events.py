@@ -76,6 +76,35 @@ def test_rows_between_an_event_and_the_output_times_are_those_of_bdf(scheme, exa
     assert len(own.time) == own.solver["steps"] + 1
 
 
+@pytest.mark.parametrize("scheme", ADAPTIVE)
+@pytest.mark.parametrize("duration", [1e2, 1e4, 1e7])
+def test_a_jump_is_passed_where_the_shortest_step_is_too_long_for_its_error(scheme, duration):
+    """The shortest step is a part of the duration: over a jump of 5 m/s^2 it has an error far above 1e-12 m/s."""
+    model = Model()
+    model.add("sled", Body(mass=1, inertia=1, velocity=(1, 0)))
+    model.add("push", AppliedForce(i="sled", force=("branch(sled.x - 0.5, 5, 0, 0)", 0)))
+    solution = explicit(model, scheme, duration=duration, points=2, rtol=1e-12)
+    assert solution.outcome is Outcome.DONE
+    speed = np.sqrt(1 + 2 * 5 * 0.5)
+    assert solution["sled.vx"][-1] == pytest.approx(speed, rel=1e-11)
+    assert solution["sled.x"][-1] == pytest.approx(0.5 + speed * (duration - (speed - 1) / 5), rel=1e-11)
+
+
+@pytest.mark.parametrize("scheme", ADAPTIVE)
+@pytest.mark.parametrize("part", [1e-2, 1e-3])
+def test_a_change_is_passed_that_rounding_hides_for_a_while(scheme, part):
+    """Within 2 mm/s of its way up to 10 m/s the sled has a part of its acceleration: it leaves that range by less than a
+    rounding of its velocity in the time by which steps go past an event."""
+    model = Model()
+    model.add("sled", Body(mass=1, inertia=1))
+    law = f"10*(1 - {1 - part}*branch(abs(sled.vx - 4.9991) - 0.001, 1, 0, 0))"
+    model.add("push", AppliedForce(i="sled", force=(law, 0)))
+    lost = 0.002 / 10 * (1 / part - 1)
+    solution = explicit(model, scheme, duration=1.0, points=2, rtol=1e-6)
+    assert solution.outcome is Outcome.DONE
+    assert solution["sled.vx"][-1] == pytest.approx(10 - 10 * lost, rel=1e-6)
+
+
 def test_a_start_on_a_corner_is_no_event():
     """The sled starts at x = 0 and leaves to one side."""
     model = two_springs(4.0)

@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from stiffmbs import load_scene, run
+from stiffmbs.compile.compile_model import kinds_of
+from stiffmbs.jobs.warm import usual_kinds
 from stiffmbs.presolve.spinning_bodies import spinning
 from stiffmbs.spatial import (
     AppliedForce,
@@ -69,6 +72,17 @@ def test_steps_do_not_depend_on_speed():
     assert steps(rolling(80), 1, presolve=False) > 4 * max(counts)
 
 
+@pytest.mark.long
+def test_a_car_past_its_start_takes_steps_that_do_not_depend_on_speed(examples):
+    """Without the air, whose drag slows a fast car; the start itself shakes the bushings more the faster the wheels turn."""
+    counts = []
+    for speed in (5, 20, 80):
+        changes = (("V", f"{speed} m/s"), ("parts.air.parameters.density", "0 kg/m^3"))
+        scene = load_scene(examples / "car.yaml", changes)
+        counts.append(sum(run(scene, duration=4.5, solver="bdf").step_times > 0.5))
+    assert max(counts) <= 1.2 * min(counts)
+
+
 @pytest.mark.parametrize(
     "model", [rolling(15, DRIVEN), rolling(15, DRIVEN, inertia=(0.7, 0.7, 0.7)), top(80)], ids=["wheel", "ball", "top"]
 )
@@ -80,6 +94,16 @@ def test_the_numbers_are_those_of_the_plain_body(model):
         if not name.startswith("constraint"):
             scale = max(1.0, np.abs(expected).max())
             assert np.abs(one[name] - expected).max() <= 2e-5 * scale, name
+
+
+@pytest.mark.long
+def test_usual_bearings_of_spinning_bodies_are_compiled_ahead():
+    usual = usual_kinds()
+    for model in (rolling(), top(80)):
+        spun = spinning(model.data(), {name: np.array([0, 0, 80.0]) for name in model.bodies})
+        found = [kind for kind in kinds_of(spun) if kind.spins]
+        assert {kind.element.kind for kind in found} & {"revolute", "spherical"}
+        assert set(found) <= set(usual)
 
 
 def test_a_fast_top_takes_steps_by_its_precession():

@@ -5,6 +5,7 @@ import ctypes
 import numpy as np
 import pytest
 
+import stiffmbs
 from stiffmbs.compile.machine.layout import BLOCK_LU, PAIRED_COLUMNS
 from stiffmbs.solve.ida.block_lu import COORDINATE, MULTIPLIER, BlockLU
 from stiffmbs.solve.ida.fixed_order import FixedOrder
@@ -151,3 +152,9 @@ def test_two_equal_constraints_are_left_to_pivots(relaxed):
     np.testing.assert_allclose(x[:2], [1.0, -1.0], rtol=1e-9)
     np.testing.assert_allclose(x[2] + x[3], 6.0, rtol=1e-9)
     assert solver.counted("refused") == 1
+
+
+@pytest.mark.parametrize(("name", "blocks"), [("door", False), ("governor", True)])
+def test_blocks_are_compiled_for_where_they_save_time(examples, name, blocks):
+    solution = stiffmbs.run(examples / f"{name}.yaml", solver="bdf", duration=1e-3)
+    assert solution.solver["linear_solver"].startswith("blocks") is blocks

@@ -87,16 +87,13 @@ def test_a_van_der_pol_circuit_swings_beside_a_pendulum(solver):
 
 @pytest.mark.parametrize("solver", ["bdf", pytest.param("auto", marks=pytest.mark.long)])
 def test_a_stiff_van_der_pol_circuit_is_solved(solver):
+    """x at the end: Mazzia and Magherini, Test Set for Initial Value Problem Solvers, problem VDPOL."""
     model = Model("a body at rest")
     model.add("box", Body(mass=1, inertia=1))
     model.add("x", State(rate="y", start=2))
     model.add("y", State(rate="1000*(1 - x^2)*y - x", start=0))
     solution = stiffmbs.run(model, duration=2000.0, points=21, rtol=1e-10, solver=solver)
-    x, _ = reference(
-        lambda t, z: [z[1], 1000 * (1 - z[0] ** 2) * z[1] - z[0]], [2, 0], solution.time, method="Radau",
-        jac=lambda t, z: np.array([[0, 1], [-2000 * z[0] * z[1] - 1, 1000 * (1 - z[0] ** 2)]]),
-    )  # fmt: skip
-    assert solution["x"] == pytest.approx(x, abs=1e-6)
+    assert solution["x"][-1] == pytest.approx(1.706167732170469, abs=1e-6)
 
 
 def test_robertsons_reaction_keeps_its_mass_and_its_published_end():

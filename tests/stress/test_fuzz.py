@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
-from stiffmbs.stress import fuzz
+from stiffmbs.stress import child, fuzz
 from stiffmbs.stress.case import Outcome
 
 TOY = "tests.stress.toy_fuzzer"
@@ -22,13 +22,21 @@ def toy(monkeypatch):
 
 
 def test_hangs_crashes_and_wrong_answers_are_found():
-    found = {trial.seed: trial.verdict for trial in fuzz.trials(TOY, range(8), time_limit=1.0)}
+    found = {trial.seed: trial.verdict for trial in fuzz.trials(TOY, range(8), time_limit=0.3)}
     assert [found[seed].outcome.value for seed in range(8)] == ["right", *(5 * ["WRONG"]), "told", "right"]
-    assert found[1].detail == "no end within 1 s"
+    assert found[1].detail == "no end within 0.3 s"
     assert found[2].detail == "the process ended by SIGSEGV"
     assert found[3].detail == "the process ended with exit status 7"
     assert found[4].detail == "ZeroDivisionError: a step of zero"
     assert found[5].error == 2.0
+
+
+def test_a_trial_may_wait_for_the_processor_but_not_for_ever(monkeypatch):
+    """A trial is judged by its processor time; one that sleeps is given up later, by the clock."""
+    monkeypatch.setattr(child, "WAITING", 2.0)
+    waiting, asleep = fuzz.trials(TOY, (8, 9), time_limit=0.3)
+    assert waiting.verdict.outcome is Outcome.RIGHT
+    assert asleep.verdict.detail == "no end within 0.3 s"
 
 
 def test_a_module_that_cannot_be_imported_is_wrong():

@@ -16,14 +16,6 @@ from stiffmbs.solve.native.statuses import NO_BALANCE
 from ..conftest import EXAMPLES
 
 
-@pytest.fixture(autouse=True)
-def patience(monkeypatch):
-    """What is found must not hang on how busy the machine is."""
-    from stiffmbs.verification import verify
-
-    monkeypatch.setattr(verify, "PATIENCE", 60.0)
-
-
 def nearly_a_parallelogram():
     """Two cranks and a rod on a ball and a sleeve, a micron too long: a loose tolerance doesn't see it at the flat pose."""
     return stiffmbs.read_scene(

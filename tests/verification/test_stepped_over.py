@@ -24,17 +24,11 @@ def body_at_a_bump():
     return model
 
 
-@pytest.fixture(autouse=True)
-def patience(monkeypatch):
-    """What is found must not hang on how busy the machine is."""
-    monkeypatch.setattr(module, "PATIENCE", 60.0)
-
-
 def test_a_bump_that_no_step_has_seen_is_found_along_the_run(monkeypatch):
     """The trajectory of a body that does not react, as an integrator without any search for events returns it."""
     job = prepare(body_at_a_bump(), duration=1.0, points=14)
     first = _unaware(monkeypatch, job)
-    found = looked_along(job, first, 20.0)
+    found = looked_along(job, first, 1e7)
     (stretch,) = found.stretches
     assert stretch.element == "push"
     assert stretch.at == pytest.approx(0.52371, abs=1e-3)
@@ -66,7 +60,7 @@ def _unaware(monkeypatch, job):
 def test_runs_that_are_all_blind_get_bars_that_hold_the_error_and_the_remedy(monkeypatch):
     job = prepare(body_at_a_bump(), duration=1.0, points=14)
     first = _unaware(monkeypatch, job)
-    found = module.verified(job, first, 60.0)
+    found = module.verified(job, first, 1e8)
     true = np.sqrt(100 + 2 * np.trapezoid(BUMP, WAY))
     assert abs(found["body.vx"][-1] - true) < found.errors["body.vx"].over_time
     (doubt,) = (note for note in found.notes if "stepped over" in note)
@@ -83,7 +77,7 @@ def test_a_verified_bump_lies_within_its_bar(solver):
 @pytest.mark.parametrize("name", ["bouncing_ball", "elastic_bearing"])
 def test_nothing_is_found_along_runs_with_impacts_and_stiff_bushings(name):
     job = prepare(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"))
-    found = looked_along(job, solved(job), 20.0)
+    found = looked_along(job, solved(job), 1e7)
     assert found.stretches == () and found.elsewhere == ()
     assert found.balance.imbalance < 1e-4 * found.balance.scale
 

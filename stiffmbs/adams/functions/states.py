@@ -6,7 +6,7 @@ import ast
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..scene.number_format import plain, vector
+from ...describe.spatial.number_format import plain, vector
 from ..statements.outputs import Array, Variable
 from ..statements.systems import Differential, LinearSystem, Matrix, TransferFunction
 from .function import Function
@@ -46,11 +46,17 @@ def states(translation: Translation) -> dict[str, Any]:
 
 
 def _differential(one: Differential, translation: Translation) -> dict[str, Any]:
-    """A state with its rate; that of an implicit equation is an algebraic state of its own."""
+    """A state with its rate; that of an implicit equation is an algebraic state of its own.
+
+    An implicit equation without its rate determines the state itself.
+    """
     per_second = 1 / translation.units.time
     if not one.implicit:
         return {one.name: {"rate": translation.formula(one.function, per_second), "start": plain(one.start)}}
     rate = rate_name(one)
+    used = {node.id for node in ast.walk(translation.translated(one.function)) if isinstance(node, ast.Name)}
+    if rate not in used:
+        return {one.name: {"zero": translation.formula(one.function), "start": plain(one.start)}}
     return {
         one.name: {"rate": ast.unparse(times(name_of(rate), per_second)), "start": plain(one.start)},
         rate: {"zero": translation.formula(one.function), "start": plain(one.start_of_rate)},

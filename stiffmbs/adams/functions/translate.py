@@ -13,9 +13,9 @@ from functools import cached_property
 from typing import Any
 
 from ...describe.files.quoted import quoted
+from ...describe.spatial.number_format import plain
 from ...describe.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
-from ..scene.number_format import plain
 from .adams_functions import ADAMS_FUNCTIONS
 from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from ...describe.spatial.massless import MASSLESS, filled, lacks_inertia, massless_moment
+from ...describe.spatial.number_format import plain, quaternion, vector
 from ..statements.bodies import Marker, Part
 from ..statements.fault import DatasetFault
 from ..statements.geometry import IDENTITY, Frame
 from .initial_conditions import in_ground
-from .massless import MASSLESS, filled, lacks_inertia, massless_moment
 from .mechanism import Mechanism
-from .number_format import plain, quaternion, vector
 
 ROUNDING = 1e-10
 """Part of the sum of two principal moments by which the third may be greater without a word."""

@@ -6,6 +6,7 @@ from functools import singledispatchmethod
 from operator import mul
 from typing import Any
 
+from ...describe.spatial.number_format import plain, vector
 from ..functions.expression import parse
 from ..functions.function import Function
 from ..functions.translate import Translation
@@ -14,7 +15,6 @@ from ..statements.elastic import Beam, Elastic, SpringDamper
 from ..statements.fault import of_each
 from ..statements.forces import SingleForce, VectorForce
 from .mechanism import Mechanism, Place
-from .number_format import plain, vector
 
 TORQUE = "_torque"
 """Behind the name of a GFORCE: its torque, which is an element of its own in the scene."""

@@ -15,9 +15,9 @@ import numpy as np
 
 from ..functions.trees import difference, measured, number, product, times, total
 from ..statements.constraints import ROTATIONAL, Joint, Numbered
-from .initial_conditions import initial_displacement
+from .coordinates import SORTS, initial_displacement
 from .mechanism import Mechanism, Place
-from .relations import SORTS, coupled_joint
+from .relations import coupled_joint
 
 HELD = 1e-9
 """How small the motion of the teeth that a joint allows is taken for none: of its arm, or of 1."""

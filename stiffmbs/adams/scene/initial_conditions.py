@@ -1,21 +1,25 @@
-"""Initial conditions that joints state: velocities set parts in motion, displacements must be those that are drawn.
+"""Initial conditions that joints state: they set parts in motion, and hold at the start where parts are drawn otherwise.
 
-A joint's initial velocity counts for a part that states none of its own; where both joined parts are known to move, it
-can only repeat what they do.  A part that nothing tells of is taken to be at rest, and follows those that are told of
-when the mechanism is assembled.  MSC Adams/Solver, JOINT statement, IC, ICROT, ICTRAN.
+A joint's initial velocity counts for a part that states none of its own.  A part that nothing tells of is taken to be at
+rest, and follows those that are told of when the mechanism is assembled.  Where displacements or velocities are not those
+of the parts, all that joints state holds at the start alone, and assembly moves the parts.  MSC Adams/Solver, JOINT
+statement, IC, ICROT, ICTRAN.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from ...describe.spatial.number_format import plain
 from ..statements.bodies import Part, Vector
 from ..statements.constraints import ROTATIONAL, Joint
 from ..statements.dataset import Dataset
 from ..statements.geometry import IDENTITY
+from .coordinates import coordinate, initial_displacement
 from .mechanism import Mechanism, Place
 
 CONSISTENT = 1e-6
@@ -26,20 +30,11 @@ Twist = tuple[np.ndarray, np.ndarray]
 
 
 def set_in_motion(mechanism: Mechanism) -> Dataset:
-    """The dataset with the velocities that joints state as those of parts.
-
-    Raises
-    ------
-    DatasetFault
-        Where a joint's initial conditions are not those of its parts.
-    """
+    """The dataset with the velocities that joints state as those of parts, as far as these state none."""
     dataset = mechanism.dataset
     known = {_key(part): _stated(mechanism, part) for part in mechanism.parts.values() if _states(part)}
     told = set(known)
-    stating = [joint for joint in dataset.joints.values() if joint.start and joint.ident not in _driven(dataset)]
-    for joint in stating:
-        _check_displacements(mechanism, joint)
-    waiting = [joint for joint in stating if any(velocity is not None for _, _, velocity in joint.start)]
+    waiting = [joint for joint in _stating(dataset) if any(velocity is not None for _, _, velocity in joint.start)]
     while waiting:
         joint = next((joint for joint in waiting if any(key in known for key in _joined(mechanism, joint))), waiting[0])
         waiting.remove(joint)
@@ -54,6 +49,49 @@ def set_in_motion(mechanism: Mechanism) -> Dataset:
             part = mechanism.parts[key]
             statements["POINT_MASS" if part.point else "PART"][part.ident] = _moving(mechanism, part, twist)
     return replace(dataset, statements=statements)
+
+
+def at_start(mechanism: Mechanism) -> dict[str, Any]:
+    """The drives that hold at the start alone, by name: all initial conditions of joints where one is not that of the parts."""
+    stating = _stating(mechanism.dataset)
+    if not any(_differs(mechanism, joint) for joint in stating):
+        return {}
+    drives: dict[str, Any] = {}
+    for joint in stating:
+        for sort, displacement, velocity in joint.start:
+            given = {"position": displacement, "velocity": velocity}
+            for what, value in given.items():
+                if value is not None:
+                    name = f"{joint.name}_{'turn' if sort == ROTATIONAL else 'slide'}_{what}"
+                    drives[name] = {"type": "drive", "joint": coordinate(joint, sort), what: plain(value)}
+    return drives
+
+
+def _stating(dataset: Dataset) -> list[Joint]:
+    """Joints with initial conditions that no motion overrules."""
+    return [joint for joint in dataset.joints.values() if joint.start and joint.ident not in _driven(dataset)]
+
+
+def _differs(mechanism: Mechanism, joint: Joint) -> bool:
+    """Whether a joint's initial conditions are not those of its parts."""
+    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    known = {key: _stated(mechanism, mechanism.parts[key]) for key in _joined(mechanism, joint)}
+    pairs = []
+    for sort, displacement, velocity in joint.start:
+        pairs += [(displacement, initial_displacement(sort, i, j))] if displacement is not None else []
+        pairs += [(velocity, _relative(mechanism, joint, sort, known))] if velocity is not None else []
+    return any(abs(stated - found) > CONSISTENT * max(1.0, abs(found)) for stated, found in pairs)
+
+
+def _relative(mechanism: Mechanism, joint: Joint, sort: str, known: dict[Key, Twist]) -> float:
+    """The velocity of a joint by those of its parts."""
+    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    one, other = _joined(mechanism, joint)
+    if sort == ROTATIONAL:
+        found = known[one][1] - known[other][1]
+    else:
+        found = _at(mechanism, one, known[one], i) - _at(mechanism, other, known[other], i)
+    return float(found @ j.initial.axes[:, 2])
 
 
 def notes(dataset: Dataset) -> Iterator[str]:
@@ -92,14 +130,13 @@ def _joined(mechanism: Mechanism, joint: Joint) -> tuple[Key, Key]:
 
 
 def _move(mechanism: Mechanism, joint: Joint, known: dict[Key, Twist]) -> None:
-    """Add the motion of one part of a joint to those that are known, or check that both are as the joint states."""
+    """Add the motion of one part of a joint to those that are known, if it is not among them."""
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     one, other = _joined(mechanism, joint)
     axis = j.initial.axes[:, 2]
     rates = {sort == ROTATIONAL: velocity or 0.0 for sort, _, velocity in joint.start}
     sliding, turning = rates.get(False, 0.0) * axis, rates.get(True, 0.0) * axis
     if one in known and other in known:
-        _check_velocities(mechanism, joint, i, j, known)
         return
     if one in known:
         omega = known[one][1] - turning
@@ -132,43 +169,6 @@ def _moving(mechanism: Mechanism, part: Part, twist: Twist) -> Part:
     velocity, omega = twist[0], mechanism.center(part).within(part.frame).axes.T @ twist[1]
     stated: list[Vector] = [(float(v[0]), float(v[1]), float(v[2])) for v in (velocity, omega)]
     return replace(part, velocity=stated[0], omega=stated[1], velocity_marker=None, omega_marker=None)
-
-
-def _check_displacements(mechanism: Mechanism, joint: Joint) -> None:
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
-    for sort, displacement, _ in joint.start:
-        _compare(joint, sort, "displacement", displacement, initial_displacement(sort, i, j))
-
-
-def _check_velocities(mechanism: Mechanism, joint: Joint, i: Place, j: Place, known: dict[Key, Twist]) -> None:
-    one, other = _joined(mechanism, joint)
-    axis = j.initial.axes[:, 2]
-    for sort, _, stated in joint.start:
-        if stated is None:
-            continue
-        found = (
-            known[one][1] - known[other][1]
-            if sort == ROTATIONAL
-            else _at(mechanism, one, known[one], i) - _at(mechanism, other, known[other], i)
-        )
-        _compare(joint, sort, "velocity", stated, float(found @ axis))
-
-
-def _compare(joint: Joint, sort: str, name: str, stated: float, found: float) -> None:
-    if abs(stated - found) > CONSISTENT * max(1.0, abs(found)):
-        raise joint.fault(
-            f"found the {sort.lower()} {name} {stated:.6g} at the start where the parts have {found:.6g} (in SI), "
-            "expected the same in their PART statements"
-        )
-
-
-def initial_displacement(sort: str, i: Place, j: Place) -> float:
-    """The displacement of a joint at the initial pose, m or rad."""
-    a, b = i.initial, j.initial
-    if sort != ROTATIONAL:
-        return float((a.point - b.point) @ b.axes[:, 2])
-    x = a.axes[:, 0]
-    return float(np.arctan2(x @ b.axes[:, 1], x @ b.axes[:, 0]))
 
 
 def in_ground(

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ...describe.spatial.number_format import plain, quaternion, vector
 from ..functions.translate import ANGULAR_VELOCITIES as TURNING
 from ..functions.translate import VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint
 from ..statements.fault import of_each
 from ..statements.geometry import Frame
 from .mechanism import Mechanism, Place
-from .number_format import plain, quaternion, vector
 from .racks import rolling
 
 KINDS = {

@@ -1,22 +1,12 @@
-"""Parts without mass or inertia, which Adams takes where joints leave them nothing to do with either.
-
-A scene's bodies have both.  What a part lacks is put in its place, so slight that nothing else feels it: a link without
-mass in a chain changes reactions by some 1e-8 (`tests/adams/test_adams_trial_parts.py`).
-"""
+"""Parts without mass, which Adams takes where joints leave them nothing to do with it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
 
-import numpy as np
-
+from ...describe.spatial.massless import MASSLESS
 from ..statements.bodies import Part
-
-MASSLESS = 1e-8
-"""Of the lightest mass, and of that at the mechanism's reach; with a tenth of it reactions feel rounding."""
-NOTHING = 1e-12
-"""Of the largest principal moment: what rounding leaves of none."""
 
 
 def lightest(parts: Iterable[Part]) -> float:
@@ -27,23 +17,3 @@ def lightest(parts: Iterable[Part]) -> float:
 def weighed(part: Part, least: float) -> Part:
     """The part as it is, or with a slight mass if it has none."""
     return part if part.ground or part.mass != 0 else replace(part, mass=MASSLESS * least)
-
-
-def massless_moment(least: float, places: Iterable[np.ndarray]) -> float:
-    """A moment of inertia that is none beside that of the lightest mass at the far end of all places, kg m^2."""
-    points = np.array([np.zeros(3), *places])
-    reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
-    return MASSLESS * least * reach**2
-
-
-def lacks_inertia(tensor: np.ndarray) -> bool:
-    """Whether a part has no moment of inertia about some axis."""
-    moments = np.linalg.eigvalsh(tensor)
-    return bool(np.any(np.abs(moments) <= NOTHING * moments[-1]))
-
-
-def filled(tensor: np.ndarray, moment: float) -> np.ndarray:
-    """A tensor of inertia whose principal moments are the given one where they were nothing."""
-    moments, axes = np.linalg.eigh(tensor)
-    whole: np.ndarray = (axes * np.where(np.abs(moments) <= NOTHING * moments[-1], moment, moments)) @ axes.T
-    return whole

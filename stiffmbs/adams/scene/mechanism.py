@@ -14,12 +14,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...describe.marker import GROUND
+from ...describe.spatial.massless import MASSLESS
+from ...describe.spatial.number_format import plain
 from ..statements.bodies import Marker, Part
 from ..statements.dataset import Dataset
 from ..statements.fault import DatasetFault
 from ..statements.geometry import IDENTITY, Frame
-from .massless import MASSLESS, lightest, weighed
-from .number_format import plain
+from .massless import lightest, weighed
 
 
 class Named(Protocol):

@@ -10,9 +10,8 @@ from ..functions.motion_law import Law
 from ..functions.translate import Translation
 from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Joint, Motion
 from ..statements.fault import of_each
-from .initial_conditions import initial_displacement
+from .coordinates import SORTS, coordinate, initial_displacement
 from .mechanism import Mechanism
-from .relations import SORTS, coordinate
 
 LENGTHS = ("X", "Y", "Z")
 

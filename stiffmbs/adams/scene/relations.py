@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Coupler, Joint, Numbered
-from .initial_conditions import initial_displacement
+from ...describe.spatial.number_format import plain
+from ..statements.constraints import ROTATIONAL, Coupler, Joint, Numbered
+from .coordinates import SORTS, coordinate, initial_displacement
 from .mechanism import Mechanism
-from .number_format import plain
-
-SORTS = {"REVOLUTE": ROTATIONAL, "TRANSLATIONAL": TRANSLATIONAL}
-"""Of the joints with one displacement."""
 
 
 def relations(mechanism: Mechanism) -> dict[str, Any]:
@@ -44,13 +41,6 @@ def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: M
         "j": mechanism.place(tied[0].j, tied[0], "J").reference,
     }
     return {"type": "equation", **ends, "zero": " + ".join([*terms, *([repr(plain(-at_start))] if at_start else [])])}
-
-
-def coordinate(joint: Joint, sort: str) -> str:
-    """A displacement of a joint as the scene names it."""
-    if joint.kind in SORTS:
-        return joint.name
-    return f"{joint.name}.{'angle' if sort == ROTATIONAL else 'displacement'}"
 
 
 def coupled_joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:

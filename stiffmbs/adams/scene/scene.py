@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from ...describe.spatial.number_format import vector
 from ..functions.states import states
 from ..functions.translate import Translation
 from ..statements.dataset import Dataset
@@ -16,12 +17,11 @@ from .bodies import notes as body_notes
 from .contacts import contacts
 from .forces import Forces
 from .gears import gears
+from .initial_conditions import at_start, set_in_motion
 from .initial_conditions import notes as start_notes
-from .initial_conditions import set_in_motion
 from .joints import held, joints
 from .mechanism import Mechanism
 from .motions import motions
-from .number_format import vector
 from .racks import notes as rack_notes
 from .relations import relations
 from .requests import Requests
@@ -62,6 +62,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "markers": {},
         "bodies": {},
         **sections,
+        "at_start": at_start(mechanism),
         "requests": requests.all(),
         "run": dict(RUN),
         "notes": [

@@ -60,6 +60,8 @@ class Arguments:
         texts: list[str] = []
         for piece in pieces:
             if name and self._continues(name, texts, piece):
+                if texts == [""] and piece.on_new_line:  # the list begins on the continuation line
+                    texts = []
                 texts.append(piece.text)
                 continue
             self._keep(found, name, texts, line)
@@ -96,8 +98,6 @@ class Arguments:
             return
         if name in found:
             raise self.fault(f"found {name} twice, expected it once", line)
-        if len(texts) > 1 and not texts[0]:  # the list begins on the continuation line
-            texts = texts[1:]
         values = (" ".join(texts),) if name in self._functions and texts else tuple(texts)
         found[name] = Argument(name, values, line)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ..functions.function import Function, required_function
-from .arguments import Arguments
+from .arguments import Arguments, number
 from .fault import DatasetFault
 from .text import Statement
 from .units import Units
@@ -17,7 +18,7 @@ JOINT_KINDS = (
 PRIMITIVES = ("ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
 COMPONENTS = ("X", "Y", "Z", "B1", "B2", "B3")
 ROTATIONAL, TRANSLATIONAL = "ROTATIONAL", "TRANSLATIONAL"
-Start = tuple[str, float, float | None]
+Start = tuple[str, float | None, float | None]
 """An initial condition of a joint."""
 
 
@@ -58,9 +59,8 @@ class Joint(Numbered):
         Of a screw, m per turn.
     diameter : float
         Pitch diameter of a pinion, m.
-    start : tuple of (str, float, float or None)
-        Initial conditions: rotational or translational, displacement and velocity, rad or m, per s; None where no
-        velocity is given.
+    start : tuple of (str, float or None, float or None)
+        Initial conditions: rotational or translational, displacement and velocity, rad or m, per s; None for what is not given.
     """
 
     kind: str
@@ -134,26 +134,45 @@ def read_joint(statement: Statement, units: Units) -> Joint:
     for wanted, name, value in (("SCREW", "PITCH", pitch), ("RACKPIN", "PD", diameter)):
         if kind == wanted and not value:
             raise found.fault(f"found no {name}, expected a number other than zero", found.line(name))
-    starts = (_start(found, name, sort, units) for name, sort in _STARTS)
     return Joint(
         found.ident(), statement.line, statement.alias, "JOINT", kind, found.required("I"), found.required("J"),
-        (pitch or 0.0) * units.length, (diameter or 0.0) * units.length,
-        tuple(start for start in starts if start is not None),
+        (pitch or 0.0) * units.length, (diameter or 0.0) * units.length, tuple(_starts(found, kind, units)),
     )  # fmt: skip
 
 
-_STARTS = (("ICROT", ROTATIONAL), ("ICTRAN", TRANSLATIONAL), ("IC", ""))
+_STARTS = {
+    "REVOLUTE": {"IC": ROTATIONAL, "ICROT": ROTATIONAL},
+    "TRANSLATIONAL": {"IC": TRANSLATIONAL, "ICTRAN": TRANSLATIONAL},
+    "CYLINDRICAL": {"ICROT": ROTATIONAL, "ICTRAN": TRANSLATIONAL},
+}
+"""Initial conditions that kinds of joints may have."""
 
 
-def _start(found: Arguments, name: str, sort: str, units: Units) -> Start | None:
-    values = found.numbers(name, 1, 2)
-    if values is None:
-        return None
-    if not sort:
-        sort = ROTATIONAL if "REVOLUTE" in found else TRANSLATIONAL
-    length = units.length if sort == TRANSLATIONAL else 1.0
-    velocity = values[1] * length / units.time if len(values) > 1 else None
-    return sort, values[0] * length, velocity
+def _starts(found: Arguments, kind: str, units: Units) -> Iterator[Start]:
+    allowed = _STARTS.get(kind, {})
+    for name in ("IC", "ICROT", "ICTRAN"):
+        if name not in found:
+            continue
+        if name not in allowed:
+            raise found.fault(
+                f"found {name} of a {kind} joint, expected {' or '.join(allowed) or 'none'}", found.line(name)
+            )
+        length = units.length if allowed[name] == TRANSLATIONAL else 1.0
+        displacement, velocity = _displacement_and_velocity(found, name)
+        yield (
+            allowed[name],
+            None if displacement is None else displacement * length,
+            None if velocity is None else velocity * length / units.time,
+        )
+
+
+def _displacement_and_velocity(found: Arguments, name: str) -> tuple[float | None, float | None]:
+    """The numbers of an initial condition: ``IC = 0.1``, ``IC = 0.1, 2`` or ``IC = , 2``."""
+    texts = found.texts(name)
+    if len(texts) == 2 and not texts[0] and (velocity := number(texts[1])) is not None:
+        return None, velocity
+    values = found.numbers(name, 1, 2) or (0.0,)
+    return values[0], values[1] if len(values) > 1 else None
 
 
 def read_primitive(statement: Statement, units: Units) -> Joint:

@@ -6,9 +6,6 @@ import json
 
 import click
 
-from ...describe.files.scene_text import scene_text
-from ...describe.parts.library import about, shipped_part, shipped_parts
-
 
 @click.command(short_help="The parts of vehicles that come with the package.")
 @click.argument("name", required=False)
@@ -18,6 +15,9 @@ def parts(name: str | None, as_json: bool) -> None:
 
     Exit status: 0 done, 2 there is no such part.
     """
+    from ...describe.files.scene_text import scene_text
+    from ...describe.parts.library import about, shipped_part, shipped_parts
+
     if name is None:
         known = {part: about(part) for part in shipped_parts()}
         listed = "\n".join(f"{part:16} {words}" for part, words in known.items())

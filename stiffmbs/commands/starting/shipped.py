@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 
 from ...errors import InputError
@@ -19,6 +18,8 @@ def examples_folder() -> Path:
     InputError
         When there is none.
     """
+    from importlib.metadata import PackageNotFoundError, files
+
     source = Path(__file__).parents[3]
     if (source / "pyproject.toml").is_file() and (source / "examples").is_dir():
         return source / "examples"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import platform
 import string
-from importlib.metadata import PackageNotFoundError, requires, version
 
 import click
 
@@ -33,6 +32,8 @@ def show_version(as_json: bool) -> None:
 
 def installed(package: str) -> str | None:
     """The version of an installed package; None where there is none."""
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         return version(package)
     except PackageNotFoundError:
@@ -41,5 +42,7 @@ def installed(package: str) -> str | None:
 
 def dependencies() -> list[str]:
     """The packages that a plain run needs; those of the extras are left out."""
+    from importlib.metadata import requires
+
     plain = [text for text in requires(PACKAGE) or () if "extra ==" not in text]
     return [text[: len(text) - len(text.lstrip(LETTERS))] for text in plain]

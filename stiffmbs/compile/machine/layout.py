@@ -47,13 +47,13 @@ STATE = Layout({
     "n_q": INT, "n_pose": INT, "n_u": INT, "n_c": INT, "spatial": INT,
     "q": FLOATS, "turn": FLOATS, "u": FLOATS, "a": FLOATS, "lam": FLOATS, "mu": FLOATS, "n_turned": INTS, "turned": INTS,
     "n_calls": INTS, "calls": INTS, "values": INTS, "n_joints": INT, "joint_start": INTS, "left_open": FLOATS,
-    "followed": FLOATS,
+    "followed": FLOATS, "evaluated": INTS,
 })  # fmt: skip
 """A system's state and kernels: the number of coordinates, and of those of bodies, which come first; whether its bodies are spatial; q, u and accelerations a with the ground's at their end;
 what kernels share of each body's orientation (`stiffmbs.compile.bodies`); for each term set the bodies (their first
 coordinate) for which that is read, the number of its kernel calls, the address of their arguments (rows of `CALL`) and
 the address of its values; the first row of each joint; what each equation may be off by;
-0 for each velocity that no coordinate follows, else 1."""
+0 for each velocity that no coordinate follows, else 1; how often term sets were evaluated, one number."""
 
 CALL = ("kernel", "count", "index", "number", "place")
 """The arguments of one kernel call, as 64-bit numbers."""

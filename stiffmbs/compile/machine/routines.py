@@ -22,7 +22,7 @@ class Routine:
     others : tuple of (name, signature)
         Functions of the module that are compiled with it, as what they share is the most of each of them.
     unrolled : bool
-        Whether its loops are unrolled, which is worth its time where they run over dense blocks.
+        Whether its loops are unrolled, which is worth its time in solutions with dense blocks.
     """
 
     module: str

@@ -57,8 +57,10 @@ def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[Written
             )
     content = {key: value for key, value in scene.content.items() if key != "stages"}
     found = []
-    for stage in stages:
+    for k, stage in enumerate(stages):
         content = merged(content, stage.change)
+        if k == 1:
+            content.pop("at_start", None)
         settings = dict(content.get("run") or {})
         if any(grid in stage.run for grid in GRIDS):
             settings = {name: value for name, value in settings.items() if name not in GRIDS}

@@ -18,29 +18,37 @@ _NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 class Unchanged:
-    """What was validated in the scene that was read first."""
+    """What was validated in the scene that was read first.
+
+    Attributes
+    ----------
+    scene : Scene or None
+        None before any was read.
+    context : mapping
+        What its entries were validated with.
+    """
 
     def __init__(self) -> None:
-        self._scene: Scene | None = None
+        self.scene: Scene | None = None
+        self.context: Mapping[str, Any] = {}
         self._raw: Mapping[str, Any] = {}
-        self._context: Mapping[str, Any] = {}
         self._names: dict[tuple[str, str], frozenset[str]] = {}
 
     def keep(self, raw: Mapping[str, Any], context: Mapping[str, Any], scene: Scene) -> None:
         """Remember a scene with its entries before they were validated; only the first one is."""
-        if self._scene is not None:
+        if self.scene is not None:
             return
-        self._scene, self._raw, self._context = scene, raw, context
+        self.scene, self._raw, self.context = scene, raw, context
         self._names = {
-            (section, name): frozenset(_names(entry))
+            (section, name): names_in(entry)
             for section in (*REUSED, "variables")
             for name, entry in (raw.get(section) or {}).items()
         }
 
     def put_into(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
         """The entries of another reading, those that have stayed the same as what they are once validated."""
-        scene = self._scene
-        if scene is None or context["names"] != self._context["names"] or raw.get("dimensions") != self._raw.get("dimensions"):  # fmt: skip
+        scene = self.scene
+        if scene is None or context["names"] != self.context["names"] or raw.get("dimensions") != self._raw.get("dimensions"):  # fmt: skip
             return dict(raw)
         changed = self._changed_names(raw, context)
         found = dict(raw)
@@ -63,7 +71,7 @@ class Unchanged:
         """Parameters, tables, roads and variables that have other values, or whose variables have."""
         changed: set[str] = set()
         for kind in ("parameters", "tables", "roads"):
-            new, old = context[kind], self._context[kind]
+            new, old = context[kind], self.context[kind]
             changed |= {name for name in {*new, *old} if name not in new or name not in old or new[name] != old[name]}
         new, old = (found.get("variables") or {} for found in (raw, self._raw))
         changed |= {name for name in {*new, *old} if new.get(name) != old.get(name)}
@@ -72,6 +80,11 @@ class Unchanged:
             if not more:
                 return changed
             changed |= more
+
+
+def names_in(entry: Any) -> frozenset[str]:
+    """The words in the texts of an entry."""
+    return frozenset(_names(entry))
 
 
 def _names(entry: Any) -> Iterator[str]:

@@ -92,9 +92,17 @@ class Formula:
 
     def reactions(self) -> Iterator[tuple[str, str]]:
         """The components of reactions that it uses, with their joints, in reading order."""
-        for node in reading_order(self.tree):
-            if is_reaction(node):
-                yield node.func.id, joint_of(node)  # type: ignore[attr-defined]
+        yield from self._reactions
+
+    @cached_property
+    def _reactions(self) -> list[tuple[str, str]]:
+        calls = [node for node in reading_order(self.tree) if is_reaction(node)]
+        return [(node.func.id, joint_of(node)) for node in calls]  # type: ignore[attr-defined]
+
+    @cached_property
+    def kept(self) -> dict[Any, Any]:
+        """What is worked out of it once, by what it is; nothing at first."""
+        return {}
 
     def bodies(self) -> Iterator[str]:
         """The bodies that it names, some more than once."""

@@ -28,8 +28,8 @@ OF_MODES = {"0": (), "1": (0, 3), "2": (1, 2, 4), "3": (0, 1, 2, 3, 4)}
 
 @dataclass(frozen=True)
 class Slip:
-    """A state of slip: load (N), kappa, alpha and gamma (rad), the speed over the reference speed, its sign, and the road's
-    factor on friction."""
+    """A state of slip: load (N), kappa, alpha and gamma (rad), the speed over the reference speed, its sign (in between near a
+    standstill), and the road's factor on friction."""
 
     load: Expr
     kappa: Expr
@@ -38,6 +38,11 @@ class Slip:
     speed: Expr
     direction: Expr
     friction: Expr
+
+    @property
+    def moving(self) -> Expr:
+        """1 where the wheel moves, 0 at rest: ply steer, conicity and camber thrust are of a rolling tyre."""
+        return self.direction**2
 
 
 @dataclass(frozen=True)
@@ -71,14 +76,14 @@ def at_most_one(x: Any) -> Any:
 def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
     """Pure longitudinal slip."""
     gamma = s.gamma * p.LGAX
-    shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX)
+    shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
     kappa = f(s.kappa + shift)
     mu = f((p.PDX1 + p.PDX2 * dfz) * (1 - p.PDX3 * gamma**2) * p.LMUX * s.friction)
     E = f(at_most_one((p.PEX1 + p.PEX2 * dfz + p.PEX3 * dfz**2) * (1 - p.PEX4 * sign(kappa)) * p.LEX))
     K = f(s.load * (p.PKX1 + p.PKX2 * dfz) * exp(p.PKX3 * dfz) * p.LKX)
     C = p.PCX1 * p.LCX
     B = f(K / (C * mu * s.load + NOTHING))
-    vertical = f(s.load * (p.PVX1 + p.PVX2 * dfz) * p.LVX * p.LMUX * s.friction)
+    vertical = f(s.load * (p.PVX1 + p.PVX2 * dfz) * p.LVX * p.LMUX * s.friction * s.moving)
     force = f(mu * s.load * sin(magic(B, kappa, C, E)) + vertical)
     return Curve(force, K, B, C, mu, shift, vertical)
 
@@ -86,7 +91,7 @@ def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
 def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
     """Pure side slip."""
     gamma = f(s.gamma * p.LGAY)
-    shift = f((p.PHY1 + p.PHY2 * dfz) * p.LHY + p.PHY3 * gamma)
+    shift = f(((p.PHY1 + p.PHY2 * dfz) * p.LHY + p.PHY3 * gamma) * s.moving)
     alpha = f(s.alpha + shift)
     mu = f((p.PDY1 + p.PDY2 * dfz) * (1 - p.PDY3 * gamma**2) * p.LMUY * s.friction)
     E = f(at_most_one((p.PEY1 + p.PEY2 * dfz) * (1 - (p.PEY3 + p.PEY4 * gamma) * sign(alpha)) * p.LEY))
@@ -95,7 +100,8 @@ def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
     K = f(upright * (1 - p.PKY3 * magnitude(gamma)))
     C = p.PCY1 * p.LCY
     B = f(K / (C * mu * s.load + NOTHING))
-    vertical = f(s.load * ((p.PVY1 + p.PVY2 * dfz) * p.LVY + (p.PVY3 + p.PVY4 * dfz) * gamma) * p.LMUY * s.friction)
+    sideways = f((p.PVY1 + p.PVY2 * dfz) * p.LVY + (p.PVY3 + p.PVY4 * dfz) * gamma)
+    vertical = f(s.load * sideways * p.LMUY * s.friction * s.moving)
     force = f(mu * s.load * sin(magic(B, alpha, C, E)) + vertical)
     return Curve(force, K, B, C, mu, shift, vertical)
 
@@ -134,7 +140,7 @@ def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], 
         )
     )
     driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * NOTHING + NOTHING**2) * s.kappa) ** 2)
-    straight = cos(s.alpha)
+    straight = cos(s.alpha) * s.direction  # in reverse the trail is on the other side
     trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
     residual_load = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES + (p.QDZ8 + p.QDZ9 * dfz) * gamma
     residual_most = f(s.load * residual_load * R * p.LMUY * s.friction)

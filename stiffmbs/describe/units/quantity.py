@@ -6,10 +6,11 @@ import ast
 import math
 from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..files.quoted import quoted, written
 from ..formula.check_dimensions import dimension_of
+from ..formula.dimension import Known
 from ..formula.functions import FUNCTIONS, IN_NUMBERS, check_functions
 from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
 from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one
@@ -20,13 +21,58 @@ LARGEST = 1e100
 """In SI units; products of three such numbers overflow."""
 
 
+class _Parsed(NamedTuple):
+    """The tree of a text, which is not to be changed, all its names, and whether values of these decide about its dimension."""
+
+    tree: ast.expr
+    names: tuple[str, ...]
+    by_value: bool
+
+
 @lru_cache(maxsize=TEXTS)
-def _parsed(text: str) -> ast.expr:
-    """The tree of a text, which is not to be changed: studies read the same texts again and again."""
+def _parsed(text: str) -> _Parsed:
+    """A text, which is read once: studies read the same ones again and again."""
     tree = parse(text)
     if "(" in text:
         check_functions(tree, IN_NUMBERS)
-    return tree
+    nodes = list(ast.walk(tree))
+    names = {node.id for node in nodes if isinstance(node, ast.Name)}
+    names |= {node.attr for node in nodes if isinstance(node, ast.Attribute)}
+    powers = (node.right for node in nodes if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow))
+    by_value = any(isinstance(part, ast.Name) for exponent in powers for part in ast.walk(exponent))
+    return _Parsed(tree, tuple(names), by_value)
+
+
+@lru_cache(maxsize=TEXTS)
+def _dimension(text: str, parameters: tuple[tuple[str, Any], ...]) -> Known:
+    """The dimension of a text in which these parameters stand, whose dimensions are given."""
+    known = {name: Quantity(1.0, dimension) for name, dimension in parameters}
+    tree = _parsed(text).tree
+    return dimension_of(tree, _named(text, tree, known))
+
+
+def _dimension_with(text: str, known: Mapping[str, Quantity]) -> Known:
+    parsed = _parsed(text)
+    if not parsed.by_value:
+        try:
+            return _dimension(text, tuple((name, known[name].dimension) for name in parsed.names if name in known))
+        except FormulaError:  # is told below, with all parameters
+            pass
+    return dimension_of(parsed.tree, _named(text, parsed.tree, known))
+
+
+def _named(text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Callable[[str], Quantity]:
+    """From a name in a text to what it stands for."""
+
+    def named(name: str) -> Quantity:
+        owner, _, last = name.rpartition(".")
+        if owner == UNIT:
+            for table in (UNITS, known, CONSTANTS):
+                if last in table:
+                    return table[last]
+        return of_name(last if owner == UNIT else name, text, tree, known)
+
+    return named
 
 
 def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Quantity:
@@ -45,17 +91,8 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
         For an unknown name or function, mixed units, or a value that is not finite.
     """
     known = parameters or {}
-    tree = _parsed(text)
-
-    def named(name: str) -> Quantity:
-        owner, _, last = name.rpartition(".")
-        if owner == UNIT:
-            for table in (UNITS, known, CONSTANTS):
-                if last in table:
-                    return table[last]
-        return of_name(last if owner == UNIT else name, text, tree, known)
-
-    dimension = dimension_of(tree, named)
+    tree, dimension = _parsed(text).tree, _dimension_with(text, known)
+    named = _named(text, tree, known)
     try:
         value = evaluate(tree, lambda name: named(name).value, VALUES, float, OF_NUMBERS)
     except ArithmeticError:

@@ -64,11 +64,11 @@ class LongSteps:
         """Whether the polynomial is known all along the steps."""
         return self.q.shape[1] == len(WHOLE)
 
-    def middles(self) -> Motion:
-        """The middle of each step; where they are not known as a whole."""
-        t, length = 0.5 * (self.begin + self.end), self.end - self.begin
-        rate = (self.u[:, 1] - self.u[:, 0]) / (2.0 * APART * length)[:, None]
-        return Motion(t, self.q.mean(axis=1), self.u.mean(axis=1), rate)
+    def middles(self, steps: np.ndarray) -> Motion:
+        """The middles of some steps; where they are not known as a whole."""
+        begin, end, q, u = self.begin[steps], self.end[steps], self.q[steps], self.u[steps]
+        rate = (u[:, 1] - u[:, 0]) / (2.0 * APART * (end - begin))[:, None]
+        return Motion(0.5 * (begin + end), q.mean(axis=1), u.mean(axis=1), rate)
 
     def at(self, step: np.ndarray, part: np.ndarray) -> Motion:
         """Parts (0 to 1) of steps, both of shape (m,); where steps are known as a whole."""

@@ -19,7 +19,7 @@ from .fixed_order import FixedOrder, Memory
 from .paired_columns import PairedColumns
 
 _MODULE = "stiffmbs.solve.linear.native.block_lu"
-SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)", unrolled=True)
+SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
 SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)", unrolled=True)
 MULTIPLIER, COORDINATE, VELOCITY = range(3)
 """Kinds of unknowns, as in `stiffmbs.solve.linear.native.block_lu`."""

@@ -27,6 +27,10 @@ PAIRED = (0.25, 3.0, 0.75, 1.0)
 """The same where columns are taken in pairs: their loops cost as much as some ten updates."""
 BLOCKS = (0.05, 50.0, 0.04, 5.0, 11.0)
 """ns for an update in blocks of bodies and joints, for a node; in a solution for an entry of full blocks, an unknown, and a node."""
+WORTH_COMPILING = 3000.0
+"""ns that blocks have to save in one factorisation and its solutions, or a machine's first run is not compiled for them.  Where
+they save less, whole runs of the examples take 1 to 13 ms and are from 40 % faster to 20 % slower without them; the first takes
+0.5 s less."""
 WITH_ZEROS = 8
 """Numbers that the blocks hold at the most, relative to the entries of a triangle of full ones."""
 SUPERLU = (0.5, 0.75, 600.0, 8.0)
@@ -92,7 +96,7 @@ def chosen(equations: Equations) -> tuple[Equations, Matrix]:
         offers.append((fixed_cost(n, order, FIXED), equations, FixedOrder(n, *pattern, order)))
         offers.append((fixed_cost(n, order, PAIRED), equations, PairedColumns(n, *pattern, order)))
         blocks = BlockLU.of(equations, order)
-        offers.append((block_cost(n, order, len(blocks.nodes)), equations, blocks))
+        offers.append((block_cost(n, order, len(blocks.nodes)) + WORTH_COMPILING, equations, blocks))
     offers.append((superlu_cost(n, order), equations, Sparse(n, *pattern)))
     half = int(np.bincount(pattern[0]).max()) // 2
     if n >= WORTH_A_BAND and banded_cost(n, half, half) < min(cost for cost, *_ in offers):

@@ -24,6 +24,7 @@ from stiffmbs.compile.machine.native.evaluate import (
 )
 from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
 from stiffmbs.compile.machine.native.orientation import take_unit_length
+from stiffmbs.solve.native.long_steps import contradicts
 from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NO_STATE, NOT_FINITE, SINGULAR
 
 MOST_MOVES = 20
@@ -218,6 +219,33 @@ def accelerate(t, acceleration, dynamics):
     return status
 
 
+def contradicting(count, begin, end, apart, q, u, mass, rtol, atol, part, tolerances, rate, found, dynamics):
+    """Which of `count` steps have accelerations in their middle that contradict their polynomial; how many.
+
+    States (n_q, n_u numbers) are given twice a step, so far apart as a part of it on both sides of its middle; `rate` is memory.
+    Where accelerations have no solution they contradict.
+    """
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    total = 0
+    for step in range(count):
+        h = end[step] - begin[step]
+        first, second = shifted(q, 2 * step * s.n_q), shifted(q, (2 * step + 1) * s.n_q)
+        for k in range(s.n_q):
+            s.q[k] = 0.5 * (first[k] + second[k])
+        first, second = shifted(u, 2 * step * s.n_u), shifted(u, (2 * step + 1) * s.n_u)
+        for k in range(s.n_u):
+            s.u[k] = 0.5 * (first[k] + second[k])
+            rate[k] = (second[k] - first[k]) / (2.0 * apart * h)
+        solved = to_accelerations(s, m, 0.5 * (begin[step] + end[step])) >= 0
+        acceleration = factors_view(m.acceleration_factors).b
+        found[step] = 0
+        if not solved or contradicts(h, acceleration, rate, s.u, mass, rtol, atol, part, tolerances, s.n_u):
+            found[step] = 1
+            total += 1
+    return total
+
+
 @compiled
 def _led_astray(s, q, violation):
     """Whether a projection has moved a coordinate from q by far more than the violation asks for."""
@@ -230,11 +258,12 @@ def _led_astray(s, q, violation):
 @compiled
 def _output_point(s, m, t, q, project, tolerance, largest):
     """Bring the state, from coordinates q, back to the constraints where asked, then accelerations, multipliers and output terms."""
-    largest[2] = 0.0
+    for k in range(3):
+        largest[k] = 0.0
     take_unit_length(s)
     for k in range(s.n_q):
         q[k] = s.q[k]
-    if project:
+    if project and s.n_c > 0:
         largest[2] = _largest_violation(s, evaluate(s, POSITION, t))
         status = to_position_constraints(s, m, t, tolerance, MOST_MOVES)
         if status < 0:
@@ -244,9 +273,10 @@ def _output_point(s, m, t, q, project, tolerance, largest):
         status = to_velocity_constraints(s, m, t)
         if status < 0:
             return status
-    values = evaluate(s, MOTION, t)
-    largest[0] = _largest_violation(s, values)
-    largest[1] = _largest_violation(s, shifted(values, s.n_c))
+    if s.n_c > 0:
+        values = evaluate(s, MOTION, t)
+        largest[0] = _largest_violation(s, values)
+        largest[1] = _largest_violation(s, shifted(values, s.n_c))
     status = to_accelerations(s, m, t)
     if status < 0:
         return status

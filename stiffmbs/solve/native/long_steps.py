@@ -23,3 +23,20 @@ def next_row(w, begin, end):
     row[0] = begin
     row[1] = end
     return shifted(row, 2)
+
+
+@compiled
+def contradicts(h, acceleration, rate, u, mass, rtol, atol, part, tolerances, n_u):
+    """Whether accelerations differ from the rates of a step of length h by more than a part of them, and, over the step, by more
+    than so many tolerances of a velocity."""
+    off = 0.0
+    by_forces = 0.0
+    by_rates = 0.0
+    most = 0.0
+    for k in range(n_u):
+        differs = acceleration[k] - rate[k]
+        off += mass[k] * differs * differs
+        by_forces += mass[k] * acceleration[k] * acceleration[k]
+        by_rates += mass[k] * rate[k] * rate[k]
+        most = max(most, abs(differs) * h / (atol[k] + rtol * abs(u[k])))
+    return not (off <= part * part * max(by_forces, by_rates) or most <= tolerances)

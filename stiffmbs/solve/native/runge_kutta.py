@@ -15,7 +15,7 @@ from stiffmbs.compile.machine.native.access import (
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.error_estimate import trusted_error
-from stiffmbs.solve.native.event_search.explicit_events import RETRIED
+from stiffmbs.solve.native.event_search.explicit_events import RETRIED, retaken
 from stiffmbs.solve.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, next_row
 from stiffmbs.solve.native.stages import copied
@@ -76,8 +76,12 @@ def _factor(x, c, error):
 
 @compiled
 def _step(x, c, s, m, end):
-    """One accepted step, as long as the error allows; 0 or a negative status (the state is then as before)."""
+    """One accepted step, as long as the error allows; 0 or a negative status (the state is then as before).
+
+    `span` is the length of the step; of the last one that was tried, where the status is negative.
+    """
     _depart(x, c)
+    x.span = 0.0
     t = x.t
     h = min(x.h, x.longest)
     if x.stable > 0.0:
@@ -94,6 +98,7 @@ def _step(x, c, s, m, end):
             copied(x.y, x.y_before, x.n)
             return STEP_TOO_SMALL
         status = attempt(x, c, s, m, h)
+        x.span = h
         error = trusted_error(x, c, h) if status == 0 else 0.0
         if not isfinite(error):
             status = NOT_FINITE
@@ -119,6 +124,23 @@ def _step(x, c, s, m, end):
         if h < x.shortest:
             copied(x.y, x.y_before, x.n)
             return status if status < 0 else STEP_TOO_SMALL
+
+
+@compiled
+def _shortest_to_event(x, c, s, m, explicit):
+    """The last step that was tried, up to an event in it; 0 or a negative status (the state is then as before).
+
+    A step over a jump has an error of its length times the jump.  A motion that is closer to the jump than the shortest step
+    comes to it by no step that the error allows.
+    """
+    status = retaken(x, c, s, m, x.span) if x.span > 0.0 else STEP_TOO_SMALL
+    if status == 0:
+        status = call_int(x.end_at_event, (explicit,))
+    if status == 0 and x.at_event:
+        return 0
+    copied(x.y, x.y_before, x.n)
+    x.t = x.t_before
+    return status if status < 0 else STEP_TOO_SMALL
 
 
 @compiled
@@ -157,8 +179,11 @@ def advance(end, steps, held, own_steps, explicit):
             return AT_EVENT
         stiff = x.stiff_steps
         status = _step(x, c, s, m, end)
-        if status >= 0 and x.end_at_event:
-            status = call_int(x.end_at_event, (explicit,))
+        if x.end_at_event:
+            if status == STEP_TOO_SMALL:
+                status = _shortest_to_event(x, c, s, m, explicit)
+            elif status >= 0:
+                status = call_int(x.end_at_event, (explicit,))
         if status < 0:
             return status
         if status == RETRIED:

@@ -25,7 +25,7 @@ UNITS = {
 
 
 def characteristics(
-    model: ModelData, axle: Axle, channels: Mapping[str, np.ndarray], centre: int
+    model: ModelData, axle: Axle, channels: Mapping[str, np.ndarray], centre: int, lifted: bool
 ) -> dict[str, np.ndarray]:
     """The characteristics of both wheels in one load case.
 
@@ -38,6 +38,8 @@ def characteristics(
         Of the load case, instants in order.
     centre : int
         The instant from which displacements count.
+    lifted : bool
+        Whether the wheels are lifted, so that there are a wheel rate and a motion ratio.
 
     Returns
     -------
@@ -46,10 +48,8 @@ def characteristics(
     """
     found: dict[str, np.ndarray] = {}
     for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
-        upright = axle.upright(side)
-        wheel = point(model, channels, Marker(body=upright, marker="spindle"))
-        patch = point(model, channels, Marker(body=upright, marker="patch"))
-        along = direction(model, channels, Marker(body=upright, marker="spindle"), 1)
+        wheel, patch = (point(model, channels, axle.at(side, name)) for name in ("spindle", "patch"))
+        along = direction(model, channels, axle.at(side, "spindle"), 1)
         travel, load = wheel[:, 2] - wheel[centre, 2], channels[f"kc.{side}.pad.fz"]
         found |= {
             f"{side}.travel": 1e3 * travel,
@@ -59,7 +59,7 @@ def characteristics(
             f"{side}.longitudinal": 1e3 * (wheel[:, 0] - wheel[centre, 0]),
             f"{side}.load": load,
         }
-        if np.ptp(travel) > 1e-3:
+        if lifted:
             found[f"{side}.wheel_rate"] = 1e-3 * np.gradient(load, travel)
             for name, spring in springs_of(model, getattr(axle, side)):
                 ends = [point(model, channels, marker) for marker in (spring.i, spring.j)]
@@ -69,12 +69,11 @@ def characteristics(
 
 
 def springs_of(model: ModelData, suspension: str) -> list[tuple[str, LineSpring[Marker]]]:
-    """The springs between points of a suspension, by their names within it."""
-    start = f"{suspension}."
+    """The springs between points of a suspension, by their names within it; of a rigid axle's, by those of a side."""
     return [
-        (name.removeprefix(start), force)
+        (name.removeprefix(suspension)[1:], force)
         for name, force in model.forces.items()
-        if name.startswith(start) and isinstance(force, LineSpring)
+        if name.startswith((f"{suspension}.", f"{suspension}_")) and isinstance(force, LineSpring)
     ]
 
 

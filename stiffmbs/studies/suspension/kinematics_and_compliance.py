@@ -42,20 +42,19 @@ CASES = (
     LoadCase("roll", "travel, left up and right down", "mm", 1e-3, {"kc_left": 1.0, "kc_right": -1.0}),
     LoadCase("steer", "travel of the rack to the left", "mm", 1e-3, {"kc_rack": 1.0}),
     LoadCase("lateral", "force outwards at both patches", "kN", 1e3, {"kc_lateral": 1.0}),
+    LoadCase("lateral_parallel", "force to the left at both patches", "kN", 1e3, {"kc_parallel": 1.0}),
     LoadCase("brake", "braking force at both patches", "kN", 1e3, {"kc_brake": 1.0}),
     LoadCase("traction", "driving force at both wheels' centres", "kN", 1e3, {"kc_traction": 1.0}),
     LoadCase("aligning", "torque that turns both wheels inwards", "N m", 1.0, {"kc_torque": 1.0}),
+    LoadCase("aligning_parallel", "torque that turns both wheels to the left", "N m", 1.0, {"kc_turn": 1.0}),
 )
 AMPLITUDES = {
-    "bump": 50.0,
-    "roll": 30.0,
-    "steer": 30.0,
-    "lateral": 2.0,
-    "brake": 2.0,
-    "traction": 2.0,
-    "aligning": 100.0,
-}
+    "bump": 50.0, "roll": 30.0, "steer": 30.0, "lateral": 2.0, "lateral_parallel": 2.0, "brake": 2.0, "traction": 2.0,
+    "aligning": 100.0, "aligning_parallel": 100.0,
+}  # fmt: skip
 """In the units of the cases."""
+ONE_SIDED = ("roll", "steer", "lateral_parallel", "aligning_parallel")
+"""Cases in which the right wheel goes through what the left one does, the other way round."""
 
 
 @dataclass(frozen=True)
@@ -102,12 +101,13 @@ class KinematicsAndCompliance:
     message: str = ""
 
     def asymmetry(self) -> float:
-        """The largest difference between left and right, relative to the range of its curve or 1, in cases that load both alike."""
+        """The largest difference between left and right, relative to its curve or 1; the other way round where one side goes up
+        as the other goes down."""
         worst = 0.0
-        for name in ("bump", "lateral", "brake", "traction", "aligning"):
-            channels = self.sweeps[name].channels if name in self.sweeps else {}
-            for left in (each for each in channels if each.startswith("left.")):
-                a, b = channels[left], channels[f"right.{left.removeprefix('left.')}"]
+        for name, sweep in self.sweeps.items():
+            order = slice(None, None, -1) if name in ONE_SIDED else slice(None)
+            for left in (each for each in sweep.channels if each.startswith("left.")):
+                a, b = sweep.channels[left], sweep.channels[f"right.{left.removeprefix('left.')}"][order]
                 worst = max(worst, float(np.max(np.abs(a - b)) / max(1.0, np.max(np.abs(a)))))
         return worst
 
@@ -143,7 +143,7 @@ def kinematics_and_compliance(
     ----------
     model : Scene, str or Path
         With suspensions ``front.left`` and ``front.right``, each with a body ``upright`` that has the markers ``spindle`` and
-        ``patch``, as the parts that come with the package have.
+        ``patch``, or with a body ``front.axle`` that has those of both sides, as the parts that come with the package have.
     axle : str
         What stands before ``.left`` and ``.right``; empty for suspensions ``left`` and ``right``.
     points : int
@@ -186,7 +186,7 @@ def kinematics_and_compliance(
         order = [*range(first + 2 * half + 1, first + half + 1, -1), *range(first, first + half + 1)]
         part = {name: values[order] for name, values in solution.items()}
         abscissa = sizes[case.name] * np.linspace(-1, 1, points)
-        sweeps[case.name] = Sweep(case, abscissa, characteristics(rig, found, part, half))
+        sweeps[case.name] = Sweep(case, abscissa, characteristics(rig, found, part, half, "kc_left" in case.inputs))
     return KinematicsAndCompliance(data.name, found, sweeps, solution.message)
 
 

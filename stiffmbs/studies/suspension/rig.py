@@ -6,7 +6,7 @@ What is on the rig besides are the parts of the axle alone: tyres, drivers and o
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...describe.element import Element, Force, Joint
@@ -23,8 +23,11 @@ from ...describe.spatial.tyre import Tyre
 from ...describe.table import Table
 from ...errors import InputError
 
-INPUTS = ("kc_left", "kc_right", "kc_rack", "kc_lateral", "kc_brake", "kc_traction", "kc_torque")
-"""Heights of the patches (m), travel of the rack (m), forces on each wheel (N), and the torque that turns it in (N m)."""
+INPUTS = (
+    "kc_left", "kc_right", "kc_rack", "kc_lateral", "kc_parallel", "kc_brake", "kc_traction", "kc_torque", "kc_turn"
+)  # fmt: skip
+"""Heights of the patches (m), travel of the rack (m), forces on each wheel (N; outwards, to the left, backwards, forwards), and
+torques on it (N m; inwards, to the left)."""
 SIDES = ("left", "right")
 
 
@@ -41,16 +44,27 @@ class Axle:
         The body that carries them; ground where they stand on it.
     steering : str or None
         A prismatic joint whose travel steers.
+    rigid : str or None
+        The body of a rigid axle in place of uprights, with the markers ``left_spindle``, ``left_patch`` and those of the right.
     """
 
     left: str
     right: str
     body: str
     steering: str | None
+    rigid: str | None = None
 
-    def upright(self, side: str) -> str:
-        """The name of an upright."""
-        return f"{getattr(self, side)}.upright"
+    def carrier(self, side: str) -> str:
+        """The body that a wheel turns on."""
+        return self.rigid or f"{getattr(self, side)}.upright"
+
+    def marker(self, side: str, name: str) -> str:
+        """The name of a marker on the carrier: ``spindle`` or ``patch`` of a side."""
+        return f"{side}_{name}" if self.rigid else name
+
+    def at(self, side: str, name: str) -> Marker:
+        """That marker."""
+        return Marker(body=self.carrier(side), marker=self.marker(side, name))
 
 
 def axle_of(model: ModelData, name: str, body: str | None = None, steering: str | None = None) -> Axle:
@@ -72,20 +86,29 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
         Where a suspension, its markers or what is named is not in the scene.
     """
     start = f"{name}." if name else ""
-    axle = Axle(f"{start}left", f"{start}right", body or ("chassis" if "chassis" in model.bodies else GROUND), steering)
+    body = body or ("chassis" if "chassis" in model.bodies else GROUND)
+    rigid = f"{start}axle" if f"{start}axle" in model.bodies and f"{start}left.upright" not in model.bodies else None
+    axle = Axle(f"{start}left", f"{start}right", body, steering, rigid)
     for side in SIDES:
-        upright = axle.upright(side)
-        known = sorted({each.removesuffix(".upright") for each in model.bodies if each.endswith(".upright")})
-        if upright not in model.bodies:
-            raise InputError(
-                f"found no body '{upright}', expected a suspension with one: {', '.join(known) or 'none in the scene'}"
-            )
-        for marker in ("spindle", "patch"):
-            if marker not in model.bodies[upright].markers:
-                raise InputError(f"bodies.{upright}: found no marker '{marker}', expected it where the wheel is held")
+        _check_carrier(model, axle, side)
     if axle.body != GROUND and axle.body not in model.bodies:
         raise InputError(f"found no body '{axle.body}' to clamp, expected one of {', '.join(model.bodies)}")
-    return Axle(axle.left, axle.right, axle.body, _steering(model, steering))
+    return replace(axle, steering=_steering(model, steering))
+
+
+def _check_carrier(model: ModelData, axle: Axle, side: str) -> None:
+    carrier = axle.carrier(side)
+    if carrier not in model.bodies:
+        endings = (".upright", ".axle")
+        known = sorted({each.rpartition(".")[0] for each in model.bodies if each.endswith(endings)})
+        raise InputError(
+            f"found no body '{carrier}', expected a suspension with one: {', '.join(known) or 'none in the scene'}"
+        )
+    for name in ("spindle", "patch"):
+        if axle.marker(side, name) not in model.bodies[carrier].markers:
+            raise InputError(
+                f"bodies.{carrier}: found no marker '{axle.marker(side, name)}', expected it where the wheel is held"
+            )
 
 
 def _steering(model: ModelData, given: str | None) -> str | None:
@@ -120,15 +143,15 @@ def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
 
 
 def _hold_wheel(model: Any, axle: Axle, side: str) -> None:
-    """A pad under a wheel, and the forces and the torque on it; mirrored on the right."""
+    """A pad under a wheel, and the forces and the torque on it; those of one wheel alone are mirrored on the right."""
 
-    upright, sign = axle.upright(side), "" if side == "left" else "-"
-    patch, spindle = f"{upright}.patch", f"{upright}.spindle"
+    sign = "" if side == "left" else "-"
+    patch, spindle = (f"{axle.carrier(side)}.{axle.marker(side, name)}" for name in ("patch", "spindle"))
     parts: dict[str, Joint | Force] = {
         "pad": ConstraintEquation(i=patch, zero=f"dz({patch}) - kc_{side}"),
-        "ground_force": AppliedForce(i=patch, force=("-kc_brake", f"{sign}(kc_lateral)", 0)),
+        "ground_force": AppliedForce(i=patch, force=("-kc_brake", f"{sign}(kc_lateral) + kc_parallel", 0)),
         "axle_force": AppliedForce(i=spindle, force=("kc_traction", 0, 0)),
-        "torque": AppliedTorque(i=patch, torque=(0, 0, f"{'-' if side == 'left' else ''}(kc_torque)")),
+        "torque": AppliedTorque(i=patch, torque=(0, 0, f"{'-' if side == 'left' else ''}(kc_torque) + kc_turn")),
     }
     for name, part in parts.items():
         model.add(f"kc.{side}.{name}", part)
@@ -142,7 +165,7 @@ def _bodies_of(scene: ModelData, axle: Axle) -> set[str]:
     """The bodies that hang together with the uprights otherwise than through the body that carries them."""
     ends = [set(_bodies_at(each)) - {axle.body, GROUND} for each in _elements(scene) if not _depends_on_more(each)]
     found: set[str] = set()
-    grown = {axle.upright(side) for side in SIDES}
+    grown = {axle.carrier(side) for side in SIDES}
     while grown != found:
         found = grown
         grown = found.union(*(each for each in ends if each & found))
@@ -172,4 +195,4 @@ def _stays(element: Element, bodies: set[str]) -> bool:
 
 def design_height(scene: ModelData, axle: Axle, side: str) -> float:
     """The height of a patch as described, m."""
-    return scene.point(Marker(body=axle.upright(side), marker="patch"))[2]
+    return scene.point(axle.at(side, "patch"))[2]

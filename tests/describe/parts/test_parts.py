@@ -148,7 +148,6 @@ def _force(*components):
         ({"use": {"a": {**MIRRORED["a"], "angle": 1}}, "parts": _with(forces=_force(1, 0))}, "found axes: ground, to which the part's mirror is oblique"),
         ({"use": {f"a{k}": {"part": f"p{k}"} for k in range(1)}, "parts": {f"p{k}": {"use": {x: {"part": f"p{k + 1}"} for x in "abcdefgh"}} for k in range(20)}}, "nested deeper than 10"),
         ({"use": {"a": {"part": "p0"}}, "parts": {**{f"p{k}": {"use": {x: {"part": f"p{k + 1}"} for x in "abcdefgh"}} for k in range(8)}, "p8": {}}}, "found more than 10000 parts in their places"),
-        ({"parts": _with(bodies={f"b{k}": {"mass": 1, "inertia": 1} for k in range(3000)}), "use": {"a{k}": {"for": "k in 1..100000", "part": "arm"}}}, "found parts of more than 1000000 values"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_in_one_sentence_with_its_place(found, reason):
@@ -157,23 +156,28 @@ def test_what_is_wrong_is_told_in_one_sentence_with_its_place(found, reason):
     assert "\n" not in str(told.value)
 
 
+def test_values_of_all_parts_are_bounded(monkeypatch):
+    monkeypatch.setattr("stiffmbs.describe.parts.instances.MOST_VALUES", 1000)
+    with pytest.raises(InputError, match="found parts of more than 1000 values"):
+        scene({"a{k}": {"for": "k in 1..100000", "part": "arm"}})
+
+
 def test_a_mirrored_height_is_that_height():
     found = scene(MIRRORED, parts=_with(forces=_force(0, "-bar.y - dy(bar, ground)")))
     assert found.forces["a.f"].force[1].text == "-a.bar.y - dy(a.bar, ground)"
 
 
 def test_the_schema_knows_parts():
-    schema = stiffmbs.scene_schema()
+    schema = jsonschema.Draft202012Validator(stiffmbs.scene_schema())
     example = YAML(typ="safe").load(Path("examples/front_axle.yaml"))
-    jsonschema.validate(example, schema)
+    schema.validate(example)
     for wrong in (
         {"use": {"a": {"on": "car"}}},
         {"parts": {"a": {"body": {}}}},
         {"include": 3},
         {"bodies": None, "name": 3},
     ):
-        with pytest.raises(jsonschema.ValidationError):
-            jsonschema.validate({**example, **wrong}, schema)
+        assert not schema.is_valid({**example, **wrong})
 
 
 def test_a_name_with_dots_may_stand_anywhere():

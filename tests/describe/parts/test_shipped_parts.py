@@ -112,7 +112,6 @@ def test_options_of_a_scene_are_chosen_by_words():
 @pytest.mark.parametrize("part", CORNERS)
 def test_left_and_right_are_mirror_images(part, word):
     found = axle(part, word)
-    assert stiffmbs.scene_schema() is not None
     left = {name.removeprefix("left."): body for name, body in found.bodies.items() if name.startswith("left.")}
     for name, body in left.items():
         right = found.bodies[f"right.{name}"]
@@ -149,11 +148,10 @@ def test_every_part_is_a_valid_scene_by_itself_and_is_listed():
 
 
 def test_the_schema_knows_parts_that_are_placed_at_once():
-    schema = stiffmbs.scene_schema()
+    schema = jsonschema.Draft202012Validator(stiffmbs.scene_schema())
     scene = {
         "dimensions": 3,
         "parts": {"left": {"use": "strut", "compliance": "rigid", "parameters": {"seat": [0, 0, 0.1]}}},
     }
-    jsonschema.validate(scene, schema)
-    with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate({**scene, "parts": {"left": {"use": "strut", "position": "here"}}}, schema)
+    schema.validate(scene)
+    assert not schema.is_valid({**scene, "parts": {"left": {"use": "strut", "position": "here"}}})

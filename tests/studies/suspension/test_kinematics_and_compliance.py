@@ -10,7 +10,8 @@ import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError, SolverError
 
-NONE = {"roll": 0, "steer": 0, "lateral": 0, "brake": 0, "traction": 0, "aligning": 0}
+ALL = ("bump", "roll", "steer", "lateral", "lateral_parallel", "brake", "traction", "aligning", "aligning_parallel")
+NONE = dict.fromkeys(ALL[1:], 0)
 
 
 def axle(part, word, parameters=None, **sections):
@@ -54,6 +55,28 @@ def test_a_trailing_arm_moves_its_wheel_on_a_circle():
     assert bump["left.load"][1:-1] == pytest.approx(expected[1:-1], rel=1e-4)
 
 
+def test_a_rigid_axle_leans_with_its_wheels():
+    """Pads at +-z below wheels 1.48 m apart turn it by asin(z/0.74 m); forces apart cancel, together they move it sideways."""
+    scene = {
+        "dimensions": 3,
+        "gravity": [0, 0, -9.81],
+        "parts": {"rear": {"use": "rigid_axle", "compliance": "bushing"}},
+    }
+    sizes = {**NONE, "bump": 40, "roll": 30, "lateral": 1, "lateral_parallel": 1, "brake": 1}
+    found = stiffmbs.kinematics_and_compliance(stiffmbs.read_scene(json.dumps(scene)), "rear", points=5, **sizes)
+    assert found.asymmetry() < 1e-9
+    lean = np.degrees(np.arcsin(1e-3 * np.linspace(-30, 30, 5) / 0.74))
+    roll, together = found.sweeps["roll"].channels, found.sweeps["lateral_parallel"]
+    assert roll["left.camber"] == pytest.approx(-lean, abs=1e-9)
+    assert roll["right.camber"] == pytest.approx(lean, abs=1e-9)
+    assert np.max(np.abs(found.sweeps["lateral"].channels["left.lateral"])) < 1e-9
+    assert together.slope("left.lateral") == pytest.approx(-together.slope("right.lateral"), rel=1e-9)
+    assert together.slope("left.lateral") > 0.3
+    assert found.sweeps["brake"].slope("left.longitudinal") < -0.3, "leaves wind up"
+    assert "left.motion_ratio.damper.strut" in found.sweeps["bump"].channels
+    assert "left.wheel_rate" not in found.sweeps["brake"].channels
+
+
 def _turn_for(patch, height):
     """The turn of the arm, upwards, that lifts the patch by a height."""
     from scipy.optimize import brentq
@@ -62,7 +85,8 @@ def _turn_for(patch, height):
 
 
 def test_left_and_right_are_mirror_images_on_bushings():
-    found = curves(axle("double_wishbone", "bushing"), lateral=2, aligning=50)
+    found = curves(axle("double_wishbone", "bushing"), lateral=2, lateral_parallel=2, aligning=50, roll=20)
+    assert set(found.sweeps) == {"bump", "roll", "lateral", "lateral_parallel", "aligning"}
     assert found.asymmetry() < 1e-9
     lateral = found.sweeps["lateral"]
     assert lateral.slope("left.lateral") > 0.01, "bushings give way outwards"
@@ -85,8 +109,18 @@ def test_stiff_bushings_are_joints(part):
 @pytest.mark.long
 def test_the_rack_steers_and_the_bar_adds_to_roll(examples):
     found = stiffmbs.kinematics_and_compliance(
-        examples / "car.yaml", points=5, lateral=0, brake=0, traction=0, aligning=0
+        examples / "car.yaml",
+        points=5,
+        lateral=2,
+        lateral_parallel=2,
+        brake=0,
+        traction=0,
+        aligning=0,
+        aligning_parallel=0,
     )
+    assert found.asymmetry() < 1e-9
+    apart, together = (found.sweeps[name].slope("left.lateral") for name in ("lateral", "lateral_parallel"))
+    assert together > apart + 0.001, "both tie rods push the rack's housing the same way"
     assert found.sweeps["steer"].slope("left.toe") < 0 < found.sweeps["steer"].slope("right.toe")
     bump, roll = (found.sweeps[name].channels["left.wheel_rate"][2] for name in ("bump", "roll"))
     assert roll > 1.1 * bump
@@ -111,7 +145,7 @@ def test_the_command_writes_table_curves_figure_and_json(tmp_path):
     scene = tmp_path / "axle.yaml"
     scene.write_text(axle("double_wishbone", "bushing"))
     given = ["kc", str(scene), "--points", "5"]
-    for case in ("roll", "lateral", "brake", "traction", "aligning"):
+    for case in ALL[1:]:
         given += ["--case", f"{case}=0"]
     curves, figure = tmp_path / "kc.csv", tmp_path / "kc.png"
     shown = CliRunner().invoke(main, [*given, "-o", str(curves), "--figure", str(figure)])

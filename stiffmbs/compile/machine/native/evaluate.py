@@ -15,6 +15,7 @@ CALL_WIDTH = len(CALL)
 @compiled
 def evaluate(s, term_set, t):
     """Compute all terms of a set at the state held in `s`; returns a pointer to their values."""
+    s.evaluated[0] += 1
     turned = ints(s.turned[term_set])
     for k in range(s.n_turned[term_set]):
         at = turned[k]

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Symbolic
-from ...roads.road import clipped, magnitude
+from ...roads.road import above_zero, clipped, magnitude
 from ...units import si
 from ..relaxation import DEFLECTIONS
 from ..tyre import Rolling, Tyre
@@ -24,9 +24,9 @@ class FialaTyre(Tyre):
 
     - Fx = C_kappa kappa up to abs(kappa) = U N/(2 C_kappa), beyond sign(kappa) (U N - (U N)^2/(4 C_kappa abs(kappa)));
     - Fy = -U N (1 - H^3) sign(alpha), H = max(0, 1 - C_alpha abs(tan(alpha))/(3 U N));
-    - Mz = U N width (1 - H) H^3 sign(alpha), and My = -rolling_resistance N forward.
+    - Mz = U N width (1 - H) H^3 sign(alpha) forward, and My = -rolling_resistance N forward.
 
-    Slips may lag by relaxation lengths.  Camber gives no force.  Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979; MSC Adams/Tire,
+    forward is 1, in reverse -1, at rest 0.  Slips may lag by relaxation lengths.  Camber gives no force.  Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979; MSC Adams/Tire,
     Fiala tire model.
     """
 
@@ -64,13 +64,18 @@ class FialaTyre(Tyre):
         whole = e.named(clipped(sqrt(slip**2 + across**2 + Float("1e-60"))))
         mu = rolling.friction * (e.mu_static + (e.mu_sliding - e.mu_static) * whole)
         most = e.named(mu * rolling.load + Float(str(TINY)))
-        size, sideways = e.named(magnitude(slip)), e.named(magnitude(across))
         critical = e.named(most / (2 * e.slip_stiffness))
-        apart = magnitude(size - critical)
-        below, above = e.named((size + critical - apart) / 2), e.named((size + critical + apart) / 2)
-        fx = slip / size * (e.slip_stiffness * below + most * Rational(1, 2) - most**2 / (4 * e.slip_stiffness * above))
-        h = e.named(clipped(1 - e.cornering_stiffness * sideways / (3 * most)))
-        left = across / sideways
-        fy = -most * (1 - h**3) * left
-        mz = most * e.width * (1 - h) * h**3 * left
+        above = larger(e, slip, critical)
+        below = e.named(critical * slip / above)
+        fx = e.slip_stiffness * below + most * Rational(1, 2) * e.named(slip - below) / above
+        sideways = e.named(e.cornering_stiffness * across / (3 * most))
+        left = e.named(sideways / larger(e, sideways, 1))
+        part = e.named(magnitude(left))
+        fy = -most * left * (3 - 3 * part + part**2)
+        mz = most * e.width * left * (1 - part) ** 3 * rolling.direction
         return fx, fy, 0, -e.rolling_resistance * rolling.load * rolling.direction, mz
+
+
+def larger(e: Symbolic, x: Any, least: Any) -> Any:
+    """The size of a number, or the least where it is below; around zero smooth, and without rounding."""
+    return e.named(least + above_zero(e.named(magnitude(x) - least)))

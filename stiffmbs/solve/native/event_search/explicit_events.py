@@ -30,6 +30,8 @@ from stiffmbs.solve.native.stages import copied, load_state, weighted
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: relative to the step, and of the time."""
+FARTHEST_PAST = 1e-6
+"""Part of the step up to which the motion goes on straight until a change shows that rounding hides."""
 MOST_RETAKEN, BISECTIONS = 8, 40
 BEFORE_END, ALL = 1.0, 2.0
 """Which stages must not have seen another law: those at the end of a step that has been cut to a change may be just behind it."""
@@ -156,7 +158,7 @@ def _first_change(x, c, s, high):
 
 
 @compiled
-def _retaken(x, c, s, m, h):
+def retaken(x, c, s, m, h):
     """The step again with another length; 0 or a negative status."""
     status = attempt(x, c, s, m, h)
     if status < 0:
@@ -168,7 +170,31 @@ def _retaken(x, c, s, m, h):
 
 
 @compiled
-def _go_past(x, c, s, ahead):
+def _any_found(x):
+    """Whether the event is one of an event function: those of a law's argument have no sign."""
+    found = event_search_view(x.watch).found
+    count = 0
+    for k in range(x.n_event_functions):
+        count += found[k]
+    return count > 0
+
+
+@compiled
+def _way_past(x, c, s, least, most):
+    """How far to go on for the change to show: where the motion hardly moves on, rounding hides it for longer than `least`."""
+    rates = shifted(x.k, c.stages * x.n)
+    ahead = least
+    while ahead <= most and _any_found(x):
+        for i in range(x.n):
+            x.y_stage[i] = x.y[i] + ahead * rates[i]
+        if _changed(x, _values(x, s, x.y_stage, x.t + ahead)):
+            return ahead
+        ahead *= 2.0
+    return least
+
+
+@compiled
+def _go_past(x, c, ahead):
     """Move the end of the step on by so little that rates do not change, beyond an event: no stage has seen the law there."""
     rates = shifted(x.k, c.stages * x.n)
     for i in range(x.n):
@@ -192,7 +218,7 @@ def _taken_to_change(x, c, s, m, high, behind):
         first = _first_change(x, c, s, high)
         if not changed and first <= x.span + 2.0 * behind:
             return 0
-        status = _retaken(x, c, s, m, max(first - behind, 0.5 * first))
+        status = retaken(x, c, s, m, max(first - behind, 0.5 * first))
         if status < 0:
             return status
         changed = _changed(x, _values(x, s, x.y, x.t))
@@ -217,7 +243,7 @@ def _taken_to_event(x, c, s, m, h, behind):
         return 0 if changed else NO_EVENT
     if within < 0.0:
         return int(within)
-    return RETRIED if within == h else _retaken(x, c, s, m, max(within - behind, 0.5 * within))
+    return RETRIED if within == h else retaken(x, c, s, m, max(within - behind, 0.5 * within))
 
 
 def end_at_event(explicit):
@@ -245,7 +271,7 @@ def _ended_at_event(x, c, s, m):
     error = trusted_error(x, c, x.span) if status == 0 else UNTRUSTED
     if not error <= MOST_ERROR:
         return _left(x, c, error)
-    _go_past(x, c, s, 2.0 * behind)
+    _go_past(x, c, _way_past(x, c, s, 2.0 * behind, FARTHEST_PAST * h))
     return 0
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ...describe.spatial.orientation import from_matrix
+from .orientation import from_matrix
 
 
 def plain(value: float) -> float | int:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import SolverError
-from .algebraic_states import rates_by_states
-from .dynamics import Dynamics
+from ...errors import SolverError
+from ..algebraic_states import rates_by_states
+from ..dynamics import Dynamics
 
 TOLERANCE = 1e-10
 """Relative tolerance, and absolute one in scales of the states."""

@@ -1,0 +1,1 @@
+"""Scenes as datasets of Adams/Solver."""

@@ -1,0 +1,156 @@
+"""Forces of a scene as statements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import singledispatchmethod
+from typing import Any
+
+import numpy as np
+
+from ...describe.element import Force
+from ...describe.marker import GROUND, MarkerReference
+from ...describe.spatial.forces.applied import AppliedForce, AppliedTorque
+from ...describe.spatial.forces.beam import Beam
+from ...describe.spatial.forces.bushing import Bushing
+from ...describe.spatial.forces.field import FieldForce
+from ...describe.spatial.forces.shared import LineForce, SpringDamper
+from ...describe.spatial.forces.torsion_spring import TorsionSpring
+from .formulas import Functions
+from .numbering import Numbering
+from .refusal import Refusal
+from .statements import number, numbers, statement
+
+
+class Forces:
+    """Writes the forces of one scene.
+
+    Parameters
+    ----------
+    numbering : Numbering
+    functions : Functions
+    """
+
+    def __init__(self, numbering: Numbering, functions: Functions) -> None:
+        self._numbering, self._functions = numbering, functions
+        self._used = 0
+
+    def statements(self, force: Force) -> Iterator[str]:
+        """What a force becomes.
+
+        Raises
+        ------
+        Refusal
+            Where Adams has no such force.
+        """
+        yield from self._made(force)
+
+    def _next(self) -> int:
+        self._used += 1
+        return self._used
+
+    def _ends(self, force: Force) -> tuple[str, str]:
+        return f"I = {self._numbering.marker(force.i)}", f"J = {self._numbering.marker(force.j)}"  # type: ignore[attr-defined]
+
+    @singledispatchmethod
+    def _made(self, force: Force) -> Iterator[str]:
+        raise Refusal(f"found a force of the type {force.kind}, expected one that Adams has")
+
+    @_made.register
+    def _applied(self, force: AppliedForce | AppliedTorque) -> Iterator[str]:
+        """Three components along the axes of a marker, and the opposite on the other body at the same point."""
+        of_force = isinstance(force, AppliedForce)
+        components = force.force if isinstance(force, AppliedForce) else force.torque
+        axes = force.i if force.axes == "body" else force.frame or MarkerReference(body=GROUND)
+        other = self._numbering.floating(GROUND if force.j is None else force.j.body)
+        names = ("FX", "FY", "FZ") if of_force else ("TX", "TY", "TZ")
+        laws = [f"{name} = {self._functions.text(law)}\\" for name, law in zip(names, components, strict=True)]
+        ends = f"I = {self._numbering.marker(force.i)}", f"JFLOAT = {other}", f"RM = {self._numbering.marker(axes)}"
+        yield statement("VFORCE" if of_force else "VTORQUE", self._next(), *ends, *laws)
+
+    @_made.register
+    def _line(self, force: LineForce) -> Iterator[str]:
+        yield statement(
+            "SFORCE",
+            self._next(),
+            "TRANSLATIONAL",
+            *self._ends(force),
+            f"FUNCTION = {self._functions.text(force.force)}",
+        )
+
+    @_made.register
+    def _spring(self, spring: SpringDamper) -> Iterator[str]:
+        if spring.spring_law is not None or spring.damper_law is not None:
+            yield self._by_laws(spring, spring.free_length, "TRANSLATIONAL")
+            return
+        given = {"K": spring.stiffness, "C": spring.damping, "LENGTH": spring.free_length, "FORCE": -spring.preload}
+        yield statement("SPRINGDAMPER", self._next(), "TRANSLATIONAL", *self._ends(spring), *_given(given))
+
+    @_made.register
+    def _torsion(self, spring: TorsionSpring) -> Iterator[str]:
+        if spring.spring_law is not None or spring.damper_law is not None:
+            yield self._by_laws(spring, spring.free_angle, "ROTATIONAL")
+            return
+        given = {"KT": spring.stiffness, "CT": spring.damping, "ANGLE": spring.free_angle, "TORQUE": -spring.preload}
+        yield statement("SPRINGDAMPER", self._next(), "ROTATIONAL", *self._ends(spring), *_given(given))
+
+    def _by_laws(self, spring: SpringDamper | TorsionSpring, free: float, sort: str) -> str:
+        """A force, or a torque about j's axis, of the deflection s and its rate v: -(k s + law(s) + c v + law(v) + preload)."""
+        i, j = self._numbering.marker(spring.i), self._numbering.marker(spring.j)
+        s, v = (f"DM({i},{j})", f"VR({i},{j})") if sort == "TRANSLATIONAL" else (f"AZ({i},{j})", f"WZ({i},{j},{j})")
+        s = f"{s}-{number(free)}" if free else s
+        terms = [f"{number(k)}*({x})" for k, x in ((spring.stiffness, s), (spring.damping, v)) if k]
+        laws = ((spring.spring_law, s), (spring.damper_law, v))
+        terms += [self._functions.text(law, x) for law, x in laws if law is not None]
+        terms += [number(spring.preload)] if spring.preload else []
+        return statement("SFORCE", self._next(), sort, *self._ends(spring), f"FUNCTION = -({'+'.join(terms)})")
+
+    @_made.register
+    def _bushing(self, force: Bushing) -> Iterator[str]:
+        laws = [name for name in type(force).model_fields if name.startswith("law_")]
+        _refuse_laws(force, *laws)
+        if force.axes != "j":
+            raise Refusal("found a bushing along the ground's axes, expected one along those of j")
+        K, C = _filled(force.stiffness), _filled(force.damping)
+        if any(np.any(matrix - np.diag(np.diag(matrix))) for matrix in (K, C)):
+            raise Refusal("found a bushing that couples its directions, expected a field")
+        given = {"K": np.diag(K)[:3], "KT": np.diag(K)[3:], "C": np.diag(C)[:3], "CT": np.diag(C)[3:]}
+        given |= {"FORCE": _filled(force.preload)[:3], "TORQUE": _filled(force.preload)[3:]}
+        yield statement("BUSHING", self._next(), *self._ends(force), *_lists(given))
+
+    @_made.register
+    def _field(self, force: FieldForce) -> Iterator[str]:
+        given = {"KMATRIX": _filled(force.stiffness).T.ravel(), "CMATRIX": _filled(force.damping).T.ravel()}
+        given |= {"LENGTH": _filled(force.free), "FORCE": _filled(force.preload)}
+        yield statement("FIELD", self._next(), *self._ends(force), *_lists(given))
+
+    @_made.register
+    def _beam(self, force: Beam) -> Iterator[str]:
+        given = {
+            "LENGTH": force.length, "AREA": force.area, "IXX": force.torsion, "IYY": force.iyy, "IZZ": force.izz,
+            "EMODULUS": force.young, "GMODULUS": force.shear_modulus, "ASY": force.asy, "ASZ": force.asz,
+        }  # fmt: skip
+        damping = [f"CRATIO = {number(force.damping_ratio)}"] if force.damping_ratio else []
+        if np.any(_filled(force.damping)):
+            damping = [f"CMATRIX = {numbers(_filled(force.damping).T.ravel())}"]
+        yield statement("BEAM", self._next(), *self._ends(force), *_given(given), *damping)
+
+
+def _filled(values: Any) -> np.ndarray:
+    """An array of numbers, in which nothing given is zero."""
+    found: np.ndarray = np.array(values, dtype=float)
+    return np.nan_to_num(found, nan=0.0)
+
+
+def _refuse_laws(force: Force, *fields: str) -> None:
+    for field in fields:
+        if getattr(force, field) is not None:
+            raise Refusal(f"found a {field} of a {force.kind}, expected numbers alone: write a force with a formula")
+
+
+def _given(values: Mapping[str, float | None]) -> list[str]:
+    return [f"{name} = {number(value)}" for name, value in values.items() if value]
+
+
+def _lists(values: dict[str, np.ndarray]) -> list[str]:
+    return [f"{name} = {numbers(part)}" for name, part in values.items() if np.any(part)]

@@ -1,0 +1,178 @@
+"""Formulas of a scene as function expressions of Adams/Solver."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+
+from ...describe.formula.field import Formula, is_measure, measured_markers
+from ...describe.formula.text import UNIT
+from ...describe.marker import GROUND, MarkerReference
+from ...describe.requests.output import Output, Term, placeholder
+from ...describe.table import Table
+from .numbering import Numbering
+from .refusal import Refusal
+from .statements import number
+
+SAME = (
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "sinh",
+    "cosh",
+    "tanh",
+    "exp",
+    "sqrt",
+    "abs",
+    "step",
+    "step5",
+    "log",
+)
+"""Functions that are called the same, in capitals."""
+OPERATORS: dict[type[ast.AST], tuple[str, int]] = {
+    ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Pow: ("**", 4),
+}  # fmt: skip
+"""How an operator is written, and how tightly it binds."""
+MEASURED = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "vx", "vy", "vz", "vm", "vr", "wx", "wy", "wz", "wm")
+REQUESTED = ("accx", "accy", "accz", "accm", "wdtx", "wdty", "wdtz", "wdtm", "psi", "theta", "phi")
+"""Measures of requests alone."""
+COORDINATES = {"x": "DX", "y": "DY", "z": "DZ", "vx": "VX", "vy": "VY", "vz": "VZ", "wx": "WX", "wy": "WY", "wz": "WZ"}
+
+
+class Functions:
+    """Writes the formulas of one scene.
+
+    Parameters
+    ----------
+    numbering : Numbering
+    names : mapping of str to str
+        What states, and outputs of states, are called: ``DIF(3)``, ``VARVAL(1)``.
+    """
+
+    def __init__(self, numbering: Numbering, names: dict[str, str]) -> None:
+        self._numbering, self._names = numbering, names
+
+    def text(self, law: Formula | Table | float, variable: str = "TIME") -> str:
+        """The expression of a formula, a table of a variable, or a number.
+
+        Parameters
+        ----------
+        law : Formula, Table or float
+        variable : str
+            The expression of the law's own variable, such as the deflection of a spring; of time for a table without one.
+
+        Raises
+        ------
+        Refusal
+            For what Adams' functions do not have.
+        """
+        if isinstance(law, Table):
+            return self._curve("of an element", law, variable)
+        if not isinstance(law, Formula):
+            return number(law)
+        return self._with(dict.fromkeys(law.variables, f"({variable})"))._written(law.tree, law)
+
+    def output(self, output: Output) -> str:
+        """The expression of a request, where it asks for nothing but measures, coordinates and states.
+
+        Raises
+        ------
+        Refusal
+            As `text`.
+        """
+        values = {name: quantity.value for name, quantity in output.quantities.items()}
+        law = Formula(output.text, output.tree, (), values, velocities=True, tables=output.tables)
+        terms = {placeholder(k): self._term(term) for k, term in enumerate(output.terms)}
+        return self._with(terms)._written(output.tree, law)
+
+    def _with(self, names: dict[str, str]) -> Functions:
+        return Functions(self._numbering, {**self._names, **names})
+
+    def _term(self, term: Term) -> str:
+        if term.element or term.function not in (*MEASURED, *REQUESTED):
+            raise Refusal(f"found '{term}', expected a measure that Adams has")
+        return f"{term.function.upper()}({','.join(str(self._numbering.marker(marker)) for marker in term.markers)})"
+
+    def _written(self, node: ast.expr, law: Formula, tight: int = 0) -> str:
+        match node:
+            case ast.Constant(int() | float() as value):
+                return number(value)
+            case ast.UnaryOp(op, operand):
+                inner = self._written(operand, law, 3)
+                return f"({'-' if isinstance(op, ast.USub) else '+'}{inner})"
+            case ast.BinOp(left, op, right):
+                sign, binds = OPERATORS[type(op)]
+                before = self._written(left, law, binds + (sign == "**"))
+                after = self._written(right, law, binds + (sign in "-/"))
+                return f"({before}{sign}{after})" if binds < tight else f"{before}{sign}{after}"
+            case ast.Name(name):
+                return self._name(name, law)
+            case ast.Attribute(ast.Name(owner), name) if owner == UNIT:
+                return number(law.values[f"{UNIT}.{name}"])
+            case ast.Attribute(ast.Name(owner), name):
+                return self._coordinate(owner, name, law)
+            case ast.Call(ast.Name(name), arguments):
+                return self._call(node, name, arguments, law)
+        raise Refusal(f"found '{ast.unparse(node)}' in '{law.text}', expected what Adams' functions have")
+
+    def _name(self, name: str, law: Formula) -> str:
+        if name == "t":
+            return "TIME"
+        if name in self._names:
+            return self._names[name]
+        if name not in law.values:
+            raise Refusal(f"found '{name}' in '{law.text}', expected what Adams' functions have")
+        return f"({number(law.values[name])})" if law.values[name] < 0 else number(law.values[name])
+
+    def _coordinate(self, body: str, name: str, law: Formula) -> str:
+        if f"{body}.{name}" in self._names:
+            return self._names[f"{body}.{name}"]
+        if name not in COORDINATES:
+            raise Refusal(
+                f"found '{body}.{name}' in '{law.text}', expected another coordinate, or angles between markers"
+            )
+        centre = self._numbering.center(body)
+        origin = self._numbering.marker(MarkerReference(body=GROUND))
+        return f"{COORDINATES[name]}({centre},{origin}{f',{centre}' if name.startswith('w') else ''})"
+
+    def _call(self, node: ast.Call, name: str, arguments: list[ast.expr], law: Formula) -> str:
+        if is_measure(node):
+            if name not in MEASURED:
+                raise Refusal(f"found '{ast.unparse(node)}' in '{law.text}', expected one of {', '.join(MEASURED)}")
+            markers = ",".join(str(self._numbering.marker(marker)) for marker in measured_markers(node))
+            return f"{name.upper()}({markers})"
+        if name in law.tables:
+            return self._curve(name, law.tables[name], self._written(arguments[0], law))
+        written = [self._written(argument, law) for argument in arguments]
+        if name in SAME:
+            return f"{name.upper()}({','.join(written)})"
+        if name in WRITTEN:
+            return WRITTEN[name](written)
+        raise Refusal(f"found the function {name} in '{law.text}', expected one that Adams has")
+
+    def _curve(self, name: str, table: Table, argument: str) -> str:
+        way, ident = self._numbering.spline(name, table)
+        return f"INTERP({argument},0,1,{ident},0)" if way == "INTERP" else f"{way}({argument},0,{ident},0)"
+
+
+def _nested(name: str) -> Callable[[list[str]], str]:
+    def written(arguments: list[str]) -> str:
+        """Of two arguments each."""
+        first, *rest = arguments
+        return f"{name}({first},{written(rest)})" if rest else first
+
+    return written
+
+
+WRITTEN: dict[str, Callable[[list[str]], str]] = {
+    "min": _nested("MIN"),
+    "max": _nested("MAX"),
+    "sign": lambda x: f"IF({x[0]}:-1,0,1)",
+    "branch": lambda x: f"IF({x[0]}:{','.join(x[1:])})",
+    "asinh": lambda x: f"LOG(({x[0]})+SQRT(({x[0]})**2+1))",
+}
+"""Functions that Adams writes otherwise."""

@@ -1,0 +1,133 @@
+"""Joints of a scene as statements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import singledispatchmethod
+
+from ...describe.element import Joint, JointName
+from ...describe.joints.constraint_equation import ConstraintEquation
+from ...describe.joints.coupler import Coupler
+from ...describe.joints.drive import Drive
+from ...describe.joints.velocity_equation import VelocityEquation
+from ...describe.spatial.joints.shared import Distance
+from ...describe.spatial.joints.thread import Thread
+from ...describe.spatial.model import SpatialData
+from ..scene.joints import KINDS
+from .formulas import Functions
+from .numbering import Numbering
+from .refusal import Refusal
+from .statements import number, statement
+
+PRIMITIVES = ("INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
+TYPES = {kind: name for name, kind in KINDS.items() if name != "ATPOINT"}
+"""Adams' names of the joints that take their two markers as they are."""
+TURNS = {"angle": "ROTATIONAL", "displacement": "TRANSLATIONAL"}
+
+
+class Joints:
+    """Writes the joints of one scene.
+
+    Parameters
+    ----------
+    model : SpatialData
+    numbering : Numbering
+    functions : Functions
+    """
+
+    def __init__(self, model: SpatialData, numbering: Numbering, functions: Functions) -> None:
+        self._model, self._numbering, self._functions = model, numbering, functions
+        plain = [name for name, joint in model.joints.items() if joint.kind in (*TYPES, Thread.kind)]
+        self._numbers = {name: k for k, name in enumerate(plain, 1)}
+        self._others = 0
+
+    def statements(self, name: str, joint: Joint) -> Iterator[str]:
+        """What a joint becomes.
+
+        Raises
+        ------
+        Refusal
+            Where Adams has no such joint.
+        """
+        yield from self._made(joint, name)
+
+    def _next(self) -> int:
+        self._others += 1
+        return self._others
+
+    def _ends(self, joint: Joint) -> tuple[str, str]:
+        return f"I = {self._numbering.marker(joint.i)}", f"J = {self._numbering.marker(joint.j)}"  # type: ignore[attr-defined]
+
+    @singledispatchmethod
+    def _made(self, joint: Joint, name: str) -> Iterator[str]:
+        if joint.kind not in TYPES:
+            raise Refusal(f"found a joint of the type {joint.kind}, expected one that Adams has")
+        kind = TYPES[joint.kind]
+        yield statement("JPRIM" if kind in PRIMITIVES else "JOINT", self._numbers[name], kind, *self._ends(joint))
+
+    @_made.register
+    def _thread(self, joint: Thread, name: str) -> Iterator[str]:
+        if joint.offset is not None:
+            raise Refusal("found an offset of a thread, expected none: it starts as drawn")
+        yield statement("JOINT", self._numbers[name], "SCREW", *self._ends(joint), f"PITCH = {number(joint.pitch)}")
+
+    @_made.register
+    def _coupler(self, joint: Coupler, name: str) -> Iterator[str]:
+        tied = (joint.joint_1, joint.joint_2)
+        if joint.offset is not None:
+            first, second = (self._measured(one) for one in tied)
+            zero = f"{first}-({number(joint.scale)})*{second}-({number(joint.offset)})"
+            yield statement("GCON", self._next(), f"FUNCTION = {zero}")
+            return
+        sorts = ":".join(TURNS[self._coordinate(one)][0] for one in tied)
+        idents = ", ".join(str(self._number(one)) for one in tied)
+        scales = f"1, {number(-joint.scale)}"
+        yield statement("COUPLER", self._next(), f"JOINTS = {idents}", f"TYPE = {sorts}", f"SCALES = {scales}")
+
+    @_made.register
+    def _distance(self, joint: Distance, name: str) -> Iterator[str]:
+        i, j = self._numbering.marker(joint.i), self._numbering.marker(joint.j)
+        yield statement("GCON", self._next(), f"I = {i}", f"FUNCTION = DM({i},{j})-{number(joint.length)}")
+
+    @_made.register
+    def _equation(self, joint: ConstraintEquation | VelocityEquation, name: str) -> Iterator[str]:
+        reported = [] if joint.i is None else [f"I = {self._numbering.marker(joint.i)}"]
+        for formula in joint.zero:
+            yield statement("GCON", self._next(), *reported, f"FUNCTION = {self._functions.text(formula)}")
+
+    @_made.register
+    def _drive(self, joint: Drive, name: str) -> Iterator[str]:
+        if joint.joint is None:
+            raise Refusal("found a drive of a formula, expected one of a joint")
+        law, order = (
+            (joint.prescribed_position, "DISPLACEMENT")
+            if joint.prescribed_velocity is None
+            else (joint.prescribed_velocity, "VELOCITY")
+        )
+        assert law is not None
+        sort = TURNS[self._coordinate(joint.joint)]
+        yield statement(
+            "MOTION",
+            self._next(),
+            f"JOINT = {self._number(joint.joint)}",
+            sort,
+            order,
+            f"FUNCTION = {self._functions.text(law)}",
+        )
+
+    def _measured(self, name: JointName) -> str:
+        """A coordinate of a joint by its markers."""
+        joint = self._model.joints[name.joint]
+        i, j = (self._numbering.marker(marker) for marker in (joint.i, joint.j))  # type: ignore[attr-defined]
+        return f"AZ({i},{j})" if self._coordinate(name) == "angle" else f"DZ({i},{j},{j})"
+
+    def _coordinate(self, name: JointName) -> str:
+        coordinate = name.coordinate_of(self._model.joints[name.joint])
+        if coordinate is None:
+            raise Refusal(f"found the joint {name}, expected one with a coordinate")
+        return coordinate
+
+    def _number(self, name: JointName) -> int:
+        if name.joint not in self._numbers:
+            raise Refusal(f"found the joint {name.joint}, expected one that Adams has")
+        return self._numbers[name.joint]

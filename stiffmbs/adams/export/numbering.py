@@ -1,0 +1,145 @@
+"""Numbers of the parts, markers and splines of a dataset, and the statements that these become."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ...describe.marker import GROUND, MarkerReference
+from ...describe.spatial.body import Body
+from ...describe.spatial.model import SpatialData
+from ...describe.spatial.orientation import IDENTITY, matrix
+from ...describe.table import Table
+from .refusal import Refusal
+from .statements import number, numbers, statement
+
+CURVES = {"akima": "AKISPL", "lines": "INTERP", "not-a-knot": "CUBSPL"}
+GROUND_PART = 1
+FEWEST = 4
+"""Points of a spline of Adams."""
+
+
+class Numbering:
+    """Gives numbers to what statements name.
+
+    Parameters
+    ----------
+    model : SpatialData
+        The scene.
+    """
+
+    def __init__(self, model: SpatialData) -> None:
+        self._model = model
+        self.parts = {GROUND: GROUND_PART} | {name: k for k, name in enumerate(model.bodies, GROUND_PART + 1)}
+        self._markers: dict[tuple[str, tuple[float, ...], tuple[float, ...]], int] = {}
+        self._floating: dict[str, int] = {}
+        self._splines: dict[str, tuple[int, Table]] = {}
+        self._used = 0
+
+    def marker(self, reference: MarkerReference) -> int:
+        """The number of a marker, by name or on the spot."""
+        place = self._model.place(reference)
+        return self.placed(reference.body, place.point, place.orientation)
+
+    def center(self, body: str) -> int:
+        """The number of a body's centre-of-mass marker, along its own axes."""
+        return self.placed(body, self._model.bodies[body].center_of_mass, IDENTITY)
+
+    def placed(self, body: str, point: Sequence[float], orientation: Sequence[float]) -> int:
+        """The number of a marker at a place of a body."""
+        key = body, tuple(float(x) for x in point), tuple(float(x) for x in orientation)
+        if key not in self._markers:
+            self._markers[key] = self._next()
+        return self._markers[key]
+
+    def floating(self, body: str) -> int:
+        """The number of a floating marker of a body, on which reactions act."""
+        if body not in self._floating:
+            self._floating[body] = self._next()
+        return self._floating[body]
+
+    def _next(self) -> int:
+        self._used += 1
+        return self._used
+
+    def spline(self, name: str, table: Table) -> tuple[str, int]:
+        """The function that evaluates a table, and the number of its spline.
+
+        Raises
+        ------
+        Refusal
+            For a curve that Adams does not draw.
+        """
+        way = "akima" if table.akima else "lines" if table.lines else table.ends
+        if way not in CURVES:
+            raise Refusal(
+                f"found the table {name} with the ends '{way}', expected akima, lines, or the ends not-a-knot"
+            )
+        if len(table.table) < FEWEST and way != "lines":
+            raise Refusal(
+                f"found a curve through {len(table.table)} points, expected {FEWEST} or more, or straight lines"
+            )
+        if name not in self._splines:
+            self._splines[name] = len(self._splines) + 1, table
+        return CURVES[way], self._splines[name][0]
+
+    def statements(self) -> Iterator[str]:
+        """Parts with their markers, and splines."""
+        moving = any(any(body.velocity) or any(body.omega) for body in self._model.bodies.values())
+        yield statement("PART", GROUND_PART, "GROUND")
+        yield from self._of(GROUND)
+        for name, body in self._model.bodies.items():
+            centre = self.center(name)
+            yield f"! adams_view_name='{name}'"
+            yield statement("PART", self.parts[name], *_part(body, centre, moving))
+            yield from self._of(name)
+        for ident, table in self._splines.values():
+            x, y = zip(*_enough(table), strict=True)
+            yield statement("SPLINE", ident, f"X = {numbers(x)}", f"Y = {numbers(y)}")
+
+    def _of(self, body: str) -> Iterator[str]:
+        part = f"PART = {self.parts[body]}"
+        for (owner, point, orientation), ident in self._markers.items():
+            if owner == body:
+                turned = [] if orientation == IDENTITY else [f"REULER = {numbers(euler(orientation))}"]
+                yield statement("MARKER", ident, part, f"QP = {numbers(point)}", *turned)
+        if body in self._floating:
+            yield statement("MARKER", self._floating[body], part, "FLOATING")
+
+
+def _part(body: Body, centre: int, moving: bool) -> Iterator[str]:
+    """Mass, inertia, pose and velocities; products of inertia are the tensor's entries with their sign turned.
+
+    Where any body moves at the start all velocities are stated, as Adams lets those that are not follow the others.
+    """
+    yield f"MASS = {number(body.mass)}"
+    yield f"CM = {centre}"
+    I = np.array(body.inertia)
+    yield f"IP = {numbers([*np.diag(I), *(-part for part in (I[0, 1], I[0, 2], I[1, 2]))])}"
+    yield f"QG = {numbers(body.position)}"
+    if body.orientation != IDENTITY:
+        yield f"REULER = {numbers(euler(body.orientation))}"
+    for names, given, values in (("VX VY VZ", "velocity", body.velocity), ("WX WY WZ", "omega", body.omega)):
+        if moving and given not in body.open:
+            yield from (f"{name} = {number(value)}" for name, value in zip(names.split(), values, strict=True))
+
+
+def _enough(table: Table) -> tuple[tuple[float, float], ...]:
+    """The points of a table, of straight lines four at least."""
+    points = table.table
+    if len(points) >= FEWEST:
+        return points
+    x, y = zip(*points, strict=True)
+    inner = np.setdiff1d(np.linspace(x[0], x[-1], FEWEST + 1)[1:-1], x)
+    more = zip(inner.tolist(), np.interp(inner, x, y).tolist(), strict=True)
+    return tuple(sorted([*points, *more]))
+
+
+def euler(orientation: Sequence[float]) -> tuple[float, float, float]:
+    """The body-fixed turns about z, x, z of an orientation, rad."""
+    A = matrix(orientation)
+    tilt = float(np.arctan2(np.hypot(A[0, 2], A[1, 2]), A[2, 2]))
+    if np.hypot(A[0, 2], A[1, 2]) < 1e-15:
+        return float(np.arctan2(A[1, 0], A[0, 0])), tilt, 0.0
+    return float(np.arctan2(A[0, 2], -A[1, 2])), tilt, float(np.arctan2(A[2, 0], A[2, 1]))

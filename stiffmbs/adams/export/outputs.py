@@ -1,0 +1,52 @@
+"""States and requests of a scene as statements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from ...describe.formula.field import Formula
+from ...describe.spatial.model import SpatialData
+from ...describe.states.state import StateValue
+from .formulas import Functions
+from .refusal import Refusal
+from .statements import number, statement
+
+Write = Callable[[Functions], Iterator[str]]
+
+
+def state_names(scene: SpatialData) -> dict[str, str]:
+    """What states and their outputs are called in functions."""
+    names = {name: f"DIF({k})" for k, name in enumerate(scene.state_values(), 1)}
+    return names | {name: f"VARVAL({k})" for k, name in enumerate(scene.state_outputs(), 1)}
+
+
+def states(scene: SpatialData) -> Iterator[tuple[str, Write]]:
+    """States by name, each with what writes it: DIFF, implicit for algebraic ones; outputs are VARIABLEs."""
+    for k, (name, value) in enumerate(scene.state_values().items(), 1):
+
+        def write(functions: Functions, k: int = k, value: StateValue = value) -> Iterator[str]:
+            if value.rate is None:
+                raise Refusal("found the state of an element, expected one of the section states")
+            implicit = ["IMPLICIT"] if value.algebraic else []
+            law = functions.text(value.rate)
+            yield statement("DIFF", k, f"IC = {number(value.start)}", *implicit, f"FUNCTION = {law}")
+
+        yield name, write
+    for k, (name, formula) in enumerate(scene.state_outputs().items(), 1):
+
+        def report(functions: Functions, k: int = k, formula: Formula = formula) -> Iterator[str]:
+            yield statement("VARIABLE", k, f"FUNCTION = {functions.text(formula)}")
+
+        yield name, report
+
+
+def requests(scene: SpatialData, functions: Functions) -> Iterator[str]:
+    """Requests; a comment names those that Adams' functions cannot say."""
+    for k, (name, output) in enumerate(scene.outputs().items(), 1):
+        try:
+            law = functions.output(output)
+        except Refusal:
+            yield f"! the request {name} is left out"
+            continue
+        yield f"! adams_view_name='{name}'"
+        yield statement("REQUEST", k, f"F2 = {law}\\")

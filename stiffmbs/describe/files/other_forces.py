@@ -1,0 +1,124 @@
+"""Scenes that differ by values which stand in forces alone: these are read anew, and nothing else.
+
+Reading a whole scene costs more than solving a small one.  A value that a formula of a body, a joint, a table or a run
+setting names is left to `stiffmbs.describe.scene.made_scene`, and so is whatever does not fit, which says why.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError as PydanticError
+
+from ...errors import InputError
+from ..parts.options import CHOOSE, OPTIONS
+from ..scene import Scene
+from .expand import read_parameters, replaced_parameters, set_value, unshared
+from .unchanged import Unchanged, names_in
+from .written_scene import WrittenScene
+
+PARAMETERS, FORCES = "parameters", "forces"
+NOT_AS_WRITTEN = ("use", "stages", OPTIONS, CHOOSE)
+"""Sections with which the entries of a scene are not those of its file."""
+
+
+class OtherForces:
+    """Scenes with other values of some parameters and of some fields of forces.
+
+    Parameters
+    ----------
+    written : WrittenScene
+    names : sequence of str
+        What is varied, as `stiffmbs.load_scene` changes it.
+    unchanged : Unchanged
+        With a scene of the same content that was read with some values of them.
+    """
+
+    def __init__(self, written: WrittenScene, names: Sequence[str], unchanged: Unchanged) -> None:
+        self._names, self._unchanged = names, unchanged
+        self._content = unshared(copy.deepcopy(dict(written.content)))
+        replaced = [(name, None) for name in (*(path for path, _ in written.changes), *names)]
+        self._replaced = replaced_parameters(self._content, replaced)
+        self._affected = self._found(written)
+
+    def _found(self, written: WrittenScene) -> frozenset[str] | None:
+        """The forces that the values stand in; None where they stand elsewhere too."""
+        content, parameters = self._content, self._content.get(PARAMETERS) or {}
+        if any(content.get(section) for section in NOT_AS_WRITTEN) or any(isinstance(v, str) for _, v in written.changes):  # fmt: skip
+            return None
+        for path, value in written.changes:
+            set_value(content, path, value)
+        own: set[str] = set()
+        changed: set[str] = set()
+        for name in self._names:
+            section, _, rest = name.partition(".")
+            force = next((force for force in content.get(FORCES) or {} if rest.startswith(f"{force}.")), None)
+            if name in parameters or (section == PARAMETERS and rest in parameters):
+                changed.add(name.removeprefix(f"{PARAMETERS}."))
+            elif section == FORCES and force is not None and rest != f"{force}.type":
+                own.add(force)
+            else:
+                return None
+        changed |= _following(parameters, changed)
+        if any(names_in({key: entry}) & changed for key, entry in content.items() if key not in (PARAMETERS, FORCES)):
+            return None
+        forces = content.get(FORCES) or {}
+        found = frozenset(own | {name for name, entry in forces.items() if names_in({name: entry}) & changed})
+        as_written = all(
+            isinstance(forces[name], dict) and "for" not in forces[name] and "{" not in f"{name}{_texts(forces[name])}"
+            for name in found
+        )
+        return found if as_written else None
+
+    def scene(self, values: Sequence[Any]) -> Scene | None:
+        """The scene with such values; None where it must be read as a whole."""
+        before = self._unchanged.scene
+        if self._affected is None or before is None or any(isinstance(value, str) for value in values):
+            return None
+        content = {
+            PARAMETERS: dict(self._content.get(PARAMETERS) or {}),
+            FORCES: {name: copy.deepcopy(self._content[FORCES][name]) for name in self._affected},
+        }
+        try:
+            for name, value in zip(self._names, values, strict=True):
+                set_value(content, name, value)
+            parameters = read_parameters(content[PARAMETERS], self._replaced)
+            context = {**self._unchanged.context, PARAMETERS: parameters}
+            forces = {
+                name: type(before.forces[name]).model_validate(entry, context=context)
+                for name, entry in content[FORCES].items()
+            }
+            scene = before.model_copy(
+                update={
+                    PARAMETERS: {name: quantity.value for name, quantity in parameters.items()},
+                    FORCES: {name: forces.get(name, force) for name, force in before.forces.items()},
+                }
+            )
+            scene.check_elements({f"{FORCES}.{name}": force for name, force in forces.items()})
+        except (InputError, PydanticError, ValueError):
+            return None
+        scene._quantities = parameters
+        return scene
+
+
+def _following(parameters: Mapping[str, Any], changed: set[str]) -> set[str]:
+    """The parameters whose formulas name changed ones, directly or through others."""
+    found = set(changed)
+    for name, value in parameters.items():  # one may use those above it alone
+        if name not in found and names_in({"": value}) & found:
+            found.add(name)
+    return found
+
+
+def _texts(entry: Any) -> str:
+    """All texts of an entry in one."""
+    match entry:
+        case str():
+            return entry
+        case dict():
+            return "".join(_texts(part) for pair in entry.items() for part in pair)
+        case list() | tuple():
+            return "".join(map(_texts, entry))
+    return ""

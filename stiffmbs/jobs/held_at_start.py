@@ -1,0 +1,47 @@
+"""Starts at which joints hold that do not hold later: initial conditions of joints (Adams/Solver, JOINT statement, IC)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..describe.scene import Scene
+from ..describe.settings import RunSettings
+from ..solve.dynamics import Dynamics
+from ..solve.initial import consistent_values, initial_values
+
+
+def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
+    """Move the state at hand by the least amount to where the joints hold that a scene has at its start alone.
+
+    Equations of positions hold for positions alone, those of velocities for velocities: a drive of a position leaves the
+    velocity open.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+        Of the scene.
+    scene : Scene
+    t : float
+        s.
+
+    Raises
+    ------
+    AssemblyError
+        When no such state is found.
+    """
+    from .run import examined
+
+    held = scene.held_at_start
+    if held is None:
+        return
+    found = examined(held, RunSettings(start=t))
+    placed = initial_values(found.dynamics(), t)
+    system, names = found.redundancy.system, {*scene.at_start}
+    of_start = np.array([name in names for name, _ in system.equations], dtype=bool)
+    active = np.where(of_start, ~system.holonomic, found.redundancy.active)
+    moving = Dynamics(replace(system, active=active, q=placed.q))
+    velocities = consistent_values(moving, t).u
+    n_pose = dynamics.system.n_pose
+    dynamics.state.q[:n_pose], dynamics.state.u[:] = placed.q[:n_pose], velocities

@@ -1,0 +1,1 @@
+"""Robots described by other programs (URDF, MuJoCo's MJCF) as scenes."""

@@ -1,0 +1,70 @@
+"""Scenes from robots' files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from ..describe.files.scene_text import scene_text
+from ..describe.files.text_file import file_text, source_name
+from ..describe.scene import Scene, made_scene
+from ..errors import InputError
+from .robot import Robot, RobotFault
+from .scene.scene import scene
+
+URDF = ".urdf"
+"""How the name of a URDF file ends; others are MJCF."""
+AS_DRAWN: Mapping[str, float] = MappingProxyType({})
+
+
+def load_robot(
+    path: str | Path,
+    changes: Sequence[tuple[str, str]] = (),
+    *,
+    coordinates: Mapping[str, float] = AS_DRAWN,
+    rates: Mapping[str, float] = AS_DRAWN,
+) -> Scene:
+    """Read a scene from a robot's file.
+
+    Parameters
+    ----------
+    path : str or Path
+        URDF where its name ends in ``.urdf``; MJCF in ``.xml`` or ``.mjcf``, which needs the package mujoco.
+    changes : sequence of (path, text)
+        Values put in place of those that the file gives, such as ``("bodies.hand.mass", "2 kg")``.
+    coordinates, rates : mappings of str to float
+        Of hinges and slides at the start, rad or m and their rates, by joint; others are as drawn, and at rest.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, or its robot makes no scene.
+    """
+    return made_scene(_found(path, coordinates, rates), changes, source_name(path), lambda _: None)
+
+
+def convert_robot(
+    path: str | Path, *, coordinates: Mapping[str, float] = AS_DRAWN, rates: Mapping[str, float] = AS_DRAWN
+) -> str:
+    """The scene of a robot's file as the text of a scene file; parameters and errors are those of `load_robot`."""
+    load_robot(path, coordinates=coordinates, rates=rates)  # says what is wrong with it
+    return scene_text(_found(path, coordinates, rates))
+
+
+def _found(path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
+    try:
+        return scene(_read(path), coordinates, rates)
+    except RobotFault as fault:
+        raise InputError(f"{source_name(path)}: {fault}") from None
+
+
+def _read(path: str | Path) -> Robot:
+    if Path(path).suffix.lower() == URDF:
+        from .urdf import read_urdf
+
+        return read_urdf(file_text(path))
+    from .mjcf.model import read_mjcf
+
+    return read_mjcf(path)

@@ -1,0 +1,119 @@
+"""Actuators and fixed tendons of a compiled MJCF model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..robot import RobotFault, Transmission
+
+
+def transmissions(m: Any) -> Iterator[Transmission]:
+    """What acts along the joints: actuators with their inputs, and the springs and dampers of tendons."""
+    for k in range(m.nactuator if hasattr(m, "nactuator") else m.nu):
+        yield _actuator(m, k)
+    for k in range(m.ntendon):
+        yield from _tendon(m, k)
+
+
+def _actuator(m: Any, k: int) -> Transmission:
+    import mujoco
+
+    name = m.actuator(k).name or f"actuator_{k}"
+    gain, bias, dynamics = (
+        mujoco.mjtGain(m.actuator_gaintype[k]),
+        mujoco.mjtBias(m.actuator_biastype[k]),
+        mujoco.mjtDyn(m.actuator_dyntype[k]),
+    )
+    lags = {
+        mujoco.mjtDyn.mjDYN_NONE: None,
+        mujoco.mjtDyn.mjDYN_INTEGRATOR: 0.0,
+        mujoco.mjtDyn.mjDYN_FILTER: float(m.actuator_dynprm[k, 0]),
+        mujoco.mjtDyn.mjDYN_FILTEREXACT: float(m.actuator_dynprm[k, 0]),
+    }
+    known = gain in (mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtGain.mjGAIN_AFFINE) and bias in (
+        mujoco.mjtBias.mjBIAS_NONE,
+        mujoco.mjtBias.mjBIAS_AFFINE,
+    )
+    inputs, outputs = (getattr(m, key, None) for key in ("actuator_ctrlnum", "actuator_outnum"))
+    one = (inputs is None or inputs[k] == 1) and (outputs is None or outputs[k] == 1)
+    if not known or not one or dynamics not in lags:
+        kinds = ", ".join(kind.name.split("_")[1].lower() for kind in (gain, bias, dynamics))
+        raise RobotFault(
+            f"actuator {name}: found gain, bias and dynamics {kinds}, expected fixed or affine ones, and none, a filter or an integrator"
+        )
+    for key in ("actuator_damping", "actuator_dampingpoly", "actuator_armature", "actuator_delay"):
+        if hasattr(m, key) and np.any(getattr(m, key)[k]):
+            raise RobotFault(f"actuator {name}: found {key.split('_')[1]} of its own, expected that of the joint")
+    fixed = gain == mujoco.mjtGain.mjGAIN_FIXED
+    gains = (float(m.actuator_gainprm[k, 0]), 0.0, 0.0) if fixed else tuple(map(float, m.actuator_gainprm[k, :3]))
+    affine = bias == mujoco.mjtBias.mjBIAS_AFFINE
+    return Transmission(
+        name,
+        _gears(m, k, name),
+        gain=gains,
+        bias=tuple(map(float, m.actuator_biasprm[k, :3])) if affine else (0.0, 0.0, 0.0),
+        control=bounds(m.actuator_ctrllimited[k], m.actuator_ctrlrange[k]),
+        force=bounds(m.actuator_forcelimited[k], m.actuator_forcerange[k]),
+        lag=lags[dynamics],
+    )
+
+
+def bounds(limited: Any, ends: Any) -> tuple[float, float] | None:
+    """The ends of a range that holds, or None."""
+    return (float(ends[0]), float(ends[1])) if limited else None
+
+
+def _gears(m: Any, k: int, name: str) -> dict[str, float]:
+    """How the length of an actuator follows from the coordinates of joints."""
+    import mujoco
+
+    kind, target = mujoco.mjtTrn(m.actuator_trntype[k]), int(m.actuator_trnid[k, 0])
+    gear = float(m.actuator_gear[k, 0])
+    if kind in (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT):
+        return {_of_one_coordinate(m, target, f"actuator {name}"): gear}
+    if kind == mujoco.mjtTrn.mjTRN_TENDON:
+        return {joint: gear * factor for joint, factor in _fixed(m, target, f"actuator {name}").items()}
+    raise RobotFault(
+        f"actuator {name}: found that it acts on a {kind.name.split('_')[1].lower()}, expected a joint or fixed tendon"
+    )
+
+
+def _tendon(m: Any, k: int) -> Iterator[Transmission]:
+    """The spring and damper of a tendon, which act outside of the range of lengths where the spring rests."""
+    name = m.tendon(k).name or f"tendon_{k}"
+    stiffness, damping = float(m.tendon_stiffness[k]), float(m.tendon_damping[k])
+    for key in ("stiffnesspoly", "dampingpoly", "springyield", "armature", "frictionloss"):
+        values = getattr(m, f"tendon_{key}", None)
+        if values is not None and np.any(values[k]):
+            raise RobotFault(f"tendon {name}: found {key}, expected a linear spring and damper")
+    if stiffness == 0 and damping == 0:
+        return
+    low, high = map(float, m.tendon_lengthspring[k])
+    if stiffness and low != high:
+        raise RobotFault(f"tendon {name}: found a spring that rests from {low:g} to {high:g} m, expected one length")
+    yield Transmission(name, _fixed(m, k, f"tendon {name}"), gain=None, bias=(stiffness * low, -stiffness, -damping))
+
+
+def _fixed(m: Any, tendon: int, where: str) -> dict[str, float]:
+    """The joints of a fixed tendon with their factors."""
+    import mujoco
+
+    found: dict[str, float] = {}
+    for k in range(m.tendon_adr[tendon], m.tendon_adr[tendon] + m.tendon_num[tendon]):
+        if mujoco.mjtWrap(m.wrap_type[k]) != mujoco.mjtWrap.mjWRAP_JOINT:
+            raise RobotFault(f"{where}: found a tendon through space, expected a fixed one, of joints")
+        name = _of_one_coordinate(m, int(m.wrap_objid[k]), where)
+        found[name] = found.get(name, 0.0) + float(m.wrap_prm[k])
+    return found
+
+
+def _of_one_coordinate(m: Any, joint: int, where: str) -> str:
+    import mujoco
+
+    name: str = m.joint(joint).name or f"joint_{joint}"
+    if mujoco.mjtJoint(m.jnt_type[joint]) not in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
+        raise RobotFault(f"{where}: found that it acts on {name}, expected a hinge or slide")
+    return name

@@ -1,0 +1,96 @@
+"""Where the links of a robot are, from the coordinates of their joints (forward kinematics along the tree)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..describe.spatial.orientation import conjugate, product, rotated
+from .robot import SAME_AXES, Link, LinkJoint, Robot
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A frame in the world, and how it moves.
+
+    Attributes
+    ----------
+    position : ndarray, shape (3,)
+        m.
+    orientation : tuple of float
+        Quaternion, the scalar first.
+    velocity, omega : ndarray, shape (3,)
+        Of its origin, m/s, and angular, rad/s; both in ground axes.
+    """
+
+    position: np.ndarray
+    orientation: tuple[float, ...]
+    velocity: np.ndarray
+    omega: np.ndarray
+
+    def point(self, local: tuple[float, ...]) -> np.ndarray:
+        """A point of the frame in the world, m."""
+        return self.position + rotated(self.orientation, local)
+
+    def velocity_at(self, point: np.ndarray) -> np.ndarray:
+        """Velocity of a point that moves with the frame, m/s."""
+        return self.velocity + np.cross(self.omega, point - self.position)
+
+    def local(self, point: np.ndarray) -> np.ndarray:
+        """A point of the world in the frame, m."""
+        return rotated(conjugate(self.orientation), point - self.position)
+
+    def axes(self, orientation: tuple[float, ...]) -> tuple[float, ...]:
+        """An orientation in the world as one in the frame."""
+        return product(conjugate(self.orientation), orientation)
+
+
+WORLD = Placed(np.zeros(3), SAME_AXES, np.zeros(3), np.zeros(3))
+
+
+def frames(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, tuple[Placed, ...]]:
+    """The frames of each link: where its parent carries it, then after each of its joints; the last is the link's own.
+
+    Parameters
+    ----------
+    robot : Robot
+    coordinates, rates : mappings of str to float
+        Of hinges and slides by name, rad or m, and their rates; those that are missing are at zero of the drawing.
+    """
+    found: dict[str, tuple[Placed, ...]] = {}
+    for link in robot.links:
+        carrier = WORLD if link.parent is None else found[link.parent][-1]
+        found[link.name] = tuple(_along(link, _carried(link, carrier), coordinates, rates))
+    return found
+
+
+def _carried(link: Link, carrier: Placed) -> Placed:
+    position = carrier.point(link.position)
+    return Placed(
+        position, product(carrier.orientation, link.orientation), carrier.velocity_at(position), carrier.omega
+    )
+
+
+def _along(link: Link, start: Placed, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> Iterator[Placed]:
+    frame = start
+    yield frame
+    for joint in link.joints:
+        frame = _moved(frame, joint, coordinates.get(joint.name, joint.zero) - joint.zero, rates.get(joint.name, 0.0))
+        yield frame
+
+
+def _moved(frame: Placed, joint: LinkJoint, s: float, rate: float) -> Placed:
+    """The frame on the far side of a joint whose coordinate is s from its zero."""
+    axis = rotated(frame.orientation, joint.axis)
+    if joint.kind == "slide":
+        position = frame.position + s * axis
+        return Placed(position, frame.orientation, frame.velocity_at(position) + rate * axis, frame.omega)
+    if joint.kind != "hinge":
+        return frame
+    turn = (np.cos(s / 2), *(np.sin(s / 2) * np.array(joint.axis)))
+    orientation, anchor = product(frame.orientation, turn), frame.point(joint.point)
+    position = anchor - rotated(orientation, joint.point)
+    omega = frame.omega + rate * axis
+    return Placed(position, orientation, frame.velocity_at(anchor) + np.cross(omega, position - anchor), omega)

@@ -1,0 +1,179 @@
+"""A robot as links in a tree: what URDF and MJCF files say, before it becomes a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+JointKind = Literal["hinge", "slide", "ball", "free"]
+ORIGIN = (0.0, 0.0, 0.0)
+SAME_AXES = (1.0, 0.0, 0.0, 0.0)
+
+
+class RobotFault(Exception):
+    """What stands in a robot's file and makes no scene; the message names the link, joint or actuator."""
+
+
+@dataclass(frozen=True)
+class LinkJoint:
+    """One joint by which a link moves against its parent.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        ``hinge``, ``slide``, ``ball`` or ``free``.
+    point, axis : tuple of float
+        In the link's frame, m; the axis has length 1.
+    stiffness, damping : float
+        N m/rad and N m s/rad of a hinge or ball, N/m and N s/m of a slide.
+    rest : float
+        The coordinate where its spring rests, rad or m.
+    friction : float
+        Magnitude of the dry friction, N m or N.
+    armature : float
+        Inertia of the rotor as the joint feels it, kg m^2 or kg.
+    limits : (float, float) or None
+        Of the coordinate, rad or m.
+    zero : float
+        The coordinate at which the link is placed as its `Link` says, rad or m.
+    """
+
+    name: str
+    kind: JointKind
+    point: tuple[float, ...] = ORIGIN
+    axis: tuple[float, ...] = (0.0, 0.0, 1.0)
+    stiffness: float = 0.0
+    damping: float = 0.0
+    rest: float = 0.0
+    friction: float = 0.0
+    armature: float = 0.0
+    limits: tuple[float, float] | None = None
+    zero: float = 0.0
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid link.
+
+    Attributes
+    ----------
+    name : str
+    parent : str or None
+        None for the world.
+    position, orientation : tuple of float
+        Of its frame in the parent's where all joints are at their zero: m, quaternion with the scalar first.
+    mass : float
+    center_of_mass : tuple of float
+        In its frame, m.
+    inertia : ndarray, shape (3, 3)
+        About the centre of mass along the axes of its frame, kg m^2.
+    joints : tuple of LinkJoint
+        From the parent on; none where it is fixed.
+    lifted : float
+        The fraction of its weight that is balanced (MJCF: gravcomp).
+    """
+
+    name: str
+    parent: str | None
+    position: tuple[float, ...] = ORIGIN
+    orientation: tuple[float, ...] = SAME_AXES
+    mass: float = 0.0
+    center_of_mass: tuple[float, ...] = ORIGIN
+    inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
+    joints: tuple[LinkJoint, ...] = ()
+    lifted: float = 0.0
+
+
+@dataclass(frozen=True)
+class Transmission:
+    """A length that joint coordinates make, and what acts along it: L = sum of gear times coordinate.
+
+    An actuator's force is gain u + bias with gain = g_0 + g_1 L + g_2 L' and bias = b_0 + b_1 L + b_2 L'; a passive
+    tendon has no input u, and its spring and damper are the bias.
+
+    Attributes
+    ----------
+    name : str
+    gears : mapping of str to float
+        By joint.
+    gain, bias : tuple of float
+        The three coefficients of each; without a gain there is no input.
+    control, force : (float, float) or None
+        Bounds of the input and of the force.
+    lag : float or None
+        Time constant of the first-order filter behind the input, s; 0 for an integrator.
+    """
+
+    name: str
+    gears: Mapping[str, float]
+    gain: tuple[float, ...] | None = (1.0, 0.0, 0.0)
+    bias: tuple[float, ...] = (0.0, 0.0, 0.0)
+    control: tuple[float, float] | None = None
+    force: tuple[float, float] | None = None
+    lag: float | None = None
+
+
+@dataclass(frozen=True)
+class Relation:
+    """Ties joint coordinates: joint - zero = sum of c_k (other - its zero)^k; without `other` the joint is held at c_0."""
+
+    name: str
+    joint: str
+    other: str | None
+    coefficients: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A loop closed between two links (None: the world): by a ball at a point of each, or rigidly.
+
+    Attributes
+    ----------
+    name : str
+    link, other : str or None
+    point, other_point : tuple of float
+        Each in its link's frame, m.
+    orientation : tuple of float or None
+        Of the other link's frame in the first one's where it is rigid; None for a ball.
+    """
+
+    name: str
+    link: str | None
+    other: str | None
+    point: tuple[float, ...]
+    other_point: tuple[float, ...]
+    orientation: tuple[float, ...] | None
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Links, each after its parent, and what acts on and between them.
+
+    Attributes
+    ----------
+    name : str
+    links : tuple of Link
+    gravity : tuple of float
+        m/s^2.
+    transmissions, relations, connections : tuples
+    coordinates, rates : mappings of str to tuple of float
+        Where the scene starts, by joint: one number of a hinge or slide; other joints start as placed.
+    notes : tuple of str
+        What was left out.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    gravity: tuple[float, ...] = (0.0, 0.0, -9.81)
+    transmissions: tuple[Transmission, ...] = ()
+    relations: tuple[Relation, ...] = ()
+    connections: tuple[Connection, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def joints(self) -> dict[str, LinkJoint]:
+        """All joints by name."""
+        return {joint.name: joint for link in self.links for joint in link.joints}

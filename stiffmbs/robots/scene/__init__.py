@@ -1,0 +1,1 @@
+"""Robots as the mappings that scenes are read from."""

@@ -1,0 +1,95 @@
+"""The bodies of a robot's scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...describe.spatial.massless import MASSLESS, filled, lacks_inertia, massless_moment
+from ...describe.spatial.number_format import plain, vector
+from ...describe.spatial.orientation import conjugate, rotated
+from ..pose import Placed
+from ..robot import Link, Robot, RobotFault
+from .mechanism import Mechanism
+
+TRIANGLE = 1e-9
+"""Part of the sum of two principal moments by which rounding may let the third be greater."""
+
+
+class Masses:
+    """What stands for no mass and no inertia in a robot: slight parts of its lightest mass, at its size."""
+
+    def __init__(self, robot: Robot, mechanism: Mechanism) -> None:
+        least = min((link.mass for link in robot.links if link.mass > 0), default=0.0)
+        if least == 0:
+            raise RobotFault("found no link with a mass, expected one at least")
+        self.lightest = least
+        self.mass = MASSLESS * least
+        self.moment = massless_moment(least, [frame.position for _, frame in mechanism.bodies.values()])
+
+
+def bodies(mechanism: Mechanism, masses: Masses) -> dict[str, Any]:
+    """The bodies by name, with their markers."""
+    found = {}
+    for name, (link, frame) in mechanism.bodies.items():
+        between = name in mechanism.between
+        body = _between(link, masses) if between else _heavy(link, masses)
+        markers = mechanism.markers.get(name)
+        centre = (0.0, 0.0, 0.0) if between else link.center_of_mass
+        found[name] = body | _motion(frame, centre) | ({"markers": markers} if markers else {})
+    return found
+
+
+def notes(mechanism: Mechanism) -> list[str]:
+    """Which inertias no distribution of mass has."""
+    own = {name: link for name, (link, _) in mechanism.bodies.items() if name not in mechanism.between}
+    odd = [name for name, link in own.items() if _breaks_triangle(link.inertia)]
+    return (
+        [f"the largest moment of inertia of {', '.join(odd)} is greater than the sum of the other two"] if odd else []
+    )
+
+
+def _between(link: Link, masses: Masses) -> dict[str, Any]:
+    """A body without mass before a joint of a link: slight parts of the link's own mass and inertia, where it has them."""
+    c = np.array(link.center_of_mass)
+    moment = float(np.linalg.eigvalsh(link.inertia)[-1] + link.mass * (c @ c)) * MASSLESS
+    return {"mass": link.mass * MASSLESS or masses.mass, "inertia": [moment or masses.moment] * 3}
+
+
+def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
+    tensor = link.inertia
+    moments = np.linalg.eigvalsh(tensor)
+    if moments[0] < -TRIANGLE * max(moments[-1], 0.0) or not np.all(np.isfinite(moments)):
+        raise RobotFault(
+            f"link {link.name}: found the principal moments of inertia {', '.join(f'{x:g}' for x in moments)} kg m^2, expected none below 0"
+        )
+    body: dict[str, Any] = {"mass": plain(link.mass or masses.mass)}
+    if not np.any(tensor):
+        tensor = masses.moment * np.eye(3)
+    elif lacks_inertia(tensor):
+        tensor = filled(tensor, masses.moment)
+    if _breaks_triangle(tensor):
+        body["any_moments"] = True
+    diagonal = not np.any(tensor - np.diag(np.diag(tensor)))
+    body["inertia"] = vector(np.diag(tensor)) if diagonal else [vector(row) for row in tensor]
+    if any(link.center_of_mass):
+        body["center_of_mass"] = vector(link.center_of_mass)
+    return body
+
+
+def _breaks_triangle(tensor: np.ndarray) -> bool:
+    a, b, c = np.linalg.eigvalsh(tensor)
+    return bool(c > (a + b) * (1 + TRIANGLE))
+
+
+def _motion(frame: Placed, center_of_mass: tuple[float, ...]) -> dict[str, Any]:
+    """Pose at the start, and velocities where it moves."""
+    found: dict[str, Any] = {"position": vector(frame.position)}
+    if frame.orientation != (1.0, 0.0, 0.0, 0.0):
+        found["orientation"] = vector(frame.orientation)
+    velocity, omega = (
+        frame.velocity_at(frame.point(center_of_mass)),
+        rotated(conjugate(frame.orientation), tuple(frame.omega)),
+    )
+    return found | {key: vector(rate) for key, rate in (("velocity", velocity), ("omega", omega)) if np.any(rate)}

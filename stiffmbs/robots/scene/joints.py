@@ -1,0 +1,76 @@
+"""The joints of a robot's scene, and what acts in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ...describe.spatial.number_format import plain
+from ..robot import Connection, Relation, Robot
+from .mechanism import Hold, Mechanism
+
+KINDS = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical"}
+CREEP = {"hinge": 1e-3, "slide": 1e-4}
+"""Rate within which dry friction changes its sign, rad/s or m/s."""
+
+
+def joints(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
+    """The scene's joints by name."""
+    found = {hold.name: {"type": KINDS[hold.joint.kind], "i": hold.i, "j": hold.j} for hold in mechanism.holds.values()}
+    found |= {name: {"type": "fixed", "i": i, "j": j} for name, (i, j) in mechanism.fixed.items()}
+    found |= {name: entry for relation in robot.relations for name, entry in _relation(mechanism, relation)}
+    found |= {name: entry for connection in robot.connections for name, entry in _connection(mechanism, connection)}
+    return found
+
+
+def passive(mechanism: Mechanism) -> dict[str, Any]:
+    """Springs, dampers and dry friction of the joints."""
+    return {name: entry for hold in mechanism.holds.values() for name, entry in _passive(mechanism, hold)}
+
+
+def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, Any]]]:
+    joint, ends = hold.joint, {"i": hold.i, "j": hold.j}
+    rest = plain(joint.rest - joint.zero)
+    k, d = plain(joint.stiffness), plain(joint.damping)
+    if (k or d) and joint.kind == "hinge":
+        spring: dict[str, Any] = {"type": "torsion_spring", **ends}
+        spring |= {"stiffness": k, "free_angle": rest} if k else {}
+        yield mechanism.names.take(f"{hold.name}_spring"), spring | ({"damping": d} if d else {})
+    elif k or d:
+        along = (lambda x: [0, 0, x, 0, 0, 0]) if joint.kind == "slide" else (lambda x: [0, 0, 0, x, x, x])
+        spring = {"type": "bushing", **ends}
+        spring |= {"stiffness": along(k)} if k else {}
+        spring |= {"preload": along(plain(joint.stiffness * (joint.rest - joint.zero)))} if k and rest else {}
+        yield mechanism.names.take(f"{hold.name}_spring"), spring | ({"damping": along(d)} if d else {})
+    if joint.friction:
+        formula = f"-{plain(joint.friction)}*tanh({hold.rate}/{CREEP[joint.kind]})"
+        yield mechanism.names.take(f"{hold.name}_friction"), along_axis(hold, formula)
+
+
+def along_axis(hold: Hold, formula: str) -> dict[str, Any]:
+    """A torque about the axis of a hinge, or a force along that of a slide, on its far side and opposite on the near one."""
+    kind = "torque" if hold.joint.kind == "hinge" else "force"
+    return {"type": kind, "i": hold.i, "j": hold.j, "frame": hold.j, kind: [0, 0, formula]}
+
+
+def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, dict[str, Any]]]:
+    hold = mechanism.holds.get(relation.joint)
+    other = None if relation.other is None else mechanism.holds.get(relation.other)
+    if hold is None or (relation.other is not None and other is None):
+        return  # of a joint that moves no mass
+    name = mechanism.names.take(relation.name)
+    first, *rest = relation.coefficients
+    if other is not None and rest and rest[0] and not any(rest[1:]):
+        ratio = {"joint_1": hold.name, "joint_2": other.name, "scale": plain(rest[0])}
+        yield name, {"type": "coupler", **ratio, "offset": plain(first)}
+        return
+    x = "" if other is None else f"({other.coordinate} - {other.joint.zero!r})"
+    terms = [repr(first), *(f"{c!r}*{x}^{k}" for k, c in enumerate(rest, 1) if c and x)]
+    yield name, {"type": "equation", "zero": f"{hold.coordinate} - {hold.joint.zero!r} - ({' + '.join(terms)})"}
+
+
+def _connection(mechanism: Mechanism, connection: Connection) -> Iterator[tuple[str, dict[str, Any]]]:
+    name = mechanism.names.take(connection.name)
+    i = mechanism.mark(connection.link, name, connection.point, connection.orientation or (1.0, 0.0, 0.0, 0.0))
+    j = mechanism.mark(connection.other, f"{name}_j", connection.other_point)
+    yield name, {"type": "spherical" if connection.orientation is None else "fixed", "i": i, "j": j}

@@ -1,0 +1,174 @@
+"""The bodies that carry a robot's links, and the markers by which its joints hold them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...describe.spatial.number_format import vector
+from ...describe.spatial.orientation import from_matrix, product, rotated
+from ..pose import Placed, frames
+from ..robot import SAME_AXES, Link, LinkJoint, Robot
+from .names import GROUND, Names
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A frame that is fixed on a body of the scene: position (m) and orientation in the body's own axes."""
+
+    body: str
+    position: tuple[float, ...] = (0.0, 0.0, 0.0)
+    orientation: tuple[float, ...] = SAME_AXES
+
+    def on(self, position: tuple[float, ...], orientation: tuple[float, ...]) -> Seat:
+        """A frame given in this one."""
+        place = np.array(self.position) + rotated(self.orientation, position)
+        return Seat(self.body, tuple(map(float, place)), product(self.orientation, orientation))
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A joint of the robot in the scene.
+
+    Attributes
+    ----------
+    joint : LinkJoint
+    name : str
+        Of the scene's joint.
+    i, j : str
+        Markers on the far and on the near side; their axes z are the joint's, and they coincide at the joint's zero.
+    """
+
+    joint: LinkJoint
+    name: str
+    i: str
+    j: str
+
+    @property
+    def coordinate(self) -> str:
+        """A formula of the joint's coordinate, rad or m."""
+        measure = f"az({self.i}, {self.j})" if self.joint.kind == "hinge" else f"dz({self.i}, {self.j}, {self.j})"
+        return f"({measure} + {self.joint.zero!r})" if self.joint.zero else measure
+
+    @property
+    def rate(self) -> str:
+        """A formula of its rate, rad/s or m/s."""
+        return f"{'wz' if self.joint.kind == 'hinge' else 'vz'}({self.i}, {self.j}, {self.j})"
+
+
+class Mechanism:
+    """Which body carries each link, where these are at the start, and the markers on them.
+
+    A link that moves, or has mass, is a body.  A fixed link without mass is a marker on the body that carries it, and a
+    link that moves by several joints has a body without mass between each two of them.  What has no mass at its far
+    end does not move.
+
+    Attributes
+    ----------
+    bodies : dict of str to (Link, Placed)
+        By name, with the link, or for a body between joints the link that these carry.
+    between : set of str
+        Names of the bodies between joints.
+    seats : dict of str to Seat
+        By link.
+    markers : dict of str to dict
+        By body, the placements of markers by name.
+    holds : dict of str to Hold
+        By joint.
+    fixed : dict of str to (str, str)
+        Fixed joints by name, with their markers i and j.
+    unmoved : tuple of str
+        Joints that move no mass, and are left out.
+    """
+
+    def __init__(self, robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> None:
+        self.names = Names()
+        self.bodies: dict[str, tuple[Link, Placed]] = {}
+        self.between: set[str] = set()
+        self.seats: dict[str | None, Seat] = {None: Seat(GROUND)}
+        self.markers: dict[str, dict[str, Any]] = {}
+        self.holds: dict[str, Hold] = {}
+        self.fixed: dict[str, tuple[str, str]] = {}
+        self.unmoved: tuple[str, ...] = ()
+        placed = frames(robot, coordinates, rates)
+        moves_mass = _with_mass(robot)
+        called = {link.name: self.names.take(link.name, "link") for link in robot.links}
+        for link in robot.links:
+            carrier = self.seats[link.parent].on(link.position, link.orientation)
+            if link.joints and link.name not in moves_mass:
+                self.unmoved += tuple(joint.name for joint in link.joints)
+            if link.joints and link.name in moves_mass:
+                self._move(link, called[link.name], carrier, placed[link.name])
+            elif link.mass > 0:
+                self._fix(link, called[link.name], carrier, placed[link.name][-1])
+            else:
+                self.seats[link.name] = carrier
+                self._mark(carrier, called[link.name])
+
+    def _move(self, link: Link, name: str, carrier: Seat, placed: tuple[Placed, ...]) -> None:
+        """Add a link, a body between each two of its joints, and the joints."""
+        *between, last = link.joints
+        before = carrier
+        for joint, frame in zip(between, placed[1:-1], strict=True):
+            body = self.names.take(f"{name}_{joint.name}")
+            self.bodies[body] = (link, frame)
+            self.between.add(body)
+            before = self._hold(joint, body, before)
+        self.bodies[name] = (link, placed[-1])
+        self.seats[link.name] = self._hold(last, name, before)
+
+    def _hold(self, joint: LinkJoint, body: str, before: Seat) -> Seat:
+        """Add a joint between a body and the frame before it; the body's own frame."""
+        after = Seat(body)
+        if joint.kind != "free":
+            name, axes = self.names.take(joint.name, "joint"), along_z(joint.axis)
+            i = self._mark(after.on(joint.point, axes), name)
+            self.holds[joint.name] = Hold(joint, name, i, self._mark(before.on(joint.point, axes), name))
+        return after
+
+    def _fix(self, link: Link, name: str, carrier: Seat, placed: Placed) -> None:
+        self.bodies[name] = (link, placed)
+        self.seats[link.name] = Seat(name)
+        joint = self.names.take(f"{name}_fixed")
+        self.fixed[joint] = (self._mark(Seat(name), joint), self._mark(carrier, joint))
+
+    def _mark(self, seat: Seat, name: str) -> str:
+        """Add a marker, and say what the scene calls it."""
+        placement: dict[str, Any] = {}
+        if any(seat.position):
+            placement["point"] = vector(seat.position)
+        if seat.orientation != SAME_AXES:
+            placement["orientation"] = vector(seat.orientation)
+        self.markers.setdefault(seat.body, {})[name] = placement
+        return f"{seat.body}.{name}"
+
+    def mark(
+        self, link: str | None, name: str, point: tuple[float, ...], orientation: tuple[float, ...] = SAME_AXES
+    ) -> str:
+        """Add a marker in the frame of a link (None: the world), and say what the scene calls it."""
+        return self._mark(self.seats[link].on(point, orientation), name)
+
+
+def along_z(axis: tuple[float, ...]) -> tuple[float, ...]:
+    """An orientation whose z is a direction."""
+    z = np.array(axis)
+    if z[2] == 1:
+        return SAME_AXES
+    x = np.eye(3)[np.argmin(np.abs(z))]
+    x = x - (x @ z) * z
+    x /= np.linalg.norm(x)
+    return from_matrix(np.column_stack([x, np.cross(z, x), z]))
+
+
+def _with_mass(robot: Robot) -> set[str]:
+    """Links that have mass, carry links that have, or feel a rotor."""
+    found: set[str] = set()
+    for link in reversed(robot.links):
+        if link.name in found or link.mass > 0 or any(joint.armature > 0 for joint in link.joints):
+            found.add(link.name)
+            if link.parent is not None:
+                found.add(link.parent)
+    return found

@@ -1,0 +1,28 @@
+"""Names of a scene for what a robot's file calls by any text."""
+
+from __future__ import annotations
+
+import re
+
+from ...describe.formula.functions import FUNCTIONS
+from ...describe.units.units import UNITS
+
+GROUND = "ground"
+
+
+class Names:
+    """Names that have been given out: letters, digits and _, each once in a scene."""
+
+    def __init__(self) -> None:
+        self._taken = {GROUND, "t", "pi", *UNITS, *FUNCTIONS}
+
+    def take(self, wanted: str, what: str = "") -> str:
+        """The name itself where it may stand in a scene and is free, or one like it: with what it names, or a number."""
+        name = re.sub(r"[^0-9A-Za-z_]", "_", wanted) or "_"
+        name = f"_{name}" if name[0].isdigit() else name
+        name = f"{name}_{what}" if what and name in self._taken else name
+        found, k = name, 2
+        while found in self._taken:
+            found, k = f"{name}_{k}", k + 1
+        self._taken.add(found)
+        return found

@@ -1,0 +1,98 @@
+"""A robot as the mapping that a scene is read from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from ...describe.spatial.number_format import plain, vector
+from ..robot import Robot, RobotFault
+from .actuators import actuators
+from .bodies import Masses, bodies
+from .bodies import notes as body_notes
+from .joints import joints, passive
+from .mechanism import Mechanism
+from .names import GROUND
+from .rotors import add_rotors
+
+RUN = {"duration": 1, "output": 0.01}
+"""How a robot is run; its file says nothing about it."""
+
+
+def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
+    """The scene of a robot, as `stiffmbs.describe.scene.read_scene` takes it.
+
+    Parameters
+    ----------
+    robot : Robot
+    coordinates, rates : mappings of str to float
+        Of hinges and slides at the start, rad or m, and their rates; others are as drawn, and at rest.
+
+    Raises
+    ------
+    RobotFault
+        When the robot holds what a scene cannot.
+    """
+    _check_joints(robot, {**coordinates, **rates})
+    mechanism = Mechanism(robot, coordinates, rates)
+    masses = Masses(robot, mechanism)
+    acting = actuators(robot, mechanism)
+    found: dict[str, Any] = {
+        "name": robot.name,
+        "dimensions": 3,
+        "gravity": vector(robot.gravity),
+        "markers": mechanism.markers.get(GROUND, {}),
+        "bodies": {},
+        "joints": joints(robot, mechanism),
+        "inputs": acting.inputs,
+        "states": acting.states,
+        "variables": acting.variables,
+        "forces": passive(mechanism) | acting.forces | _lifted(robot, mechanism),
+        "run": dict(RUN),
+    }
+    found["bodies"] = bodies(mechanism, masses)  # with the markers of all the others
+    found["markers"] = mechanism.markers.get(GROUND, {})
+    add_rotors(found, robot, mechanism, masses, rates)
+    found["notes"] = [*robot.notes, *body_notes(mechanism), *_notes(mechanism)]
+    return {key: value for key, value in found.items() if value or key == "bodies"}
+
+
+def _check_joints(robot: Robot, given: Mapping[str, float]) -> None:
+    known = {name for name, joint in robot.joints().items() if joint.kind in ("hinge", "slide")}
+    for name in given:
+        if name not in known:
+            raise RobotFault(
+                f"found the joint {name}, expected one of {', '.join(sorted(known)) or 'none: it has none'}"
+            )
+
+
+def _lifted(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
+    """The forces that balance weight, at the centre of mass of each link that has such a force."""
+    found = {}
+    for link in robot.links:
+        if link.lifted and link.mass:
+            name = mechanism.names.take(f"{link.name}_lift")
+            marker = mechanism.mark(link.name, name, link.center_of_mass)
+            force = -link.lifted * link.mass * np.array(robot.gravity)
+            found[name] = {"type": "force", "i": marker, "force": vector(force)}
+    return found
+
+
+def _notes(mechanism: Mechanism) -> Iterator[str]:
+    limits = [
+        f"{hold.name} {plain(joint.limits[0]):g} .. {plain(joint.limits[1]):g} {'rad' if joint.kind == 'hinge' else 'm'}"
+        for hold in mechanism.holds.values()
+        if (joint := hold.joint).limits is not None
+    ]
+    if limits:
+        yield f"joints have limits that a run does not hold: {', '.join(limits)}"
+    if mechanism.unmoved:
+        yield f"joints that move no mass stay where they are: {', '.join(mechanism.unmoved)}"
+    slight = [name for name, (link, _) in mechanism.bodies.items() if name in mechanism.between or link.mass == 0]
+    if slight:
+        yield f"bodies without mass have a slight one, 1e-8 of another's: {', '.join(slight)}"
+    rubbing = [hold.name for hold in mechanism.holds.values() if hold.joint.friction]
+    if rubbing:
+        yield f"dry friction is smooth within 1e-3 rad/s or 1e-4 m/s: {', '.join(rubbing)}"

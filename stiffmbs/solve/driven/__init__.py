@@ -1,0 +1,1 @@
+"""Motions that drives prescribe: what kinematic analysis integrates."""

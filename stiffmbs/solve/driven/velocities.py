@@ -1,0 +1,92 @@
+"""Kinematic analysis with drives that prescribe velocities: they are integrated over time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...errors import SolverError
+from ..algebraic_states import failure
+from ..dynamics import Dynamics
+from ..initial import InitialValues
+from ..native.statuses import NOT_FINITE
+
+TOLERANCE = 1e-11
+"""Relative tolerance of positions, and absolute one, m and rad."""
+MOST_MOVES = 12
+
+
+class IntegratedMotion:
+    """The motion that position and velocity equations fix together; see `kinematic.Motion`, whose methods it has.
+
+    All velocities follow from the equations J u + C_t = 0.  SciPy's DOP853 (Hairer, Noersett, Wanner, sec. II.10) integrates
+    q' = Z u from output to output, and each output is brought back to C = 0.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    start : InitialValues
+    t, shortest : float
+        s; nothing is computed within `shortest` of a breakpoint.
+    longest : float
+        Of a step, s, so that it sees all that drives do.
+    """
+
+    def __init__(self, dynamics: Dynamics, start: InitialValues, t: float, shortest: float, longest: float) -> None:
+        self._dynamics, self._shortest, self._longest = dynamics, shortest, longest
+        self.t, self.steps, self.moves = t, 0, 0
+        self.q, self.u = start.q, start.u
+        dynamics.state.q[:], dynamics.state.u[:] = start.q, start.u
+        self._take(t)
+
+    def go_to(self, end: float) -> None:
+        """Follow the motion to a later time.
+
+        Raises
+        ------
+        SolverError
+            Where the drives ask for velocities that the mechanism cannot have.
+        """
+        if end <= self.t:
+            return
+        from scipy.integrate import solve_ivp
+
+        found: Any = solve_ivp(
+            self._rates, (self.t, end), self.q, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE, t_eval=[end],
+            first_step=min(end - self.t, self._longest) / 8, max_step=self._longest,
+        )  # fmt: skip
+        if not found.success:
+            raise SolverError(self._stuck(NOT_FINITE))
+        self.steps += found.nfev // 12
+        self._dynamics.state.q[:] = found.y[:, -1]
+        self._take(end)
+
+    def go_past(self, breakpoint: float) -> None:
+        """Follow the motion to just before a breakpoint, and take velocities anew just behind it."""
+        self.go_to(breakpoint - self._shortest)
+        self._dynamics.state.q[:] = self.q + 2 * self._shortest * self._rates(self.t, self.q)
+        self._take(breakpoint + self._shortest)
+
+    def _rates(self, t: float, q: np.ndarray) -> np.ndarray:
+        """q' where the mechanism is moved by its drives alone; not a number where that has no solution."""
+        state, dynamics = self._dynamics.state, self._dynamics
+        state.q[:] = q
+        if dynamics.correct_velocities(t) < 0 or dynamics.accelerate(t)[0] != 0:
+            return np.full(len(q), np.nan)
+        return dynamics.position_rates(state.q, state.u)
+
+    def _take(self, t: float) -> None:
+        """Make the state at hand, brought back to the equations, the one that is reached."""
+        dynamics = self._dynamics
+        moves = dynamics.assemble(t, most=MOST_MOVES)
+        status = min(moves, 0) or dynamics.correct_velocities(t)
+        if status < 0:
+            raise SolverError(self._stuck(status))
+        dynamics.assemble(t, tolerance=0.0, most=2)  # to rounding, whether they get there or not
+        dynamics.correct_velocities(t)
+        self.t, self.moves = t, self.moves + moves
+        self.q, self.u = dynamics.state.q.copy(), dynamics.state.u.copy()
+
+    def _stuck(self, status: int) -> str:
+        return f"stopped after t = {self.t:.9g} s: {failure(self._dynamics, status, self.t)}"
