@@ -16,7 +16,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "numpydoc",
-    "myst_parser",
+    "myst_nb",
     "sphinx_click",
     "sphinx_copybutton",
     "matplotlib.sphinxext.plot_directive",
@@ -32,6 +32,10 @@ default_role = "literal"
 html_theme = "furo"
 html_title = f"stiffmbs {version}"
 html_show_sphinx = False
+
+nb_execution_mode = "force"  # notebooks are stored without outputs
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3

@@ -1,11 +1,14 @@
-"""A study beside bare integrations of the same cases, on one thread and on two."""
+"""A study beside bare integrations of the same cases, on one thread, on two, and on two processes."""
 
 from __future__ import annotations
 
 import statistics
+import sys
 import time
 from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -13,6 +16,8 @@ import numpy as np
 from ..studies.case_solver import CaseSolver
 from ..studies.sweep import Study, study_of
 from .benchmark import Row
+
+WAYS = ("1 thread", "2 threads", "2 processes")
 
 
 @dataclass(frozen=True)
@@ -48,27 +53,42 @@ class StudyRuns:
 
     def _rows(self, varied: Mapping[str, Any], rounds: int) -> list[Row]:
         study = study_of(self.scene(), {}, None, 0, [self.output], varied)
-        times: dict[str, list[float]] = {name: [] for name in ("bare", "processor", "1", "2")}
         expected = study.solve()[self.output].values
-        off = 0.0
-        for _ in range(rounds):
-            times["bare"].append(_bare(study))
-            for workers in (1, 2):
-                begun, used = time.perf_counter(), time.process_time()
-                found = study.solve(workers)[self.output].values
-                times[str(workers)].append(time.perf_counter() - begun)
-                if workers == 1:
-                    times["processor"].append(time.process_time() - used)
-                off = max(off, float(np.max(np.abs(found - expected))))
-        median, cases = {name: statistics.median(spent) for name, spent in times.items()}, f"{len(study.cases)} cases"
+        before = _memory()
+        off, bare, alone = 0.0, [], []
+        clock: dict[str, list[float]] = {name: [] for name in WAYS}
+        with ProcessPoolExecutor(2, get_context("spawn")) as processes:
+            study.solve(executor=processes)  # which start, and compile
+            for _ in range(rounds):
+                bare.append(_bare(study))
+                for way, spent in clock.items():
+                    begun, used = time.perf_counter(), time.process_time()
+                    found = study.solve(2 if way == "2 threads" else None, processes if way == "2 processes" else None)
+                    spent.append(time.perf_counter() - begun)
+                    if way == "1 thread":
+                        alone.append(time.process_time() - used)
+                    off = max(off, float(np.max(np.abs(found[self.output].values - expected))))
+        integration, whole = statistics.median(bare), statistics.median(alone)
+        ratio = whole / integration
+        each = 1e3 * (whole - integration) / len(study.cases)
+        gains = {way: statistics.median(a / b for a, b in zip(clock["1 thread"], spent, strict=True)) for way, spent in clock.items()}  # fmt: skip
         return [
-            Row("integration", f"{cases} alone, processor's time", 0.0, median["bare"], True),
-            Row("study", f"{cases}, processor's time", off, median["processor"], False),
+            Row("integration", f"{len(study.cases)} cases alone, processor's time", 0.0, integration, True),
+            Row("study", f"processor's time; {ratio:.2f} of that, {each:.2f} ms more a case", off, whole, False),
             *(
-                Row("study", f"{cases}, {n} thread{'s' * (n > 1)}, by the clock", off, median[str(n)], False)
-                for n in (1, 2)
+                Row("study", f"{way}, by the clock; {gains[way]:.2f} times as fast as one", off, statistics.median(spent), False)
+                for way, spent in clock.items()
             ),
-        ]
+            Row("memory", f"{_memory() - before:.0f} MB more after {(2 * rounds) * len(study.cases)} cases", 0.0, 0.0, False),
+        ]  # fmt: skip
+
+
+def _memory() -> float:
+    """The most memory that this process has had so far, MB."""
+    import resource  # which Windows does not have
+
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most / (2**20 if sys.platform == "darwin" else 2**10)
 
 
 def _bare(study: Study) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -126,8 +126,14 @@ class CaseSolver:
             return Row(case, "error", str(error)[:MOST_WORDS], (np.nan,) * len(self._task.outputs))
         if solution.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        told = "; ".join(([] if done else [solution.message]) + list(solution.notes))
+        told = "; ".join([*([] if done else [solution.message]), *self._undefined(outputs, done), *solution.notes])
         return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs)
+
+    def _undefined(self, outputs: Sequence[float | np.ndarray], done: bool) -> Iterator[str]:
+        """A sentence for each number of a whole run that is none, as of a logarithm of what is not positive."""
+        for output, value in zip(self._task.outputs, outputs, strict=True):
+            if done and not output.is_series and not np.isfinite(value):
+                yield f"output '{output.name}': found {value}, expected a finite number"
 
     def _settings(self, of_scene: RunSettings) -> RunSettings:
         """Those of a scene with the task's changes, checked once as long as the scene's are the same."""

@@ -76,7 +76,8 @@ class ImplicitSteps:
             self._dynamics.input_features(t, self._end)
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        self._start, self._t, self._jumped, self._ended = start, t, False, False
+        self._start: InitialValues | None = start
+        self._t, self._jumped, self._ended = t, False, False
         self._engine.pause_after(1)
         self._steps: Iterator[Reached] = self._integrator.run(start, Grid(t, self._end, None))
 
@@ -87,7 +88,7 @@ class ImplicitSteps:
         if self._jumped and t <= self._end:
             return self._exactly(t)
         if self._jumped or self._ended:
-            self._begin(self._start, self._t)
+            self._begin(self._start or restarted(self._dynamics, self._t, *self._state), self._t)
         while self._t < t:
             reached = next(self._steps, None)
             if reached is None:  # the end of what was looked through
@@ -101,13 +102,14 @@ class ImplicitSteps:
 
     def _exactly(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Go to a time at which a step ends."""
+        assert self._start is not None
         self._engine.pause_after(NO_PAUSE)
         for reached in self._integrator.run(self._start, Grid(self._t, t, np.array([t]))):
             last = self._sound(reached)
-        state = self._integrator.split(last.y)
+        self._state = self._integrator.split(last.y)
         self._t, self._jumped, self._ended = t, False, True
-        self._start = restarted(self._dynamics, t, *state)
-        return state
+        self._start = None  # found where it is asked for: inputs mostly jump first
+        return self._state
 
     def _sound(self, reached: Reached) -> Reached:
         self._integrator.reached = reached

@@ -127,6 +127,12 @@ def test_reductions_and_formulas_of_a_channel():
         assert float(found[name][0]) == pytest.approx(value, abs=2e-7), name
 
 
+def test_a_number_that_is_none_is_told(examples):
+    found = sweep(examples / "cart_pendulum.yaml", L=[0.5], outputs={"a": "log(-peak(cart.x))"}, duration=0.1)
+    assert found.status.values[0] == "done" and np.isnan(found.a.values[0])
+    assert "output 'a': found nan, expected a finite number" in str(found.message.values[0])
+
+
 def table(path, **how):
     return sweep(
         path,

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from ...describe.files.other_forces import OtherForces
 from ...describe.files.unchanged import Unchanged
 from ...describe.files.written_scene import WrittenScene
 from ...describe.scene import Scene, made_scene
@@ -34,7 +35,8 @@ class Scenes:
 
     def __init__(self, written: WrittenScene, unchanged: Unchanged | None = None) -> None:
         self._written, self._unchanged = written, unchanged or Unchanged()
-        self.known = self.changed(())
+        self._other_forces: dict[tuple[str, ...], OtherForces] = {}
+        self.known = self._read(())
 
     def at(self, changes: Sequence[tuple[str, Any]]) -> Scenes:
         """Scenes that differ by one value from one with other values; errors as for `changed`."""
@@ -48,6 +50,16 @@ class Scenes:
         InputError
             When one does not fit.
         """
+        names, values = [path for path, _ in changes], [value for _, value in changes]
+        if names and self._unchanged.scene is self.known:
+            if tuple(names) not in self._other_forces:
+                self._other_forces[tuple(names)] = OtherForces(self._written, names, self._unchanged)
+            found = self._other_forces[tuple(names)].scene(values)
+            if found is not None:
+                return found
+        return self._read(changes)
+
+    def _read(self, changes: Sequence[tuple[str, Any]]) -> Scene:
         written = self._written
         content, all_changes = copy.deepcopy(dict(written.content)), (*written.changes, *changes)
         return made_scene(content, all_changes, written.source, lambda _: None, written.folder, self._unchanged)

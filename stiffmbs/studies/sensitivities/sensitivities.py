@@ -27,7 +27,7 @@ from .formulas import Formula
 from .parameters import Parameter, Scenes
 from .set_up import SetUp, breakpoint_rates
 
-TIGHTER, TIGHTEST = 1e-4, 1e-12
+TIGHTER, TIGHTEST = 1e-6, 1e-12
 """Part of the asked rtol with which the run is solved, and the least rtol.  A force in a stiff bushing hangs on a deflection that is a
 small part of a coordinate, and its derivative on the phase of a vibration: they are coarser than the motion."""
 HELD = {"solver": "bdf", "formulation": "SI2", "presolve": False}
