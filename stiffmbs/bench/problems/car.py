@@ -9,7 +9,7 @@ from functools import partial
 
 from ...describe.model_data import ModelData
 from ...jobs.run import prepare
-from ...solve.trajectory import ProgressCallback
+from ...solve.trajectory import Outcome, ProgressCallback
 from ..benchmark import Row
 from ..drives import CARS, SOLVERS, Car, Seen, converged, seen
 from ..turns import seconds_of
@@ -91,13 +91,15 @@ def _limited() -> ProgressCallback:
 
 
 def _rows(model: ModelData, solver: str, rtol: float, exact: Seen, rounds: int) -> Iterator[Row]:
-    """A row for each quantity, with the number of steps, and for `bdf` how many times as long as its kernels alone it takes."""
+    """A row for each quantity, with the number of steps, and for `bdf` how many times as long as its kernels alone it takes; none where it stops early or takes too long."""
     job = prepare(model, rtol=rtol, **SOLVERS[solver])
     try:
         timed = [seconds_of(partial(job.integrate, _limited())) for _ in range(rounds)]
     except _TooLong:
         return
     seconds, trajectory = min(seconds for seconds, _ in timed), timed[0][1]
+    if trajectory.outcome is not Outcome.DONE:
+        return
     setting = f"rtol {rtol:.0e}, {trajectory.statistics['steps']} steps"
     if solver == "bdf":
         setting += f", {seconds / kernel_seconds(job, trajectory):.1f} times its kernels"
