@@ -144,8 +144,8 @@ def test_what_cannot_be_measured_is_refused(words):
 def test_an_unknown_problem_is_refused():
     result = CliRunner().invoke(main, ["bench", "chains"])
     assert result.exit_code == 2
-    assert "found the problem 'chains', expected one of andrews" in result.output
-    assert "such as example_car_ideal_sweep" in result.output
+    assert "found the problem 'chains', expected one of accelerations, andrews" in result.output
+    assert "accelerations_in_plane_10" in result.output
 
 
 def test_the_time_at_an_error_is_read_from_a_line_through_the_sweep():
