@@ -110,8 +110,8 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-12, atol=1e-12, err_msg=name)
 
 
-LONG_LOOKS = ("elements_in_space", "chain_scaling", "stiffness", "half_car_study", "bushing_fit")
-WITHOUT_YARDSTICK = ("linear_algebra", "chain_in_space", "elements_in_space")
+LONG_LOOKS = ("elements_in_space", "chain_scaling", "stiffness", "half_car_study", "bushing_fit", "car")
+WITHOUT_YARDSTICK = ("linear_algebra", "car", "chain_in_space", "elements_in_space")
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ def elastic(model, case, stiffness, damping=2e4):
     other = type(model)(model.name, gravity=model.gravity)
     other.bodies = model.bodies
     in_space = isinstance(model, spatial.Model)
-    kind = (spatial.FORCES if in_space else FORCES)["bushing"]
+    kind = spatial.Bushing if in_space else FORCES["bushing"]
     for name, joint in model.joints.items():
         if name not in case.elastic:
             other.add(name, joint)

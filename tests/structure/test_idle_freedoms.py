@@ -27,7 +27,7 @@ def wishbone(stiffness=(1e7, 1e7, 1e7, 0, 0, 0), apart=0.2):
     model.add("strut", spatial.Prismatic(i="knuckle", j=ground(0.4, 0, 0.1)))
     for name, y in (("front", apart), ("rear", -apart)):
         place = spatial.Marker(body="arm", point=(-0.2, y, 0))
-        model.add(name, spatial.FORCES["bushing"](i=place, j=ground(0, y, 0), stiffness=stiffness))
+        model.add(name, spatial.Bushing(i=place, j=ground(0, y, 0), stiffness=stiffness))
     return model  # fmt: skip
 
 
@@ -46,16 +46,14 @@ def test_a_torsional_stiffness_there_holds_it():
 
 def test_dampers_alone_hold_nothing():
     model = slider_crank(0.7)
-    model.add("damper", spatial.FORCES["bushing"](i="rod", j="ground", damping=(0, 0, 0, 1, 1, 1)))
+    model.add("damper", spatial.Bushing(i="rod", j="ground", damping=(0, 0, 0, 1, 1, 1)))
     assert messages(model) == ["rod can turn by itself between big_end and small_end, which moves no other body"]
 
 
 @pytest.mark.parametrize("stiffness", [1.0, 1e8])
 def test_a_bushing_that_holds_the_turn_of_a_rod_on_two_balls_is_named(stiffness):
     model = slider_crank(0.7)
-    model.add(
-        "sleeve", spatial.FORCES["bushing"](i="rod", j="crank", stiffness=(1e8, 0, 0, stiffness, stiffness, stiffness))
-    )
+    model.add("sleeve", spatial.Bushing(i="rod", j="crank", stiffness=(1e8, 0, 0, stiffness, stiffness, stiffness)))
     assert messages(model) == [
         "joints alone would let rod turn by itself between big_end and small_end: sleeve holds it"
     ]
