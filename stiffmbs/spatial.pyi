@@ -11,7 +11,10 @@ from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _Velo
 from stiffmbs.describe.spatial.forces.applied import AppliedForce as _AppliedForce
 from stiffmbs.describe.spatial.forces.applied import AppliedTorque as _AppliedTorque
 from stiffmbs.describe.spatial.forces.beam import Beam as _Beam
+from stiffmbs.describe.spatial.forces.box_plane_impact import BoxPlaneImpact as _BoxPlaneImpact
 from stiffmbs.describe.spatial.forces.bushing import Bushing as _Bushing
+from stiffmbs.describe.spatial.forces.cylinder_plane_impact import CylinderPlaneImpact as _CylinderPlaneImpact
+from stiffmbs.describe.spatial.forces.ellipsoid_plane_impact import EllipsoidPlaneImpact as _EllipsoidPlaneImpact
 from stiffmbs.describe.spatial.forces.fiala_tyre import FialaTyre as _FialaTyre
 from stiffmbs.describe.spatial.forces.field import FieldForce as _FieldForce
 from stiffmbs.describe.spatial.forces.joint_friction import JointFriction as _JointFriction
@@ -19,7 +22,9 @@ from stiffmbs.describe.spatial.forces.magic_formula_tyre import MagicFormulaTyre
 from stiffmbs.describe.spatial.forces.python_force import PythonForce as _PythonForce
 from stiffmbs.describe.spatial.forces.shared import LineForce as _LineForce
 from stiffmbs.describe.spatial.forces.shared import SpringDamper as _SpringDamper
+from stiffmbs.describe.spatial.forces.sphere_box_impact import SphereBoxImpact as _SphereBoxImpact
 from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
+from stiffmbs.describe.spatial.forces.sphere_cylinder_impact import SphereCylinderImpact as _SphereCylinderImpact
 from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
 from stiffmbs.describe.spatial.forces.vertical_tyre import VerticalTyre as _VerticalTyre
 from stiffmbs.describe.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
@@ -96,6 +101,27 @@ class Beam(_Beam):
         type: Literal["beam"] = ...,
     ) -> None: ...
 
+class BoxPlaneImpact(_BoxPlaneImpact):
+    """A solid box that presses on a plane with its eight corners."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        x: given.Number,
+        y: given.Number,
+        z: given.Number,
+        type: Literal["box_plane_impact"] = ...,
+    ) -> None: ...
+
 class Bushing(_Bushing):
     """Force and torque between two markers that are held together elastically in all six components."""
     def __init__(
@@ -150,6 +176,26 @@ class Coupler(_Coupler):
         type: Literal["coupler"] = ...,
     ) -> None: ...
 
+class CylinderPlaneImpact(_CylinderPlaneImpact):
+    """A solid cylinder that presses on a plane with the lowest point of the rim of each end."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        radius: given.Number,
+        length: given.Number,
+        type: Literal["cylinder_plane_impact"] = ...,
+    ) -> None: ...
+
 class Cylindrical(_Cylindrical):
     """Sleeve on a shaft: marker i stays on the z axis of marker j, parallel to it, and may slide and turn."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["cylindrical"] = ...) -> None: ...
@@ -172,6 +218,27 @@ class Drive(_Drive):
         position: given.Curve | None = ...,
         velocity: given.Curve | None = ...,
         type: Literal["drive"] = ...,
+    ) -> None: ...
+
+class EllipsoidPlaneImpact(_EllipsoidPlaneImpact):
+    """A solid ellipsoid that presses on a plane with its lowest point."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        x: given.Number,
+        y: given.Number,
+        z: given.Number,
+        type: Literal["ellipsoid_plane_impact"] = ...,
     ) -> None: ...
 
 class FialaTyre(_FialaTyre):
@@ -351,6 +418,28 @@ class Screw(_Screw):
         type: Literal["screw"] = ...,
     ) -> None: ...
 
+class SphereBoxImpact(_SphereBoxImpact):
+    """A sphere about marker i that presses on a face, an edge or a corner of a solid box."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        radius: given.Number,
+        x: given.Number,
+        y: given.Number,
+        z: given.Number,
+        type: Literal["sphere_box_impact"] = ...,
+    ) -> None: ...
+
 class SphereContact(_SphereContact):
     """A sphere or point about marker i that presses on a plane, on a sphere, or on a hollow sphere from within."""
     def __init__(
@@ -369,6 +458,27 @@ class SphereContact(_SphereContact):
         surface: Literal["plane", "sphere", "hollow"] = ...,
         surface_radius: given.Number = ...,
         type: Literal["sphere_contact"] = ...,
+    ) -> None: ...
+
+class SphereCylinderImpact(_SphereCylinderImpact):
+    """A sphere about marker i that presses on the mantle, an end or an edge of a solid cylinder."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        radius: given.Number,
+        cylinder_radius: given.Number,
+        cylinder_length: given.Number,
+        type: Literal["sphere_cylinder_impact"] = ...,
     ) -> None: ...
 
 class Spherical(_Spherical):

@@ -19,7 +19,7 @@ ORDER = (
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts", "solver_names"}
 METHODS = {
-    (ROOT.name, "describe", "model_builder"): {"studies", "jobs", "results", "show", "verification"},
+    (ROOT.name, "describe", "building", "runnable_model"): {"studies", "jobs", "results", "show", "verification"},
     (ROOT.name, "describe", "model_data"): {"show"},
     (ROOT.name, "jobs", "check"): {"show"},
     (ROOT.name, "results", "solution"): {"show"},

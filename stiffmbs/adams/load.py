@@ -73,7 +73,7 @@ def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
     from ruamel.yaml.comments import CommentedMap
 
     aliases = {f"{x.label.replace('/', '_')}": x.alias for kind in dataset.statements.values() for x in kind.values()}
-    for section in ("bodies", "joints", "forces", "requests"):
+    for section in ("bodies", "joints", "forces", "variables", "requests"):
         if section in found:
             found[section] = CommentedMap(found[section])
             for name in found[section]:

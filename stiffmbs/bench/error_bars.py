@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from ..describe.model_builder import ModelBuilder
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..jobs.run import Job, prepare, solved
 from ..results.error_bars import ErrorBar

@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from ..describe.body import Body
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.forces.bushing import Bushing
 from ..describe.joints.revolute import Revolute
 from ..describe.marker import Marker
 from ..describe.model import Model
-from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..jobs.load_scene import load_scene
 from ..jobs.run import Job, prepare

@@ -30,7 +30,7 @@ STILL = 1e-4
 """Motions smaller than this, in sizes of the mechanism and rad, need not agree to a part of themselves."""
 RESOLVED = 3.0
 """Errors are measured down to so many times what the two integrators differ by."""
-ROUNDING = 1e-11
+ROUNDING_OF_A_RUN = 1e-11
 """Part of a measure's size that rounding takes over a run."""
 NAMED = 4
 Tell = Callable[[str], None]
@@ -75,7 +75,7 @@ class Reference:
 
     def resolved(self, measure: str) -> float:
         """The smallest error that can be told from that of the reference, and from rounding."""
-        return max(RESOLVED * self.agreement[measure], ROUNDING * self.size(measure))
+        return max(RESOLVED * self.agreement[measure], ROUNDING_OF_A_RUN * self.size(measure))
 
     def size(self, measure: str) -> float:
         """The largest value of the channels of a measure, of positions how far they come from the start."""

@@ -9,10 +9,10 @@ from itertools import repeat
 import numpy as np
 
 from ..describe.body import body_numbers
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.element import Element
 from ..describe.formula.text import FormulaError
 from ..describe.marker import GROUND, PlacedMarkers
-from ..describe.model_builder import ModelBuilder
 from ..errors import InputError
 from .bodies import BODY_KINDS, BodyKind
 from .group import Group

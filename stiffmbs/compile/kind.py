@@ -15,7 +15,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..describe.element import Component, Element, Force, Joint, JointName
-from ..describe.formula.field import TIME, Formula, is_measure, is_named, is_reaction, joint_of, measured_markers
+from ..describe.formula.formula import Formula
+from ..describe.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference, PlacedMarkers

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..describe.table import Table
 from ..errors import InputError
+from .akima import akima_pieces
 
 Curve = Callable[[np.ndarray], np.ndarray]
 NATURAL, PERIODIC = 0.0, 1.0
@@ -16,7 +17,7 @@ NATURAL, PERIODIC = 0.0, 1.0
 def spline_data(table: Table) -> np.ndarray:
     """What a kernel needs of a table: count, ends, knots, and the coefficients of each piece (highest first).
 
-    Cubic spline interpolation by SciPy; straight lines are pieces without curvature.
+    Cubic spline interpolation by SciPy, Akima's by `stiffmbs.compile.akima`; straight lines are pieces without curvature.
 
     Raises
     ------
@@ -44,9 +45,7 @@ def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         slope = np.diff(y) / np.diff(x)
         return np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
     if table.akima:
-        from scipy.interpolate import Akima1DInterpolator
-
-        return np.asarray(Akima1DInterpolator(x, y).c)
+        return akima_pieces(x, y)
     from scipy.interpolate import CubicSpline
 
     if table.ends == "periodic":

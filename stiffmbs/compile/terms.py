@@ -2,46 +2,18 @@
 
 from __future__ import annotations
 
+_OF_CONSTRAINTS = ("C_q", "C_x", "J", "V_q", "G_lam")
+_OF_FORCES_AND_STATES = ("f_q", "f_u", "f_lam", "Z", "Z_q", "rate_q", "rate_u", "rate_lam")
+"""Derivatives that go into every iteration matrix."""
 TERM_SETS: dict[str, tuple[str, ...]] = {
     "position": ("C", "C_q", "continuous_angle"),
     "motion": ("C", "V", "C_q", "J", "f", "Z", "rate"),
-    "tangent": (
-        "C_q",
-        "C_x",
-        "J",
-        "V_q",
-        "G_lam",
-        "G_mu",
-        "f_q",
-        "f_u",
-        "f_lam",
-        "Z",
-        "Z_q",
-        "rate_q",
-        "rate_u",
-        "rate_lam",
-    ),
+    "tangent": (*_OF_CONSTRAINTS, "G_mu", *_OF_FORCES_AND_STATES),
     "acceleration": ("J", "gamma", "f", "f_lam", "angle_rate", "rate", "f_alg", "rate_alg", "rate_lam"),
     "output": ("reaction", "potential", "power", "measured", "signal"),
     "event_function": ("event_function", "limit", "argument"),
     "all_levels": ("C", "V", "J", "gamma", "f", "Z", "rate"),
-    "all_levels_tangent": (
-        "C_q",
-        "C_x",
-        "J",
-        "V_q",
-        "G_lam",
-        "A_q",
-        "gamma_u",
-        "f_q",
-        "f_u",
-        "f_lam",
-        "Z",
-        "Z_q",
-        "rate_q",
-        "rate_u",
-        "rate_lam",
-    ),
+    "all_levels_tangent": (*_OF_CONSTRAINTS, "A_q", "gamma_u", *_OF_FORCES_AND_STATES),
 }
 """What a solver asks for at one time, so that common subexpressions are computed once.
 

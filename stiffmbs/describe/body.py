@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field, field_validator
 
 from . import given
+from .building.handle import Handle
 from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
 from .formula.names import PLANE
 from .geometry.planar import PlanarGeometry
-from .handle import Handle
 from .marker import Marker, Placement
 from .units import si
 
@@ -88,7 +88,17 @@ class Body(Described):
 
 
 class BodyHandle(Handle):
-    __doc__ = Handle.__doc__
+    """A body of a model of the plane, as `Model.add` returns it (`stiffmbs.describe.building.handle.Handle`).
+
+    Attributes
+    ----------
+    name : str
+        Of the body.
+    x, y, angle, vx, vy, omega : SymPy symbol
+        What formulas read of the body.
+    mass, inertia and other fields of the body
+        As they stand in the model; setting them changes it.
+    """
 
     names = PLANE
     fields = Body.model_fields

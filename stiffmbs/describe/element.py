@@ -16,7 +16,7 @@ from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
 
 from .fields import Described
 from .files.quoted import quoted
-from .formula.field import Formula
+from .formula.formula import Formula
 from .loads import Loads
 from .marker import MarkerReference
 from .parts.names import names_of

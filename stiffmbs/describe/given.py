@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 if TYPE_CHECKING:
-    from .handle import Handle
+    from .building.handle import Handle
     from .marker import MarkerReference
     from .python_function import PythonFunction
     from .roads import road

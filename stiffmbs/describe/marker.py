@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validator
 
+from .building.handle import Handle
 from .fields import DOTTED_PATTERN, Described
 from .files.quoted import written
-from .handle import Handle
 from .parts.names import GROUND as GROUND
 from .parts.names import names_of
 from .units import si

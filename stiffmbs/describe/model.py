@@ -11,13 +11,13 @@ from pydantic import Field
 
 from . import forces, joints
 from .body import Body, BodyHandle
+from .building.runnable_model import RunnableModel
 from .element import Force, Joint
 from .forces.weight import weights
 from .given import Numbers
 from .initial_pose import InitialMarker
 from .kinds import Kinds, any_of
 from .marker import GROUND, MarkerReference, Placement
-from .model_builder import ModelBuilder
 from .model_data import ModelData
 from .requests.names import OF_PLANE
 from .requests.output_field import PlanarRequest
@@ -67,7 +67,7 @@ class PlanarData(ModelData):
         return marker.body, self.place(marker)
 
 
-class Model(ModelBuilder[PlanarData, Body, BodyHandle]):
+class Model(RunnableModel[PlanarData, Body, BodyHandle]):
     """A model built in Python, piece by piece.
 
     Examples

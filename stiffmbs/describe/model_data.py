@@ -13,8 +13,9 @@ from .body import check_names
 from .check_marker import check_marker, listed
 from .element import Element, Force, Joint, JointName
 from .fields import Described
-from .formula.field import TIME, Formula
+from .formula.formula import Formula
 from .formula.names import NAMES, FormulaNames
+from .formula.nodes import TIME
 from .formula.text import UNIT
 from .marker import GROUND, MarkerReference
 from .parts.names import beginnings

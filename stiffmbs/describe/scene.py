@@ -36,7 +36,7 @@ from .model import PlanarData
 from .model_data import ModelData
 from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
 from .parts.placed import with_parts
-from .parts.placing import placed_in_use, set_in_instances
+from .parts.placing import as_written, placed_in_use, set_in_instances
 from .requests.check import check_output
 from .requests.names import OF_PLANE
 from .requests.order import dimension, dimensions
@@ -206,6 +206,7 @@ def made_scene(
         When it is no valid scene.
     """
     scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    parts = found.get("parts")
     found, changes = placed_in_use(unshared(found), changes)
     found, chosen, changes = _chosen(found, changes, source)
     refuse_unused_parameters(found, changes)
@@ -221,7 +222,10 @@ def made_scene(
     try:
         scene = _validated(found, replaced, in_parts, chosen, folder, unchanged)
     except _Located as error:
-        raise InputError(f"{source}, {_place(error.path, changes, line_of)}{error}") from None
+        message = as_written(str(error), parts)
+        there = error.path if message == str(error) else ("parts", *error.path[1:])
+        where = _place(error.path, changes, lambda _: line_of(there))
+        raise InputError(f"{source}, {where}{message}") from None
     scene._written = scene_as_written
     if scene.stages:
         scene._stage_scenes = _stage_scenes(scene, source)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..solve.dynamics import Dynamics, OutputRows
 
-APART = 1.0
+UNCERTAIN_TURN = 1.0
 """Angle between an orientation and the integral of its rate, rad, from which on the turn is not certain: half a turn changes it."""
 MOST_INSTANTS = 2000
 """Instants that are looked at."""
@@ -35,7 +35,7 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
         state.q[:] = q
         state.evaluate("position", t)
         of_row[:] = np.abs(state.values["position"][counted.source] - state.q[counted.row])
-    if not np.nanmax(apart) > APART:
+    if not np.nanmax(apart) > UNCERTAIN_TURN:
         return
     k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
     name = system.writer("position", int(counted.source[worst]))

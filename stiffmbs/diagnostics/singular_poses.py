@@ -11,7 +11,7 @@ from ..compile.state import State
 from ..compile.system import System
 from ..structure.loops import loops
 
-NEAR = 0.03
+NEARLY_SINGULAR = 0.03
 """Part of the usual smallest singular value below which a pose counts as near a singular one: errors of the motion come
 magnified by its inverse into accelerations and reactions."""
 TAKES_PART = 0.3
@@ -89,14 +89,14 @@ class PosesOnTheWay:
 
     def at_singular(self, k: int) -> slice:
         """The poses around k at which accelerations and reactions mean nothing, or a few more; empty where k is sound."""
-        if self.distance(k) >= NEAR:
+        if self.distance(k) >= NEARLY_SINGULAR:
             return slice(k, k)
         return slice(self._sound_from(k, -1) + 1, self._sound_from(k, 1))
 
     def _sound_from(self, k: int, way: int) -> int:
         """A pose beyond k, by strides that double, that is sound again."""
         stride = 1
-        while 0 <= k < len(self._t) and self.distance(k) < NEAR:
+        while 0 <= k < len(self._t) and self.distance(k) < NEARLY_SINGULAR:
             k, stride = k + way * stride, 2 * stride
         return max(-1, min(k, len(self._t)))
 
@@ -107,7 +107,7 @@ class PosesOnTheWay:
         most = int(np.clip(EFFORT / effort, USUAL_POSES, MOST_POSES))
         inside = inside[:: max(1, len(inside) // most)]
         distances = [self.distance(int(k)) for k in inside]
-        if not distances or min(distances) > NEAR:
+        if not distances or min(distances) > NEARLY_SINGULAR:
             return None
         k = int(inside[int(np.argmin(distances))])
         _, weights = self._least(k)

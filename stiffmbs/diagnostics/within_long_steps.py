@@ -11,7 +11,7 @@ import numpy as np
 from ..describe.settings import RunSettings
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
-from ..solve.events.long_steps import APART, LongSteps, Motion
+from ..solve.events.long_steps import FROM_MIDDLE, LongSteps, Motion
 from ..solve.settings import near_constraints
 from .overlooked import PART, Overlooked, acting
 
@@ -56,7 +56,7 @@ def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray
     n_q = found.dynamics.system.n_q
     tolerances = settings.rtol, absolute_tolerances(found.dynamics.system, settings)[n_q:]
     ends, states = (found.begin[:count], found.end[:count]), (found.q[:count], found.u[:count])
-    return found.dynamics.contradicting(ends, APART, states, tolerances, (DOUBTFUL * PART, DOUBTFUL * TOLERANCES))
+    return found.dynamics.contradicting(ends, FROM_MIDDLE, states, tolerances, (DOUBTFUL * PART, DOUBTFUL * TOLERANCES))
 
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:

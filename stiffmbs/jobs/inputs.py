@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from ..compile.bodies import BODY_KINDS
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.element import Force
-from ..describe.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.parts.names import Names
 from ..describe.states.amount import Amount

@@ -12,7 +12,8 @@ from ..compile.group import Group
 from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..describe.element import Element
-from ..describe.formula.field import TIME, Formula
+from ..describe.formula.formula import Formula
+from ..describe.formula.nodes import TIME
 from ..describe.marker import GROUND
 from ..describe.model_data import ModelData
 from ..describe.scene import Scene

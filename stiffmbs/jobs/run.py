@@ -13,7 +13,7 @@ import numpy as np
 
 from ..compile.callbacks import fault_of, notes_on_functions
 from ..compile.compile_model import compile_model
-from ..describe.model_builder import ModelBuilder
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..describe.requests.order import units
 from ..describe.scene import Scene, notes_of

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from ..describe.body import Body
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.joints.prismatic import Prismatic
 from ..describe.joints.revolute import Revolute
 from ..describe.model import Model
-from ..describe.model_builder import ModelBuilder
 from ..describe.samples import Samples
 
 BODIES = ("a", "b", "c")

@@ -12,7 +12,7 @@ from .state_space import null_space
 
 MOST_DENSE = 300
 """Velocities up to which all w^2 are computed (dense matrices)."""
-ROUNDING = 2 * float(np.finfo(float).eps)
+STIFFNESS_ROUNDING = 2 * float(np.finfo(float).eps)
 """Part of the sum of all parts of a motion's stiffness that its w^2 may be off by."""
 BESIDE_IMBALANCE = 100.0
 """Times the w^2 that what is left of the forces could make."""
@@ -72,13 +72,13 @@ def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: n
     """
     if len(mass) <= MOST_DENSE:
         squares, shapes = _all(stiffness, jacobian, mass, scale)
-        of_eigenvalues = ROUNDING * len(mass) * float(np.max(np.abs(squares), initial=0.0))
+        of_eigenvalues = STIFFNESS_ROUNDING * len(mass) * float(np.max(np.abs(squares), initial=0.0))
     else:
         squares, shapes = _near(stiffness, jacobian, mass, scale)
         of_eigenvalues = 0.0
     inertia = np.sum(shapes * (mass[:, None] * shapes), axis=0)
     sizes = np.abs(shapes)
-    rounding = ROUNDING * np.sum(sizes * (abs(stiffness) @ sizes), axis=0)
+    rounding = STIFFNESS_ROUNDING * np.sum(sizes * (abs(stiffness) @ sizes), axis=0)
     beside = BESIDE_IMBALANCE * (np.abs(left) / scale) @ sizes**2
     none = (rounding + beside) / np.where(inertia > 0, inertia, np.inf) + of_eigenvalues
     real = np.abs(squares.imag) < 1e-6 * np.abs(squares) + none

@@ -15,7 +15,7 @@ from .tangent_space import Linearised
 
 DEPENDENT = 1e-9
 """Pivot, relative to the largest, below which an equation depends on others at a pose."""
-SINGULAR = 1e15
+WITHOUT_INERTIA = 1e15
 """Condition number of the inertia of the free motions from which on one of them has none."""
 
 
@@ -121,7 +121,7 @@ def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
     if not len(inertia):
         return np.zeros(forces.shape)
     sizes = np.linalg.norm(inertia, axis=1)
-    if not np.all(sizes > 0) or np.linalg.cond(inertia / sizes[:, None]) > SINGULAR:
+    if not np.all(sizes > 0) or np.linalg.cond(inertia / sizes[:, None]) > WITHOUT_INERTIA:
         raise SolverError(
             "a motion that the joints leave free has no mass, expected mass or inertia in every free motion"
         )

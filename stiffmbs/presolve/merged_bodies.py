@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import Any
 
 from ..describe.element import Element, JointName
-from ..describe.formula.field import Formula
+from ..describe.formula.formula import Formula
 from ..describe.joints.fixed import Fixed
 from ..describe.marker import GROUND, MarkerReference
 from ..describe.model_data import ModelData

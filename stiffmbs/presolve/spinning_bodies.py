@@ -16,7 +16,7 @@ import numpy as np
 
 from ..compile.kind import Compilable
 from ..describe.element import Element, JointName
-from ..describe.formula.field import Formula
+from ..describe.formula.formula import Formula
 from ..describe.marker import GROUND, MarkerReference
 from ..describe.states.name import StateName
 from ..describe.states.state import StateValue

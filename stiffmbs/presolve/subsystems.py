@@ -11,7 +11,7 @@ from ..compile.system import System
 
 A_STATE = -1
 """In place of the number of a counter of turns."""
-NOTHING = np.iinfo(np.int64).max
+NO_MECHANISM = np.iinfo(np.int64).max
 
 
 def mechanisms(system: System) -> list[np.ndarray]:
@@ -64,7 +64,7 @@ def _pairs(system: System, group: Group) -> np.ndarray:
     parts, ground = _parts(system, group), len(system.bodies)
     if parts.shape[1] < 2:
         return np.empty((0, 2), dtype=np.int64)
-    least = np.where(parts == ground, NOTHING, parts).min(axis=1)
+    least = np.where(parts == ground, NO_MECHANISM, parts).min(axis=1)
     pairs = np.column_stack([np.repeat(least, parts.shape[1]), parts.ravel()])
     return pairs[pairs[:, 1] != ground]
 

@@ -14,7 +14,7 @@ from .energy_balance import Balance
 from .scales import kind_of
 from .solution import Solution
 
-SAME = 1e-6
+SAME_VALUE = 1e-6
 """Part of the size of a channel's kind by which two values may differ and be one."""
 VIOLATIONS = "constraint."
 MECHANICAL = ("force", "torque")
@@ -90,7 +90,7 @@ def _goes_on(before: Solution, after: Solution, sizes: Mapping[str, float]) -> b
     """Whether all channels end as they begin, to what the tolerance of a run leaves; `sizes` are those of their kinds."""
     return all(
         np.isclose(
-            values[-1], after.channels[name][0], rtol=0, atol=SAME * sizes[kind_of(name) or name], equal_nan=True
+            values[-1], after.channels[name][0], rtol=0, atol=SAME_VALUE * sizes[kind_of(name) or name], equal_nan=True
         )
         for name, values in before.channels.items()
         if not name.startswith(VIOLATIONS)

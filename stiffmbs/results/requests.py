@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..compile.table_values import curve
-from ..describe.formula.field import TIME
 from ..describe.formula.functions import FUNCTIONS
+from ..describe.formula.nodes import TIME
 from ..describe.formula.text import evaluate
 from ..describe.model_data import ModelData
 from ..describe.requests.check import ends

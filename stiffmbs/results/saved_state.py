@@ -16,7 +16,7 @@ from ..errors import InputError
 if TYPE_CHECKING:
     from .solution import Solution
 
-SAME = 1e-9
+SAME_INSTANT = 1e-9
 """Part of the time between two rows by which an instant may differ from that of a row."""
 TURNS = "run/turns/"
 """Before the names of counts of turns in .npz files."""
@@ -104,7 +104,7 @@ def _row(source: str, time: np.ndarray, arrays: Mapping[str, np.ndarray], at: fl
 def _number_of_row(source: str, time: np.ndarray, at: float) -> int:
     k = int(np.argmin(np.abs(time - at)))
     apart = np.diff(time)
-    if not abs(time[k] - at) <= SAME * max(float(np.max(apart, initial=0.0)), abs(at)):
+    if not abs(time[k] - at) <= SAME_INSTANT * max(float(np.max(apart, initial=0.0)), abs(at)):
         near = time[max(0, k - 1) : k + 2]
         raise InputError(
             f"{source}: found no row at t = {at:.9g} s, expected an instant that was saved: there are {len(time)} from "

@@ -6,7 +6,7 @@ import math
 
 PLENTY = 9
 """Significant digits of a number that is known better."""
-SMALL = 1e-3
+LEAST_WITHOUT_EXPONENT = 1e-3
 """Smaller numbers are written with an exponent."""
 
 
@@ -48,7 +48,7 @@ def with_bar(value: float, half: float, noise: float = 0.0) -> str:
     if digit >= 0:
         large = max(abs(known), bar) >= 10.0 ** (PLENTY + 1)
         return f"{known:.3e} ± {bar:.0e}" if large else f"{known:.0f} ± {bar:.0f}"
-    if max(abs(known), bar) >= SMALL:
+    if max(abs(known), bar) >= LEAST_WITHOUT_EXPONENT:
         return f"{known:.{-digit}f} ± {bar:.{-digit}f}"
     places = max(math.floor(math.log10(abs(known))) - digit, 0) if known else 0
     return f"{known:.{places}e} ± {bar:.0e}"

@@ -13,7 +13,7 @@ from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution
 from .digits import with_bar
 
-ROUNDING = 1e-11
+ZERO_LOAD = 1e-11
 """Part of the largest force, or torque, of all elements below which one is zero."""
 
 
@@ -29,7 +29,7 @@ def joint_forces(solution: Solution) -> list[dict[str, str]]:
     forces, torques = [c for c in components if c[0] == "f"], [c for c in components if c[0] == "t"]
     elements = list(dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{components[-1]}")))
     noise = {
-        unit: ROUNDING * max((_peak(solution, element, parts)[0] for element in elements), default=0.0)
+        unit: ZERO_LOAD * max((_peak(solution, element, parts)[0] for element in elements), default=0.0)
         for unit, parts in (("N", forces), ("N m", torques))
     }
     rows: list[dict[str, str]] = []

@@ -18,7 +18,7 @@ from ..compile.quaternions import CONJUGATE, rotated
 from ..compile.system import System
 from .dynamics import Dynamics
 
-SMALL = 1e-9
+NO_EFFECT = 1e-9
 """Part of a spin's effect on rolling constraints, relative to the largest, that counts as none."""
 
 
@@ -61,11 +61,11 @@ class SteadyMotion:
         state.u[:] = 0.0 if self.is_rest else self.carried(dynamics)
         if len(self.spinning):
             across, missing = self._rolling(dynamics, t)
-            rolls = np.linalg.norm(across, axis=0) > SMALL
+            rolls = np.linalg.norm(across, axis=0) > NO_EFFECT
             spins = np.where(rolls, 0.0, self.spins)
             if rolls.any():
                 missing = missing + across @ spins
-                spins[rolls] -= np.linalg.lstsq(across[:, rolls], missing, rcond=SMALL)[0]
+                spins[rolls] -= np.linalg.lstsq(across[:, rolls], missing, rcond=NO_EFFECT)[0]
             state.u[self.spinning] += spins
 
     def turning(self, system: System) -> csc_array:
@@ -125,7 +125,7 @@ class SteadyMotion:
         rows, pose = (state.matrix("tangent", name)[rolling] for name in ("J", "V_q"))
         across = rows[:, self.spinning]
         missing = pose @ rates.toarray() + rows @ by_move.toarray()
-        return csc_array(-np.linalg.lstsq(across, missing, rcond=SMALL)[0]) if len(rolling) else csc_array((len(self.spinning), missing.shape[1]))  # fmt: skip
+        return csc_array(-np.linalg.lstsq(across, missing, rcond=NO_EFFECT)[0]) if len(rolling) else csc_array((len(self.spinning), missing.shape[1]))  # fmt: skip
 
     def _rolling(self, dynamics: Dynamics, t: float) -> tuple[np.ndarray, np.ndarray]:
         """What the spins do to the constraints of velocity alone, and what these miss without them."""

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from ..describe.model_builder import ModelBuilder
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
 from ..errors import StiffmbsError
 from ..jobs.run import run

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from ..describe import model as plane
 from ..describe.body import Body
-from ..describe.model_builder import ModelBuilder
+from ..describe.building.model_builder import ModelBuilder
 from ..describe.spatial import model as space
 from ..describe.spatial.body import Body as SpatialBody
 

@@ -19,7 +19,7 @@ CLEARLY = 0.2
 """Part of a row of J that is at right angles to others from which on it is independent of them for sure."""
 DISAGREES = 1e-7
 """Part of the largest prescribed velocity by which two equations may differ."""
-NEAR = 20.0
+LONGEST_MOVE = 20.0
 """Length of the move that satisfies the other equations, in gaps, up to which the gap is put down to a contradiction."""
 STRIDE, MOST_STRIDES = 0.2, 150
 """Longest move (arms, rad) between two instants, so that no other branch is met, and how many are made at the most."""
@@ -137,7 +137,9 @@ def _velocity_violations(pose: Pose, kept: np.ndarray) -> np.ndarray:
 def _position_violations(equations: LoopEquations, pose: Pose, kept: np.ndarray) -> np.ndarray:
     """What the rows left out miss by nearby, where those kept hold; nothing where these do not close either."""
     alone = equations.assembled(pose.q, pose.t, kept)
-    closes = np.abs(alone.C[kept]).max(initial=0.0) <= CLOSED and equations.distance(pose, alone) < NEAR * pose.gap
+    closes = (
+        np.abs(alone.C[kept]).max(initial=0.0) <= CLOSED and equations.distance(pose, alone) < LONGEST_MOVE * pose.gap
+    )
     gaps: np.ndarray = np.abs(alone.C) * ~kept * closes
     return gaps
 

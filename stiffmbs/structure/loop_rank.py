@@ -18,7 +18,7 @@ BY_GAP = 30.0
 """Singular values below so many gaps do so too, where equations agree to some digits only."""
 UNCLEAR = 1e-9, 1e-5
 """A pose with singular values between these, near a singular one by chance, is not asked where others are clear."""
-SINGULAR = 1e-5
+SINGULAR_START = 1e-5
 """Part of the general pose's least singular value below which the start counts as singular."""
 POSES, PERTURBATION, SHRINKS = 3, 0.1, 5
 """Poses to confirm the rank at, the size of a perturbation (arms, rad), and how often it is made smaller in vain."""
@@ -84,7 +84,7 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     asked = (values[1:] if gap else _clear(values[1:])) or values[1:] or values
     rank = max(int(np.sum(s > max(DEPENDENT, BY_GAP * gap))) for s in asked)
     least = max(float(s[rank - 1]) for s in asked) if rank else 0.0
-    start_rank = int(np.sum(values[0][:rank] > SINGULAR * least))
+    start_rank = int(np.sum(values[0][:rank] > SINGULAR_START * least))
     general = [k for k, s in enumerate(values) if _is_general(s, rank, least, k == 0 or any(s is own for own in asked))]
     null_spaces = [(poses[k], _last(decomposed[k][1], count - rank)) for k in general]
     return LoopRank(equations, start, rank, start_rank, least, null_spaces)
@@ -102,7 +102,7 @@ def _clear(values: list[np.ndarray]) -> list[np.ndarray]:
 
 def _is_general(values: np.ndarray, rank: int, least: float, asked: bool) -> bool:
     """Whether a pose has the rank that there is in general."""
-    return asked and int(np.sum(values > SINGULAR * least)) == rank
+    return asked and int(np.sum(values > SINGULAR_START * least)) == rank
 
 
 def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:

@@ -6,21 +6,21 @@ import numpy as np
 
 from .sparse_matrix import SparseMatrix
 
-SMALL = 1e-3
+KNOWN_BY_SQUARES = 1e-3
 """Singular values below this are not taken from eigenvalues of J J^T, which know them to 1e-8 only."""
 WHOLE_UP_TO = 1000
 """Rows up to which all singular values are computed."""
 FEW = 3
 """Small singular values are sought alone where they are fewer than the rows divided by this."""
 MORE, SHIFT, ITERATIONS = 10, 1e-10, 4
-"""Vectors beside those sought, shift of J J^T, and iterations: each makes vectors of larger values than `SMALL` smaller by
-SHIFT/SMALL^2 against those of zero."""
+"""Vectors beside those sought, shift of J J^T, and iterations: each makes vectors of larger values than `KNOWN_BY_SQUARES` smaller by
+SHIFT/KNOWN_BY_SQUARES^2 against those of zero."""
 
 
 def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
     """Singular values, shape (n,), the largest first, and the left singular vectors of the last of them.
 
-    Of a large matrix, those above `SMALL` but for the last ones are not computed: one of these stands for them.
+    Of a large matrix, those above `KNOWN_BY_SQUARES` but for the last ones are not computed: one of these stands for them.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
     """
     n = J.shape[0]
     if n > WHOLE_UP_TO:
-        count = J.singular_values_below(SMALL)
+        count = J.singular_values_below(KNOWN_BY_SQUARES)
         if count is not None and FEW * (count + MORE) < n:
             return _by_iteration(J, count + MORE)
     return _of_all(J.dense())
@@ -41,7 +41,7 @@ def _of_all(J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Those too small to be told from rounding there are found anew by the decomposition of J^T on their eigenvectors alone.
     """
     squares, vectors = np.linalg.eigh(J @ J.T)
-    count = int(np.sum(squares < SMALL**2))
+    count = int(np.sum(squares < KNOWN_BY_SQUARES**2))
     small = vectors[:, :count]
     _, values, turn = np.linalg.svd(J.T @ small, full_matrices=count > J.shape[1])
     values = np.pad(values, (0, count - len(values)))

@@ -11,7 +11,7 @@ import numpy as np
 from ..compile.group import Group
 from ..compile.system import System
 from ..describe.element import Element
-from ..describe.formula.field import Formula
+from ..describe.formula.formula import Formula
 from ..describe.table import Table
 from ..presolve.dependence import curved
 from .redundancy import Redundancy

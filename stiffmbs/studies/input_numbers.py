@@ -15,7 +15,7 @@ from .case_solver import CaseSolver
 
 TRIED = (-1.7, -0.4, 0.3, 1.0, 2.9, 1e3)
 """Values at which it is tried whether numbers of forces are linear in an input, apart from zero."""
-ROUNDING = 8 * float(np.finfo(float).eps)
+SAME_NUMBER = 8 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class InputNumbers:
             found = {value: changes[at].values if at in changes else present for value, changes in known.items()}
             offset, slope = found[0.0], found[1.0] - found[0.0]
             for value, numbers in found.items():
-                if not np.allclose(numbers, offset + slope * value, rtol=ROUNDING, atol=ROUNDING * abs(value)):
+                if not np.allclose(numbers, offset + slope * value, rtol=SAME_NUMBER, atol=SAME_NUMBER * abs(value)):
                     return None
             places = np.flatnonzero(slope)
             parts.append(_Linear(force.group.numbers, force.first + places, offset[places], slope[places]))

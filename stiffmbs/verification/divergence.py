@@ -11,12 +11,12 @@ from ..compile.bodies import SPACE
 from ..compile.quaternions import CONJUGATE, rotation_vector, times
 from ..results.scales import kind_of
 
-APART = 0.05
+DIVERGED = 0.05
 """Part of the motion's size, or rad, by which positions must differ for two motions to have parted."""
 TOGETHER = 1e-3
-"""Part of `APART` at which the difference began to grow."""
+"""Part of `DIVERGED` at which the difference began to grow."""
 TURNING = (*SPACE.positions[SPACE.linear :], *SPACE.velocities[SPACE.linear :])
-NOTHING = 1e-300
+LEAST_LENGTH = 1e-300
 """Lengths that are divided by are at least this, so that what does not turn has no axis."""
 SENSITIVE = 2.0
 """A motion is sensitive where a tighter tolerance puts the parting off by less than this factor of time."""
@@ -82,7 +82,7 @@ def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
     """
     p, w = first[:4], first[4:]
     turn = rotation_vector(times(CONJUGATE * p.T, other[:4].T))
-    axis = (w / np.maximum(np.linalg.norm(w, axis=0), NOTHING)).T
+    axis = (w / np.maximum(np.linalg.norm(w, axis=0), LEAST_LENGTH)).T
     along = np.sum(turn * axis, axis=1, keepdims=True)
     turned = 4 * np.arcsin(np.minimum(np.linalg.norm(np.diff(p), axis=0) / 2, 1.0))
     phase = np.abs(along[:, 0]) / max(1.0, float(np.nansum(turned)))
@@ -101,10 +101,10 @@ def divergence(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Diverg
     if not distances:
         return None
     bodies, rows = list(distances), np.array(list(distances.values()))
-    beyond = rows > APART
+    beyond = rows > DIVERGED
     if not beyond.any():
         return None
     k = int(np.argmax(beyond.any(axis=0)))
     body = int(np.argmax(rows[:, k]))
-    together = np.flatnonzero(rows[:, :k].max(axis=0) < TOGETHER * APART)
+    together = np.flatnonzero(rows[:, :k].max(axis=0) < TOGETHER * DIVERGED)
     return Divergence(bodies[body], float(times[together[-1] if len(together) else 0]), float(times[k]))

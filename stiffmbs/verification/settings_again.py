@@ -16,7 +16,7 @@ IMPLICIT: dict[str, Any] = {"solver": "bdf", "formulation": "SI2"}
 """The integrators that runs of others are compared with."""
 TIGHTEST = 1e-13
 """Relative tolerance below which steps fail by rounding."""
-APART = 2.0
+TIGHTER = 2.0
 """Times tighter that a tolerance must be at the least to tell anything beside another."""
 MORE_STEPS, MANY = 4, 1000
 """Times as many steps, and at least so many, that a run with another longest step takes."""
@@ -24,13 +24,13 @@ MORE_STEPS, MANY = 4, 1000
 
 def levels_of(rtol: float) -> tuple[int, ...]:
     """A hundredth and a tenth of a tolerance, as far as rounding leaves both."""
-    return tuple(level for level, most in ((2, 10 * APART), (1, 0.0)) if rtol > most * TIGHTEST)
+    return tuple(level for level, most in ((2, 10 * TIGHTER), (1, 0.0)) if rtol > most * TIGHTEST)
 
 
 def tolerances(settings: RunSettings, level: int) -> dict[str, Any]:
     """Tighter by so many powers of ten, down to the tightest; looser where that is hardly tighter: then that run's error shows."""
     rtol = max(settings.rtol / 10**level, TIGHTEST)
-    if settings.rtol < APART * rtol:
+    if settings.rtol < TIGHTER * rtol:
         rtol = 10 * settings.rtol
     return {"rtol": rtol, **({"atol": settings.atol * rtol / settings.rtol} if settings.atol else {})}
 

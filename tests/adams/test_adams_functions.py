@@ -88,11 +88,20 @@ def bistop(x, rate):
     return -max(0, impact(x - 1, -rate)) if x > 1 else 0
 
 
-def test_variables_stand_for_their_expressions():
+def test_variables_are_those_of_the_scene():
     found = made(
         "VARIABLE/1, FUNCTION=2*TIME\nVARIABLE/2, IC=1, FUNC=VARVAL(1)+1\nSFORCE/1, TRANS, I=22, J=1, FUNC=VARVAL(2)"
     )
-    assert found["forces"]["SFORCE_1"]["force"] == "2 * t + 1"
+    assert found["forces"]["SFORCE_1"]["force"] == "VARIABLE_2"
+    assert found["variables"] == {"VARIABLE_1": "2 * t", "VARIABLE_2": "VARIABLE_1 + 1"}
+    assert found["requests"] == {"VARIABLE_1": "VARIABLE_1", "VARIABLE_2": "VARIABLE_2"}
+
+
+def test_a_motion_is_integrated_with_the_expressions_of_variables():
+    found = made(
+        "VARIABLE/1, FUNCTION=2*TIME\nJOINT/1, REV, I=22, J=1\nMOTION/1, ACCEL, ROT, JOINT=1, FUNC=VARVAL(1)", "METER"
+    )
+    assert found["joints"]["MOTION_1"]["position"] == "t ** 3 / 3"
 
 
 def test_variables_that_depend_on_themselves_are_algebraic_states():
@@ -104,7 +113,8 @@ def test_variables_that_depend_on_themselves_are_algebraic_states():
         "VARIABLE_1_value": {"zero": "VARIABLE_2_value / 2 + 1 - VARIABLE_1_value", "start": 2},
         "VARIABLE_2_value": {"zero": "cos(VARIABLE_1_value) - VARIABLE_2_value", "start": 0},
     }
-    assert found["forces"]["SFORCE_1"]["force"] == "2 * VARIABLE_1_value"
+    assert found["forces"]["SFORCE_1"]["force"] == "VARIABLE_3"
+    assert found["variables"] == {"VARIABLE_3": "2 * VARIABLE_1_value"}
 
 
 @pytest.mark.parametrize(

@@ -158,8 +158,9 @@ def test_a_sliding_sphere_comes_to_roll_at_five_sevenths():
 @pytest.mark.parametrize(
     "text, words",
     [
-        ("GRAPHICS/5, BOX, CORNER=21, X=1, Y=1, Z=1\nCONTACT/1, IGEOM=5, JGEOM=1, ", "found BOX in a CONTACT"),
-        ("CONTACT/1, IGEOM=1, JGEOM=1, ", "found two planes"),
+        ("GRAPHICS/5, TORUS, CM=21\nCONTACT/1, IGEOM=5, JGEOM=1, ", "found TORUS in a CONTACT"),
+        ("GRAPHICS/5, BOX, CORNER=21, X=1, Y=1\nCONTACT/1, IGEOM=5, JGEOM=1, ", "found no Z, expected"),
+        ("CONTACT/1, IGEOM=1, JGEOM=1, ", "found PLANE and PLANE, expected SPHERE and PLANE"),
         ("CONTACT/1, IGEOM=9, JGEOM=1, ", "found the geometry 9"),
         ("CONTACT/1, POISSON, IGEOM=2, JGEOM=1, ", "found POISSON, expected a contact by IMPACT"),
     ],

@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 
-from ...describe.formula.field import Formula, is_measure, measured_markers
+from ...describe.formula.formula import Formula
+from ...describe.formula.nodes import is_measure, measured_markers
 from ...describe.formula.text import UNIT
 from ...describe.marker import GROUND, MarkerReference
 from ...describe.requests.output import Output, Term, placeholder

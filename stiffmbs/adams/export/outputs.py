@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from ...describe.formula.field import Formula
+from ...describe.formula.formula import Formula
 from ...describe.spatial.model import SpatialData
 from ...describe.states.state import StateValue
 from .formulas import Functions

@@ -7,6 +7,7 @@ import ast
 from ...describe.files.quoted import quoted
 from ...describe.formula.text import FormulaError, parse
 from ..statements.constraints import TRANSLATIONAL, Motion
+from .in_place import InPlace
 from .time_limit import time_limit
 from .translate import Translation
 from .trees import number, times, total
@@ -67,7 +68,7 @@ class Law:
     """
 
     def __init__(self, motion: Motion, translation: Translation, sort: str) -> None:
-        self._motion, self._translation = motion, translation
+        self._motion, self._translation = motion, InPlace(translation.mechanism)
         units = translation.units
         self._length = units.length if sort == TRANSLATIONAL else 1.0
         self._unit = self._length / units.time**motion.order

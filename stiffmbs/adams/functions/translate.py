@@ -41,8 +41,6 @@ CURVES: dict[str, dict[str, Any]] = {
     "LINE": {"lines": True},
 }
 """Functions of splines, and how the scene's table goes through the points."""
-MOST_PARTS = 10_000
-"""Numbers, names and operations in the value of a VARIABLE, which stands in place of its name wherever that is used."""
 NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 
 
@@ -107,18 +105,15 @@ class Translation:
         )
 
     def variable(self, ident: int, function: Function) -> ast.expr:
-        """The expression of a VARIABLE in place of its name."""
+        """The name of a VARIABLE, which the scene has from here on."""
         variable = self.mechanism.dataset.variables.get(ident)
         if variable is None:
             raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
         if ident in self.implicit_variables:
             return name_of(value_name(variable))
-        value = self.translated(variable.function)
-        if sum(1 for _ in ast.walk(value)) > MOST_PARTS:
-            raise function.fault(
-                f"found VARVAL({ident}), which has more than {MOST_PARTS} parts with the variables in it, expected fewer"
-            )
-        return value
+        if variable.name not in self.mechanism.variables:
+            self.mechanism.variables[variable.name] = self.formula(variable.function)
+        return name_of(variable.name)
 
     def call(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]

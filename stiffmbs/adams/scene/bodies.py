@@ -15,7 +15,7 @@ from ..statements.geometry import IDENTITY, Frame
 from .initial_conditions import in_ground
 from .mechanism import Mechanism
 
-ROUNDING = 1e-10
+EXCESS_IN_SILENCE = 1e-10
 """Part of the sum of two principal moments by which the third may be greater without a word."""
 POINT_INERTIA = 1.0
 """Moment of inertia over mass that a point mass gets in the scene, m^2; its orientation is held, so it has no effect."""
@@ -132,7 +132,7 @@ def _breaks_triangle(mechanism: Mechanism, part: Part) -> bool:
     if part.point or lacks_inertia(tensor):
         return False
     small, middle, large = np.linalg.eigvalsh(tensor)
-    return bool(large > (small + middle) * (1 + ROUNDING))
+    return bool(large > (small + middle) * (1 + EXCESS_IN_SILENCE))
 
 
 def _check(part: Part, tensor: np.ndarray) -> None:

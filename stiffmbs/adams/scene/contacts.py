@@ -1,4 +1,4 @@
-"""Contacts of spheres as forces by formulas.  MSC Adams/Solver, CONTACT statement: IMPACT, and Coulomb friction.
+"""Contacts of spheres with planes and spheres as forces by formulas.  MSC Adams/Solver, CONTACT: IMPACT, and Coulomb friction.
 
 The force acts at the point of contact.  On the line of the normal it acts at the sphere's centre as well; friction has a moment
 about that, which is a torque of its own, the opposite of it on the other body: both then act at one point of space.
@@ -14,6 +14,7 @@ from ..functions.translate import Translation
 from ..statements.contact import PLANE, SPHERE, Contact, Friction, Shape, read_shape
 from ..statements.fault import of_each
 from .mechanism import Mechanism
+from .solids import between_solids
 
 TORQUE = "_torque"
 SLOW = 1e-6
@@ -29,10 +30,10 @@ def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> d
     first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
     if (first.sort, second.sort) == (SPHERE, SPHERE):
         return _of_spheres(contact, first, second, mechanism, translation)
-    if (first.sort, second.sort) == (PLANE, PLANE):
-        raise contact.fault("found two planes, expected a sphere")
-    sphere, plane = (first, second) if first.sort == SPHERE else (second, first)
-    return _on_plane(contact, sphere, plane, mechanism, translation)
+    if {first.sort, second.sort} == {SPHERE, PLANE}:
+        sphere, plane = (first, second) if first.sort == SPHERE else (second, first)
+        return _on_plane(contact, sphere, plane, mechanism, translation)
+    return {contact.name: between_solids(contact, first, second, mechanism)}
 
 
 def _shape(contact: Contact, ident: int, mechanism: Mechanism) -> Shape:
@@ -55,7 +56,7 @@ def _of_spheres(
         raise contact.fault("found friction between two spheres, expected a sphere and a plane, or no friction")
     i, j = (mechanism.place(shape.marker, contact, "CM").reference for shape in (one, other))
     ends = f"({one.marker}, {other.marker})"
-    law = _impact(contact, f"DM{ends} - {one.radius + other.radius!r}", f"VR{ends}")
+    law = _impact(contact, f"DM{ends} - {one.sizes[0] + other.sizes[0]!r}", f"VR{ends}")
     force = _formula(contact, law, translation, 0)
     return {contact.name: {"type": "line_force", "i": i, "j": j, "force": force}}
 
@@ -65,7 +66,7 @@ def _on_plane(
 ) -> dict[str, Any]:
     """Force along the axes of the plane's marker, whose z points out of the solid."""
     center, other = mechanism.place(sphere.marker, contact, "CM"), mechanism.place(plane.marker, contact, "RM")
-    i, j, r = sphere.marker, plane.marker, sphere.radius
+    i, j, r = sphere.marker, plane.marker, sphere.sizes[0]
     normal = _impact(contact, f"DZ({i},{j},{j}) - {r!r}", f"VZ({i},{j},{j},{j})")
     ends: dict[str, Any] = {"i": center.reference, "j": other.body, "frame": other.reference}
     if contact.friction is None:

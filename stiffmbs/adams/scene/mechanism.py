@@ -78,6 +78,8 @@ class Mechanism:
         Markers that the dataset does not have, by their references; see `tip`.
     tables : mapping of str to table
         Of the scene, by name: splines that functions have called so far, in the dataset's units.
+    variables : mapping of str to str
+        Of the scene, by name: variables that functions have used so far, in the dataset's units.
 
     Raises
     ------
@@ -89,6 +91,7 @@ class Mechanism:
         self.dataset = dataset
         self.further: dict[str, Place] = {}
         self.tables: dict[str, dict[str, Any]] = {}
+        self.variables: dict[str, str] = {}
         self.least = lightest(dataset.parts)
         self.parts = {(part.point, part.ident): weighed(part, self.least) for part in dataset.parts}
         grounds = [part for part in dataset.parts if part.ground]

@@ -37,7 +37,7 @@ class Requests:
         self.notes: list[str] = []
 
     def all(self) -> dict[str, Any]:
-        """By name: a request's components by theirs, a variable as it is."""
+        """By name: a request's components by theirs, a variable by its name where formulas use it, else by its formula."""
         found: dict[str, Any] = {}
         for request in self._mechanism.dataset.requests.values():
             components = self._between_markers(request) if request.sort else self._functions(request)
@@ -47,7 +47,8 @@ class Requests:
             formula = self._formula(variable.function, variable.label)
             if formula is not None:
                 found[variable.name] = formula
-        return found
+        named = self._mechanism.variables
+        return {name: name if name in named else formula for name, formula in found.items()}
 
     def _between_markers(self, request: Request) -> dict[str, str]:
         """Displacement, velocity, acceleration or force of marker I against J, along the axes of RM; in SI."""

@@ -59,6 +59,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
         "gravity": vector(dataset.gravity),
+        "variables": mechanism.variables,
         "markers": {},
         "bodies": {},
         **sections,

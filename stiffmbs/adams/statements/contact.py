@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .arguments import Arguments
@@ -11,7 +10,7 @@ from .fault import DatasetFault
 from .text import Statement
 from .units import Units
 
-SPHERE, PLANE = "SPHERE", "PLANE"
+SPHERE, PLANE, ELLIPSOID, CYLINDER, BOX = "SPHERE", "PLANE", "ELLIPSOID", "CYLINDER", "BOX"
 ROUND = 1e-9
 """Part of an ellipsoid's axis by which another may differ and it is a sphere."""
 _SHAPES = ("ELLIPSOID", "PLANE", "CYLINDER", "BOX", "FRUSTUM", "TORUS", "CIRCLE", "ARC", "EXTERNAL", "OUTLINE", "FORCE", "SPRINGDAMPER", "CURVE")  # fmt: skip
@@ -50,11 +49,20 @@ class Contact(Numbered):
 
 @dataclass(frozen=True)
 class Shape:
-    """A sphere about a marker, or the plane of x and y of one, in the dataset's units."""
+    """A solid at a marker, or the plane of x and y of one, in the dataset's units.
+
+    Attributes
+    ----------
+    sort : str
+    marker : int
+        At the middle of a sphere or an ellipsoid, at the middle of one end of a cylinder about z, at a corner of a box.
+    sizes : tuple of float
+        Radius of a sphere; semi-axes of an ellipsoid; radius, and length along z, of a cylinder; sides of a box along the axes.
+    """
 
     sort: str
     marker: int
-    radius: float = 0.0
+    sizes: tuple[float, ...] = ()
 
 
 _CONTACT = (
@@ -74,9 +82,7 @@ def read_contact(statement: Statement, units: Units) -> Contact:
     found = Arguments(statement, "CONTACT", _CONTACT)
     for name in _NOT_READ:
         if name in found:
-            raise found.fault(
-                f"found {name}, expected a contact by IMPACT of a sphere and a plane or sphere", found.line(name)
-            )
+            raise found.fault(f"found {name}, expected a contact by IMPACT between primitives", found.line(name))
     sides = found.idents("IGEOM", 1), found.idents("JGEOM", 1)
     if not all(sides):
         raise found.fault("found no IGEOM or no JGEOM, expected one GRAPHICS each")
@@ -108,7 +114,7 @@ def _friction(found: Arguments) -> Friction | None:
 
 
 def read_shape(statement: Statement) -> Shape:
-    """A sphere or a plane of a GRAPHICS statement.
+    """The solid or the plane of a GRAPHICS statement.
 
     Raises
     ------
@@ -117,18 +123,27 @@ def read_shape(statement: Statement) -> Shape:
     """
     words = [piece.text.strip().upper() for piece in statement.pieces]
     sort = next((full for word in words for full in _SHAPES if len(word) > 2 and full.startswith(word)), "no kind")
-    label = f"GRAPHICS/{statement.ident}"
-    if sort == "ELLIPSOID":
-        found = Arguments(statement, "GRAPHICS", ("ELLIPSOID", "CM", "XSCALE", "YSCALE", "ZSCALE", "SEG"))
-        axes = [found.number(name) or 0.0 for name in ("XSCALE", "YSCALE", "ZSCALE")]
-        if not _same(axes):
-            raise found.fault("found an ellipsoid with three axes, expected a sphere in a CONTACT")
-        return Shape(SPHERE, found.required("CM"), axes[0] / 2)
-    if sort == "PLANE":
-        found = Arguments(statement, "GRAPHICS", ("PLANE", "RM", "XMINIMUM", "XMAXIMUM", "YMINIMUM", "YMAXIMUM"))
-        return Shape(PLANE, found.required("RM"))
-    raise DatasetFault(statement.line, label, f"found {sort} in a CONTACT, expected ELLIPSOID (a sphere) or PLANE")
+    if sort not in _SIZES:
+        raise DatasetFault(
+            statement.line, f"GRAPHICS/{statement.ident}", f"found {sort} in a CONTACT, expected {', '.join(_SIZES)}"
+        )
+    at, names, drawn = _SIZES[sort]
+    found = Arguments(statement, "GRAPHICS", (sort, at, *names, *drawn))
+    sizes = tuple(found.number(name) or 0.0 for name in names)
+    for name, size in zip(names, sizes, strict=True):
+        if size == 0 or (size < 0 and sort != BOX and name != "LENGTH"):
+            raise found.fault(f"found no {name}, expected a number above zero", found.line(name))
+    if sort == ELLIPSOID:
+        sizes = tuple(size / 2 for size in sizes)
+        if max(sizes) - min(sizes) <= ROUND * max(sizes):
+            return Shape(SPHERE, found.required(at), sizes[:1])
+    return Shape(sort, found.required(at), sizes)
 
 
-def _same(axes: Sequence[float]) -> bool:
-    return axes[0] > 0 and max(axes) - min(axes) <= ROUND * axes[0]
+_SIZES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
+    ELLIPSOID: ("CM", ("XSCALE", "YSCALE", "ZSCALE"), ("SEG",)),
+    PLANE: ("RM", (), ("XMINIMUM", "XMAXIMUM", "YMINIMUM", "YMAXIMUM")),
+    CYLINDER: ("CM", ("RADIUS", "LENGTH"), ("SIDES", "SEG")),
+    BOX: ("CORNER", ("X", "Y", "Z"), ()),
+}
+"""Of each shape: the argument with its marker, those with its sizes, and those that only tell how it is drawn."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 STATICS = "STATICS"
 OVER_TIME = ("DYNAMICS", "KINEMATICS", "TRANSIENT")
 KINDS = ("DYNAMICS", "KINEMATICS", "TRANSIENT", STATICS, "INITIAL_CONDITIONS")
-SAME = 1e-9
+SAME_INTERVAL = 1e-9
 """Part of an interval of output by which two may differ and be one."""
 
 
@@ -141,7 +141,7 @@ def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] |
 def _same(one: float | None, other: float | None) -> bool:
     if one is None or other is None:
         return one is other
-    return math.isclose(one, other, rel_tol=SAME)
+    return math.isclose(one, other, rel_tol=SAME_INTERVAL)
 
 
 def refuse_velocities(line: int, dataset: Dataset) -> None:

@@ -10,7 +10,7 @@ import click
 from ...errors import InputError, StiffmbsError
 from ..scene import refuse
 
-APART = 1
+DIFFERENT = 1
 
 
 @click.command(short_help="Results beside another program's listing.")
@@ -57,7 +57,7 @@ def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, 
                 f"{one.channel} - {one.column}: {one.largest:.3g} at t = {one.t:.6g} s, relative {one.relative:.2e}{mark}"
             )
         click.echo(f"{len(found) - len(far)} of {len(found)} channels are within {tolerance:g}")
-    sys.exit(APART if far else 0)
+    sys.exit(DIFFERENT if far else 0)
 
 
 def _pairs(mapped: tuple[str, ...]) -> dict[str, str]:

@@ -12,13 +12,13 @@ from functools import partial
 
 import numpy as np
 
-from ...describe.formula.field import TIME, reading_order
 from ...describe.formula.functions import EACH, IN_FORMULAS, Breakpoints
+from ...describe.formula.nodes import TIME, reading_order
 from ...errors import InputError
 from .of_time import Input
 from .zeros import AT_ONCE, ZERO, TooMany, zeros
 
-APART = 1e-12
+LEAST_DISTANCE = 1e-12
 """Part of the times themselves by which two breakpoints differ at the least."""
 
 
@@ -33,7 +33,7 @@ def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.nd
     """
     found = np.concatenate([np.empty(0), *(times for each in inputs for times in _of_input(each, start, end))])
     found = np.sort(found[(found > start) & (found < end)])
-    apart = APART * max(abs(start), abs(end), 1e-300)
+    apart = LEAST_DISTANCE * max(abs(start), abs(end), 1e-300)
     return found[np.diff(found, prepend=-np.inf) > apart]
 
 

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...describe.element import Element
-from ...describe.formula.field import TIME, Formula, is_named, reading_order
+from ...describe.formula.formula import Formula
 from ...describe.formula.functions import EVERYWHERE, IN_FORMULAS
+from ...describe.formula.nodes import TIME, is_named, reading_order
 from ...describe.formula.text import UNIT, evaluate
 from ..system import System
 from .enclosed_functions import FUNCTIONS

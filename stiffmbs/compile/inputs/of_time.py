@@ -11,8 +11,10 @@ from typing import Any, get_args
 import numpy as np
 
 from ...describe.element import Element
-from ...describe.formula.field import TIME, Formula, FormulaOf, is_named, reading_order
+from ...describe.formula.field import FormulaOf
+from ...describe.formula.formula import Formula
 from ...describe.formula.functions import IN_FORMULAS
+from ...describe.formula.nodes import TIME, is_named, reading_order
 from ...describe.formula.text import BINARY, UNARY, UNIT
 from ...describe.table import Table
 from ..system import System

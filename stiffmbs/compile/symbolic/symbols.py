@@ -10,8 +10,8 @@ from typing import Any
 
 import sympy as sp
 
-from ...describe.formula.field import TIME
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
+from ...describe.formula.nodes import TIME
 from ...describe.formula.text import evaluate
 from ..kind import OWN, REACTION, STATE, Kind, Shape
 from . import nonsmooth, planar_frames, spatial_frames

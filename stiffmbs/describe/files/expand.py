@@ -15,9 +15,9 @@ from pydantic import ValidationError as PydanticError
 
 from ...errors import InputError
 from ..fields import NAME_PATTERN, sentence
-from ..formula.field import TIME
 from ..formula.functions import IN_FORMULAS, IN_NUMBERS
 from ..formula.names import MEASURES, REACTIONS
+from ..formula.nodes import TIME
 from ..formula.text import UNIT, FormulaError
 from ..parts.names import beginnings
 from ..table import Table

@@ -9,7 +9,7 @@ from typing import Any
 
 from ...errors import InputError
 from ..fields import NAME_PATTERN
-from ..formula.field import TIME
+from ..formula.nodes import TIME
 from ..formula.text import UNIT, FormulaError
 from ..formula.variables import resolved
 from ..units.units import CONSTANTS, UNITS, Quantity

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Container, Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from numbers import Real
 from typing import Annotated, Any
 
@@ -13,184 +12,21 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from ..files.quoted import quoted, written
-from ..marker import GROUND, MarkerReference
 from ..parts.names import Names, names_of
 from ..table import Table
 from ..units.quantity import as_float, is_unit, of_name
 from ..units.units import ANY, CONSTANTS, UNITS, Quantity
 from .check_dimensions import check_dimension
 from .dimension import UNKNOWN, Known, measured_in
+from .formula import Formula, called_tables
 from .full_names import text_in_full, with_full_names
 from .functions import IN_FORMULAS, check_functions
 from .measured import dimension_within
 from .names import COORDINATES, MEASURES, REACTIONS
+from .nodes import TAKERS, TIME, reading_order
 from .state_names import with_states
 from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
-
-TIME = "t"
-TAKERS = (*MEASURES, *REACTIONS)
-"""What is called with names: of markers, of joints."""
-
-
-@dataclass(frozen=True, eq=False)
-class Formula:
-    """A checked formula.
-
-    Attributes
-    ----------
-    text : str
-        As written.
-    tree : ast.expr
-        Its syntax tree (`stiffmbs.describe.formula.text.parse`).
-    variables : tuple of str
-        Names that the field gives a meaning to (``s`` and ``v`` of a spring's law).
-    values : dict of str to float
-        The scene's parameters, units and constants that it uses, in SI units.
-    velocities : bool
-        Whether it may hold velocities.
-    tables : mapping of str to Table
-        The scene's tables that it calls as functions.
-    dimension : Known
-        Of its value.
-    parameters : mapping of str to Quantity
-        The scene's parameters among `values`, with their dimensions.
-    expanded : str
-        The text with the scene's variables in their places; empty where the scene has none.
-    states : tuple of str
-        The states of the model that it uses, by their full names.
-    """
-
-    text: str
-    tree: ast.expr
-    variables: tuple[str, ...]
-    values: dict[str, float]
-    velocities: bool = False
-    tables: Mapping[str, Table] = field(default_factory=dict)
-    dimension: Known = UNKNOWN
-    parameters: Mapping[str, Quantity] = field(default_factory=dict)
-    expanded: str = ""
-    states: tuple[str, ...] = ()
-
-    def coordinates(self) -> Iterator[tuple[str, str]]:
-        """The (body, coordinate) pairs that it uses, in reading order."""
-        yield from self._coordinates
-
-    @cached_property
-    def _coordinates(self) -> list[tuple[str, str]]:
-        attributes = [node for node in reading_order(self.tree) if isinstance(node, ast.Attribute)]
-        return [(x.value.id, x.attr) for x in attributes if isinstance(x.value, ast.Name) and x.value.id != UNIT]
-
-    def measures(self) -> Iterator[tuple[str, tuple[MarkerReference, ...]]]:
-        """The measures that it uses with their markers, in reading order."""
-        yield from self._measures
-
-    @cached_property
-    def _measures(self) -> list[tuple[str, tuple[MarkerReference, ...]]]:
-        calls = [node for node in reading_order(self.tree) if is_measure(node)]
-        return [(node.func.id, measured_markers(node)) for node in calls]  # type: ignore[attr-defined]
-
-    def reactions(self) -> Iterator[tuple[str, str]]:
-        """The components of reactions that it uses, with their joints, in reading order."""
-        yield from self._reactions
-
-    @cached_property
-    def _reactions(self) -> list[tuple[str, str]]:
-        calls = [node for node in reading_order(self.tree) if is_reaction(node)]
-        return [(node.func.id, joint_of(node)) for node in calls]  # type: ignore[attr-defined]
-
-    @cached_property
-    def kept(self) -> dict[Any, Any]:
-        """What is worked out of it once, by what it is; nothing at first."""
-        return {}
-
-    def bodies(self) -> Iterator[str]:
-        """The bodies that it names, some more than once."""
-        for body, _ in self.coordinates():
-            yield body
-        for _, markers in self.measures():
-            yield from (marker.body for marker in markers)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Formula) and all(
-            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables", "_told")
-        )
-
-    @property
-    def _told(self) -> str:
-        """What the tree says, with variables in their places."""
-        return ast.unparse(self.tree)
-
-    def __hash__(self) -> int:
-        return hash(self.text)
-
-    def __repr__(self) -> str:
-        return f"Formula({self.text!r})"
-
-
-def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
-    """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
-    yield tree
-    match tree:
-        case ast.Attribute():
-            return
-        case ast.Call(_, arguments):
-            children = [] if is_named(tree) else arguments
-        case _:
-            children = [child for child in ast.iter_child_nodes(tree) if isinstance(child, ast.expr)]
-    for child in children:
-        yield from reading_order(child)
-
-
-def is_measure(node: ast.AST) -> bool:
-    """Whether a node is a measure between markers such as ``dm(bar.end, ground)``."""
-    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MEASURES
-
-
-def is_reaction(node: ast.AST) -> bool:
-    """Whether a node is a component of a joint's reaction such as ``fy(guide)``."""
-    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in REACTIONS
-
-
-def is_named(node: ast.AST) -> bool:
-    """Whether a node is a measure or a reaction, whose arguments are names."""
-    return is_measure(node) or is_reaction(node)
-
-
-def joint_of(node: ast.AST) -> str:
-    """The joint of a reaction, by its full name."""
-    assert isinstance(node, ast.Call)
-    match node.args:
-        case [ast.Name(joint)]:
-            return joint
-        case [ast.Attribute(ast.Name(owner), name)]:
-            return f"{owner}.{name}"
-    raise FormulaError(f"found '{ast.unparse(node)}', expected the name of one joint")
-
-
-def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
-    """The markers of a measure: two references to bodies or their markers, ground where one is left out, and perhaps a
-    third one, whose axes the measure is taken along.
-    """
-    assert isinstance(node, ast.Call)
-    markers = []
-    for argument in node.args:
-        match argument:
-            case ast.Name(body):
-                markers.append(MarkerReference(body=body))
-            case ast.Attribute(ast.Name(body), marker):
-                markers.append(MarkerReference(body=body, marker=marker))
-            case _:
-                raise FormulaError(f"found '{ast.unparse(argument)}' in a measure, expected a body or body.marker")
-    if len(markers) not in (1, 2, 3):
-        raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected one to three")
-    return tuple(markers) if len(markers) > 1 else (markers[0], MarkerReference(body=GROUND))
-
-
-def called_tables(tree: ast.expr, tables: Mapping[str, Table]) -> dict[str, Table]:
-    """The tables that a formula calls, by name."""
-    called = (node.func.id for node in reading_order(tree) if isinstance(node, ast.Call))  # type: ignore[attr-defined]
-    return {name: tables[name] for name in called if name in tables}
 
 
 def formula_text(found: Any, expected: str = "a formula") -> str:

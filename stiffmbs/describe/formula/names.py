@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .field import Formula
+    from .formula import Formula
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import ast
 import math
 
 from ..units.quantity import VALUES
-from .field import Formula
+from .formula import Formula
 from .text import OF_NUMBERS, FormulaError, evaluate
 
 

@@ -12,7 +12,8 @@ from ..element import Joint, JointReference, Symbolic
 from ..exactly_one import exactly_one
 from ..files.quoted import quoted
 from ..formula.dimension import UNKNOWN, Known, measured_in, product
-from ..formula.field import Formula, OfPosition, OfTimeAndStates
+from ..formula.field import OfPosition, OfTimeAndStates
+from ..formula.formula import Formula
 from ..formula.text import FormulaError
 from ..joint_reference import unfit_joints
 from ..marker import MarkerReference

@@ -11,7 +11,8 @@ from pydantic import Field, field_validator, model_validator
 
 from ..element import Joint, Symbolic
 from ..exactly_one import exactly_one
-from ..formula.field import Formula, FormulaOf
+from ..formula.field import FormulaOf
+from ..formula.formula import Formula
 from ..formula.value import formula_value
 from ..marker import Marker, MarkerReference
 from ..table import Table

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field, WithJsonSchema, field_validator
 
 from ..element import Joint, Symbolic
-from ..formula.field import Formula
+from ..formula.formula import Formula
 from ..marker import MarkerReference
 
 _FORMULA = {"type": "string", "description": "a formula of coordinates and t"}

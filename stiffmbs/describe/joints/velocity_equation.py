@@ -8,7 +8,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, field_validator
 
 from ..element import Symbolic
-from ..formula.field import Formula, OfMotion
+from ..formula.field import OfMotion
+from ..formula.formula import Formula
 from ..formula.names import VELOCITIES
 from .user_constraint import ONE_OR_MORE, UserConstraint
 

@@ -59,6 +59,10 @@ class Definitions:
             if word not in choices[name]:
                 raise InputError(f"{where}.{name}: found {written(word)}, expected one of {', '.join(choices[name])}")
         entry = {key: value for key, value in entry.items() if key not in words}
+        keys = (*self.kind.model_fields, *choices)
+        for key in entry:
+            if key not in keys:
+                raise InputError(f"{where}: found the unknown key {written(key)}, expected one of {', '.join(keys)}")
         try:
             use = self.kind.model_validate(entry, context={"parameters": parameters})
         except PydanticError as error:

@@ -13,7 +13,7 @@ from typing import Any
 
 from ...errors import InputError
 from ..element import Element, Joint, JointName
-from ..formula.field import Formula
+from ..formula.formula import Formula
 from ..formula.text import FormulaError
 from ..marker import GROUND, MarkerReference
 from ..table import Table

@@ -8,7 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from ..formula.field import Formula, is_measure, measured_markers
+from ..formula.formula import Formula
+from ..formula.nodes import is_measure, measured_markers
 from ..formula.text import UNIT, FormulaError, as_written
 from ..marker import GROUND, MarkerReference
 from ..table import Table

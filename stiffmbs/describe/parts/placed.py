@@ -16,8 +16,8 @@ from ..element import Element
 from ..fields import Described, sentence
 from ..files.quoted import written
 from ..formula.dimension import Known
-from ..formula.field import TAKERS
 from ..formula.full_names import with_full_names
+from ..formula.nodes import TAKERS
 from ..formula.state_names import with_states
 from ..formula.text import parse
 from ..formula.variables import meant_within

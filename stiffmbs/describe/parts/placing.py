@@ -24,9 +24,7 @@ def placed_in_use(
     """
     parts = found.get("parts")
     entries = parts if isinstance(parts, dict) else {}
-    placing = {
-        name: each for name, each in entries.items() if isinstance(each, dict) and isinstance(each.get("use"), str)
-    }
+    placing = {name: each for name, each in entries.items() if _is_placed(each)}
     if not placing:
         return found, changes
     used = dict(found.get("use") or {})
@@ -43,6 +41,17 @@ def placed_in_use(
         for path, value in changes
     ]
     return {**found, "parts": left, "use": used}, moved
+
+
+def as_written(message: str, parts: Any) -> str:
+    """A message about an entry of ``use`` with the path at which the scene's file has it: ``parts.left`` for ``use.left``."""
+    section, *names = message.partition(":")[0].split(".")
+    placed = section == "use" and names and isinstance(parts, dict) and _is_placed(parts.get(names[0]))
+    return f"parts{message.removeprefix('use')}" if placed else message
+
+
+def _is_placed(entry: Any) -> bool:
+    return isinstance(entry, dict) and isinstance(entry.get("use"), str)
 
 
 def set_in_instances(path: str, used: Any) -> bool:

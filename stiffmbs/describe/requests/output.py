@@ -11,7 +11,7 @@ import copy
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from ..formula.field import TIME
+from ..formula.nodes import TIME
 from ..formula.text import UNIT
 from ..marker import MarkerReference
 from ..table import Table

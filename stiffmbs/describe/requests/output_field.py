@@ -11,9 +11,11 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from ..body import check_names
-from ..formula.field import TIME, FormulaOf, called_tables, formula_text, reading_order
+from ..formula.field import FormulaOf, formula_text
+from ..formula.formula import called_tables
 from ..formula.full_names import text_in_full, with_full_names
 from ..formula.functions import FUNCTIONS, check_functions
+from ..formula.nodes import TIME, reading_order
 from ..formula.state_names import with_states
 from ..formula.text import FormulaError, as_written, parse
 from ..formula.variables import with_variables

@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field
 
 from ..element import Symbolic
-from ..formula.field import Formula, FormulaOf
+from ..formula.field import FormulaOf
+from ..formula.formula import Formula
 from .road import OF_PLACE, Road
 
 Height = Annotated[Formula, FormulaOf(*OF_PLACE, "length", time=False)]

@@ -8,7 +8,8 @@ from pydantic import Field, model_validator
 
 from ..element import Component, Symbolic
 from ..files.quoted import quoted
-from ..formula.field import Formula, FormulaOf
+from ..formula.field import FormulaOf
+from ..formula.formula import Formula
 
 OF_PLACE = ("x", "y"), ("length", "length")
 """The variables of a road's formulas: along and across, m."""

@@ -11,9 +11,9 @@ from pydantic import Field, ValidationInfo, WithJsonSchema, field_validator
 
 from .. import given
 from ..body import check_names
+from ..building.handle import Handle
 from ..fields import Described
 from ..formula.names import SPACE
-from ..handle import Handle
 from ..units import si
 from .geometry import SpatialGeometry
 from .marker import ORIGIN, Marker, Placement, Point
@@ -177,7 +177,17 @@ class Body(Described):
 
 
 class BodyHandle(Handle):
-    __doc__ = Handle.__doc__
+    """A body of a model in space, as `Model.add` returns it (`stiffmbs.describe.building.handle.Handle`).
+
+    Attributes
+    ----------
+    name : str
+        Of the body.
+    x, y, z, q0, q1, q2, q3, vx, vy, vz, wx, wy, wz : SymPy symbol
+        What formulas read of the body.
+    mass, inertia and other fields of the body
+        As they stand in the model; setting them changes it.
+    """
 
     names = SPACE
     fields = Body.model_fields

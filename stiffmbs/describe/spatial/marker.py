@@ -13,7 +13,7 @@ from .orientation import IDENTITY, Orientation, matrix
 
 if TYPE_CHECKING:
     from .. import given
-    from ..handle import Handle
+    from ..building.handle import Handle
 
 Point = tuple[si.Length, si.Length, si.Length]
 ORIGIN = (0.0, 0.0, 0.0)

@@ -12,7 +12,7 @@ import numpy as np
 
 MASSLESS = 1e-8
 """Of the lightest mass, and of that at the mechanism's reach; with a tenth of it reactions feel rounding."""
-NOTHING = 1e-12
+NO_MOMENT = 1e-12
 """Of the largest principal moment: what rounding leaves of none."""
 
 
@@ -26,11 +26,11 @@ def massless_moment(least: float, places: Iterable[np.ndarray]) -> float:
 def lacks_inertia(tensor: np.ndarray) -> bool:
     """Whether a body has no moment of inertia about some axis."""
     moments = np.linalg.eigvalsh(tensor)
-    return bool(np.any(np.abs(moments) <= NOTHING * moments[-1]))
+    return bool(np.any(np.abs(moments) <= NO_MOMENT * moments[-1]))
 
 
 def filled(tensor: np.ndarray, moment: float) -> np.ndarray:
     """A tensor of inertia whose principal moments are the given one where they were nothing."""
     moments, axes = np.linalg.eigh(tensor)
-    whole: np.ndarray = (axes * np.where(np.abs(moments) <= NOTHING * moments[-1], moment, moments)) @ axes.T
+    whole: np.ndarray = (axes * np.where(np.abs(moments) <= NO_MOMENT * moments[-1], moment, moments)) @ axes.T
     return whole

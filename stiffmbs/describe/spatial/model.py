@@ -8,12 +8,12 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
+from ..building.runnable_model import RunnableModel
 from ..element import Force, Joint
 from ..forces.weight import weights
 from ..given import Numbers
 from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
-from ..model_builder import ModelBuilder
 from ..model_data import ModelData
 from ..parts.names import Names
 from ..requests.angle_counter import AngleCounter
@@ -83,7 +83,7 @@ class SpatialData(ModelData):
         return marker.body, placed if marker.body == GROUND else self.bodies[marker.body].carried(placed)
 
 
-class Model(ModelBuilder[SpatialData, Body, BodyHandle]):
+class Model(RunnableModel[SpatialData, Body, BodyHandle]):
     """A model in space built in Python, piece by piece.
 
     Examples

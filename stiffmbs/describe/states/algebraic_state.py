@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from ..fields import Described
-from ..formula.field import Formula, OfMotion
+from ..formula.field import OfMotion
+from ..formula.formula import Formula
 from ..given import Law, Number
 from .amount import Amount
 from .state import Scale, StateValue

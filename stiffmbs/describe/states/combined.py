@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ..formula.dimension import UNKNOWN
-from ..formula.field import Formula
+from ..formula.formula import Formula
 from ..table import Table
 
 Weighted = tuple[float, Formula | str]

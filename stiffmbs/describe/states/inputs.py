@@ -10,7 +10,8 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from ..formula.dimension import UNKNOWN, Known, known_of
-from ..formula.field import TIME, Formula
+from ..formula.formula import Formula
+from ..formula.nodes import TIME
 from ..formula.text import FormulaError
 from ..table import Table
 from ..units.quantity import quantity

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from pydantic import Field, field_validator, model_validator
 
 from ..fields import NAME_PATTERN, Described
-from ..formula.field import Formula, OfMotion
+from ..formula.field import OfMotion
+from ..formula.formula import Formula
 from ..given import Law, Laws, Number, Numbers
 from ..given import Matrix as GivenMatrix
 from ..units import si

@@ -14,7 +14,7 @@ from ..check_marker import check_marker, listed
 from ..element import JointName
 from ..files.quoted import quoted, written
 from ..formula.dimension import UNKNOWN, Known
-from ..formula.field import Formula
+from ..formula.formula import Formula
 from ..formula.names import FormulaNames
 from ..marker import GROUND
 from ..units.units import CONSTANTS, UNITS

@@ -10,7 +10,8 @@ from pydantic import AfterValidator, Field, model_validator
 
 from ..fields import Described
 from ..formula.dimension import Known, measured_in, product
-from ..formula.field import Formula, OfMotion
+from ..formula.field import OfMotion
+from ..formula.formula import Formula
 from ..given import Law, Number
 from ..units.units import named_unit
 from .amount import Amount, positive

@@ -17,7 +17,7 @@ from sympy import Expr, Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
 from ..roads.road import above_zero, magnitude
 
 Name = Callable[[Any], Any]
-NOTHING = Float("1e-12")
+LEAST_LOAD = Float("1e-12")
 """N, beside loads that are divided by: in the air nothing is divided by zero, and on the road it is below rounding."""
 
 
@@ -82,7 +82,7 @@ def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
     E = f(at_most_one((p.PEX1 + p.PEX2 * dfz + p.PEX3 * dfz**2) * (1 - p.PEX4 * sign(kappa)) * p.LEX))
     K = f(s.load * (p.PKX1 + p.PKX2 * dfz) * exp(p.PKX3 * dfz) * p.LKX)
     C = p.PCX1 * p.LCX
-    B = f(K / (C * mu * s.load + NOTHING))
+    B = f(K / (C * mu * s.load + LEAST_LOAD))
     vertical = f(s.load * (p.PVX1 + p.PVX2 * dfz) * p.LVX * p.LMUX * s.friction * s.moving)
     force = f(mu * s.load * sin(magic(B, kappa, C, E)) + vertical)
     return Curve(force, K, B, C, mu, shift, vertical)
@@ -99,7 +99,7 @@ def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
     upright = p.PKY1 * p.FNOMIN * sin(2 * atan(s.load / (p.PKY2 * nominal))) * p.LFZO * p.LKY
     K = f(upright * (1 - p.PKY3 * magnitude(gamma)))
     C = p.PCY1 * p.LCY
-    B = f(K / (C * mu * s.load + NOTHING))
+    B = f(K / (C * mu * s.load + LEAST_LOAD))
     sideways = f((p.PVY1 + p.PVY2 * dfz) * p.LVY + (p.PVY3 + p.PVY4 * dfz) * gamma)
     vertical = f(s.load * sideways * p.LMUY * s.friction * s.moving)
     force = f(mu * s.load * sin(magic(B, alpha, C, E)) + vertical)
@@ -132,14 +132,14 @@ def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], 
     B = f((p.QBZ1 + p.QBZ2 * dfz + p.QBZ3 * dfz**2) * (1 + p.QBZ4 * gamma + p.QBZ5 * magnitude(gamma)) * stiffer)
     D = f(s.load * (p.QDZ1 + p.QDZ2 * dfz) * (1 + p.QDZ3 * gamma + p.QDZ4 * gamma**2) * (R / p.FNOMIN) * p.LTR)
     of_trail = f(s.alpha + p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma)
-    of_rest = f(s.alpha + y.horizontal + y.vertical / (y.stiffness + sign(y.stiffness) * NOTHING + NOTHING**2))
+    of_rest = f(s.alpha + y.horizontal + y.vertical / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2))
     E = f(
         at_most_one(
             (p.QEZ1 + p.QEZ2 * dfz + p.QEZ3 * dfz**2)
             * (1 + (p.QEZ4 + p.QEZ5 * gamma) * (2 / pi) * atan(B * p.QCZ1 * of_trail))
         )
     )
-    driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * NOTHING + NOTHING**2) * s.kappa) ** 2)
+    driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2) * s.kappa) ** 2)
     straight = cos(s.alpha) * s.direction  # in reverse the trail is on the other side
     trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
     residual_load = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES + (p.QDZ8 + p.QDZ9 * dfz) * gamma
@@ -210,7 +210,7 @@ def torques(p: Any, s: Slip, fx: Any, fy: Any, f: Name) -> tuple[Any, Any]:
 
 def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
     """Fx and Fy of pure slips, both less where together they are beyond the ellipse of mu_x N and mu_y N."""
-    most_x, most_y = x.mu * s.load + NOTHING, y.mu * s.load + NOTHING
+    most_x, most_y = x.mu * s.load + LEAST_LOAD, y.mu * s.load + LEAST_LOAD
     beyond = f(sqrt((x.force / most_x) ** 2 + (y.force / most_y) ** 2 + Float("1e-60")))
     less = f(1 / (1 + above_zero(beyond - 1)))
     return f(x.force * less), f(y.force * less), Rational(0)

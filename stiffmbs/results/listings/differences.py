@@ -15,7 +15,7 @@ from ..solution import Solution
 from .columns import TIME, Columns, read_columns
 
 Listed: TypeAlias = Solution | str | Path | Mapping[str, np.ndarray]
-ROUNDING = 1e-9
+ROUNDING_OF_A_CHANNEL = 1e-9
 NOT_COMPARED = (TIME, "constraint.")
 """Beginnings of channels that are the same in all runs, or noise."""
 SAME_TIME = 1e-9
@@ -92,7 +92,7 @@ def differences(found: Listed, other: Listed, columns: Mapping[str, str] | None 
     for channel, both in values.items():
         sizes[owner_of(channel)] = max(sizes.get(owner_of(channel), 0.0), *(_size(one) for one in both))
     return tuple(
-        _difference(channel, column, *values[channel], t[common], ROUNDING * sizes[owner_of(channel)])
+        _difference(channel, column, *values[channel], t[common], ROUNDING_OF_A_CHANNEL * sizes[owner_of(channel)])
         for channel, column in pairs.items()
     )
 

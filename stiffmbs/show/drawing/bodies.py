@@ -15,7 +15,7 @@ from .mesh_file import read_mesh
 from .scene_graph import Line, Part, Solid
 
 Shapes = tuple[tuple[Solid, ...], tuple[Line, ...]]
-NEAR = 1e-3
+SAME_POINT = 1e-3
 """Of the mechanism's size: points that are closer count as one."""
 
 
@@ -88,8 +88,8 @@ def derived_shape(
     name: str, body: Any, dimensions: int, points: Sequence[np.ndarray], size: float, thick: float
 ) -> Part:
     """A shape that tells where a body's points are: a bar, a plate or a hull; a block where there is one point alone."""
-    found = _distinct(points, NEAR * size)
-    if len(found) == 1 and np.linalg.norm(found[0]) > NEAR * size:
+    found = _distinct(points, SAME_POINT * size)
+    if len(found) == 1 and np.linalg.norm(found[0]) > SAME_POINT * size:
         found = [found[0], _far_end(body, dimensions, found[0])]
     if len(found) < 2:
         shapes = _block(body, dimensions, size)

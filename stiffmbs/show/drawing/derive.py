@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...describe.element import Element, Joint, JointName
-from ...describe.formula.field import Formula
+from ...describe.formula.formula import Formula
 from ...describe.marker import GROUND, MarkerReference
 from ...describe.model_data import ModelData
 from .bodies import derived_shape, given_shapes

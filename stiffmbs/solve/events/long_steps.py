@@ -11,9 +11,9 @@ from ...compile.machine.layout import LONG_STEPS, packed
 from ...compile.system import System
 from ..dynamics import Dynamics
 
-APART = 1e-4
+FROM_MIDDLE = 1e-4
 """Part of a step on both sides of its middle at which states are kept: their mean and difference are the state there and its rate."""
-MIDDLE = np.array([0.5 - APART, 0.5 + APART])
+MIDDLE = np.array([0.5 - FROM_MIDDLE, 0.5 + FROM_MIDDLE])
 WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
 """Places that describe a whole step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
 LONG, LONG_FOR_FUNCTIONS = (4.0, 8.0), (2.0, 64.0)
@@ -67,7 +67,7 @@ class LongSteps:
     def middles(self, steps: np.ndarray) -> Motion:
         """The middles of some steps; where they are not known as a whole."""
         begin, end, q, u = self.begin[steps], self.end[steps], self.q[steps], self.u[steps]
-        rate = (u[:, 1] - u[:, 0]) / (2.0 * APART * (end - begin))[:, None]
+        rate = (u[:, 1] - u[:, 0]) / (2.0 * FROM_MIDDLE * (end - begin))[:, None]
         return Motion(0.5 * (begin + end), q.mean(axis=1), u.mean(axis=1), rate)
 
     def at(self, step: np.ndarray, part: np.ndarray) -> Motion:

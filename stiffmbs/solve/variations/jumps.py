@@ -21,7 +21,7 @@ from ..failures import FAILURES
 from .recorded import Segment
 from .saddle import saddle_solution
 
-SMALL = 100.0
+NO_JUMP = 100.0
 """Times the relative tolerance by which rates may differ on both sides of an instant without counting as a jump."""
 MUCH_LARGER = 2.0
 """Times by which positions may change more, seen from an event, for them to be integrated so."""
@@ -92,7 +92,7 @@ class Jumps:
     ) -> None:
         self._dynamics, self._equations = dynamics, equations
         self._numbers, self._breakpoint_rates = directions, breakpoint_rates
-        self._small = SMALL * rtol
+        self._small = NO_JUMP * rtol
         self._events: list[Direction] = []
         self._motions: list[Direction] = []
 

@@ -6,19 +6,29 @@ import tempfile
 import warnings
 from pathlib import Path
 from random import Random
+from typing import Any
+
+import numpy as np
 
 from ...adams.listing import listed_statements
-from ...adams.load import load_adams
+from ...adams.load import convert_file, load_adams
+from ...describe.scene import read_scene
 from ...errors import StiffmbsError
 from ...jobs.check import check
 from ...jobs.run import run
+from ...results.solution import Solution
 from ...solve.trajectory import Outcome as Ending
 from ..case import Outcome, Verdict
 from ..file_bases import DATASETS
 from ..simulation import patience
 from .files import CHANGES, MOMENT, PATIENCE, shown, told, unsaid_channels
 
-WHAT = "a dataset or its command file with bytes, numbers, words or lines changed: refused in a sentence, or run with finite results"
+WHAT = (
+    "a dataset or its command file with bytes, numbers, words or lines changed: refused in a sentence, or run with finite results "
+    "that the converted scene has too"
+)
+ALIKE = 1e-6
+"""Part of a channel's largest value by which the converted scene may differ: its text has all digits."""
 SYSTEMS = """\
 systems
 UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
@@ -79,10 +89,8 @@ def _tried(folder: Path, dataset: bytes, commands: bytes) -> Verdict:
     listed_statements(path)
     scene = load_adams(path)
     str(check(scene))
-    if scene.stages:
-        solution = run(scene, watch=patience(PATIENCE))
-    else:
-        solution = run(scene, watch=patience(PATIENCE), duration=min(MOMENT, scene.run.duration), points=5)
+    settings: dict[str, Any] = {} if scene.stages else {"duration": min(MOMENT, scene.run.duration), "points": 5}
+    solution = run(scene, watch=patience(PATIENCE), **settings)
     shown(solution)
     if solution.outcome is not Ending.DONE:
         return told(solution.message)
@@ -91,4 +99,24 @@ def _tried(folder: Path, dataset: bytes, commands: bytes) -> Verdict:
         return Verdict(
             Outcome.WRONG, detail=f"done, but {unsaid[0]} is no number at some time; notes: {solution.notes}"
         )
+    other = _another(solution, run(read_scene(convert_file(path)), watch=patience(PATIENCE), **settings))
+    if other:
+        return Verdict(Outcome.WRONG, detail=f"the converted scene has another {other}")
     return Verdict(Outcome.RIGHT, detail="; ".join(solution.notes))
+
+
+def _another(one: Solution, other: Solution) -> str:
+    """The first channel that is other in a second solution; nothing where all are alike."""
+    if other.outcome is not Ending.DONE or len(other.time) != len(one.time):
+        return "ending"
+    for name, values in one.channels.items():
+        found = other.channels.get(name, np.empty(0))
+        if found.shape != values.shape or not np.allclose(
+            found,
+            values,
+            rtol=0,
+            atol=ALIKE * np.max(np.abs(values), initial=1e-9, where=np.isfinite(values)),
+            equal_nan=True,
+        ):
+            return name
+    return ""

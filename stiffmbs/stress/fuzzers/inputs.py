@@ -23,7 +23,7 @@ GLOBAL = 300.0
 """Global error, relative to the tolerance, that steps may add up to."""
 IMPULSE = 10.0
 """Of the absolute value of each input, N s: absolute tolerances then do not matter."""
-NOTHING = 1e-9
+NO_IMPULSE = 1e-9
 """Impulse, N s, of inputs of the size of 1 N that vanish but for rounding."""
 DRIVE_ROUNDING = 1e-15
 """Of a drive, m: differences of numbers of the size of 1, as tanh(z) - tanh(z - 3) far from its rise."""
@@ -52,7 +52,7 @@ def _pushed(rng: np.random.Generator) -> Verdict:
     """A force on 1 kg at rest: momentum and way at output points are integrals of the force."""
     made = made_up(rng)
     impulse = made.quadrature(0)[2]
-    if impulse < NOTHING:
+    if impulse < NO_IMPULSE:
         return measured(0.0, MISSED, f"an input that is zero: {made.text}")
     size = IMPULSE / impulse
     made.parameters["size"] = size

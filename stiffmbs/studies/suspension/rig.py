@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ...describe.element import Element, Force, Joint
-from ...describe.formula.field import Formula
+from ...describe.formula.formula import Formula
 from ...describe.joints.constraint_equation import ConstraintEquation
 from ...describe.joints.drive import Drive
 from ...describe.marker import GROUND, MarkerReference

@@ -155,3 +155,27 @@ def test_the_schema_knows_parts_that_are_placed_at_once():
     }
     schema.validate(scene)
     assert not schema.is_valid({**scene, "parts": {"left": {"use": "strut", "position": "here"}}})
+
+
+PLACED_AT_ONCE = """
+dimensions: 3
+bodies: {car: {mass: 1, inertia: [1, 1, 1]}}
+parts:
+  left:
+    use: double_wishbone
+    on: car
+    compliance: rigid
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "changes", "message"),
+    [
+        ("rigid", "soft", (), r"line 8, parts\.left\.compliance: found 'soft', expected one of bushing, rigid"),
+        ("compliance", "complianc", (), r"line 5, parts\.left: found the unknown key 'complianc', .*, compliance"),
+        ("rigid", "rigid", (("parts.left.compliance", "soft"),), r"--set parts\.left\.compliance: found 'soft'"),
+    ],
+)
+def test_what_is_wrong_in_a_part_that_is_placed_at_once_is_told_with_its_line(old, new, changes, message):
+    with pytest.raises(InputError, match=message):
+        stiffmbs.read_scene(PLACED_AT_ONCE.replace(old, new), changes)

@@ -14,7 +14,7 @@ from .bodies import Bodies
 from .module import module
 from .tree import Tree, chain_of
 
-SMALL = 60
+FULL_MATRIX_UP_TO = 60
 """Coordinates up to which the full matrix is the faster one."""
 WITH_JOINTS, WITHOUT = (1e-10, 1e-11), (1e-6, 1e-6)
 """Relative and absolute tolerance of Newton's iteration.
@@ -62,7 +62,7 @@ def marching(built: Bodies | Tree, method: Any, times: np.ndarray, step: float, 
     integration.adaptiveStep = integration.automaticStepSize = False
     integration.newton.relativeTolerance, integration.newton.absoluteTolerance = newton
     integration.explicit.computeEndOfStepAccelerations = False
-    small = built.mbs.systemData.ODE2Size() <= SMALL
+    small = built.mbs.systemData.ODE2Size() <= FULL_MATRIX_UP_TO
     kinds = exu.LinearSolverType
     settings.linearSolver.solverType = kinds.EXUdense if small else kinds.EigenSparse
     settings.solution.file.write = False

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from ....errors import InputError
 from ...element import Element, Joint, JointName
 from ...fields import Described
-from ...formula.field import Formula
+from ...formula.formula import Formula
 from ...marker import Marker
 from ...states.amount import Amount
 from ...states.linear_system import PID

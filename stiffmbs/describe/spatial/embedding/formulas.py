@@ -7,8 +7,9 @@ import copy
 from collections.abc import Mapping
 from typing import Any
 
-from ...formula.field import Formula, measured_markers
+from ...formula.formula import Formula
 from ...formula.full_names import with_full_names
+from ...formula.nodes import measured_markers
 from ...formula.text import UNIT, as_written
 from ...marker import GROUND, MarkerReference
 from ...parts.names import Names

@@ -10,7 +10,7 @@ from ...element import Symbolic
 from ...fields import Measured
 from ...forces.matrix import check_symmetric
 from ...units import si
-from .elastic import NONE, NOTHING, Damping, Elastic, pull_back, six_rows, stored, without_zeros
+from .elastic import NO_MATRIX, NO_ROW, Damping, Elastic, pull_back, six_rows, stored, without_zeros
 
 Modulus = Annotated[float, Measured("pressure", above=0)]
 Area = Annotated[float, Measured("area", above=0)]
@@ -45,7 +45,9 @@ class Beam(Elastic):
     asy: si.NumberOrZero = Field(0.0, description="shear area ratio in y, such as 6/5 for a rectangle; 0: no shear")
     asz: si.NumberOrZero = Field(0.0, description="shear area ratio in z")
     damping_ratio: si.TimeOrZero | None = Field(None, description="C over K, s")
-    damping: Damping = Field(NONE, description="C, in place of a ratio: six numbers, two 3x3 matrices or a 6x6 matrix")
+    damping: Damping = Field(
+        NO_MATRIX, description="C, in place of a ratio: six numbers, two 3x3 matrices or a 6x6 matrix"
+    )
 
     _six_rows = field_validator("damping", mode="before")(six_rows)
     _symmetric = field_validator("damping")(check_symmetric)
@@ -53,7 +55,7 @@ class Beam(Elastic):
 
     @model_validator(mode="after")
     def _one_damping(self) -> Beam:
-        if self.damping_ratio is not None and self.damping != NONE:
+        if self.damping_ratio is not None and self.damping != NO_MATRIX:
             raise ValueError("found both 'damping' and 'damping_ratio', expected one of them")
         return self
 
@@ -79,7 +81,7 @@ class Beam(Elastic):
     @classmethod
     def elastic(cls, e: Symbolic) -> list[Any]:
         """-K s."""
-        return pull_back(cls.stiffness(e), cls.strain(e), NOTHING)
+        return pull_back(cls.stiffness(e), cls.strain(e), NO_ROW)
 
     @classmethod
     def viscosity(cls, e: Symbolic) -> Any:
@@ -90,7 +92,7 @@ class Beam(Elastic):
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        return stored(Beam.stiffness(e), Beam.strain(e), NOTHING)
+        return stored(Beam.stiffness(e), Beam.strain(e), NO_ROW)
 
 
 def _bending(rigidity: Any, length: Any, shear: Any) -> tuple[Any, Any, Any]:

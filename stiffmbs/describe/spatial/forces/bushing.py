@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...element import Symbolic
 from ...formula.field import ForceOfDeflection, TorqueOfDeflection
-from .elastic import NOTHING, Connection, Preload, pull_back, stored
+from .elastic import NO_ROW, Connection, Preload, pull_back, stored
 
 
 class Bushing(Connection):
@@ -50,7 +50,7 @@ class Bushing(Connection):
         "law_about_z": "about z",
     }
 
-    preload: Preload = Field(NOTHING, description="force and torque on i without deformation, N and N m")
+    preload: Preload = Field(NO_ROW, description="force and torque on i without deformation, N and N m")
     law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
     law_y: ForceOfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
     law_z: ForceOfDeflection | None = Field(None, description="force against the deformation in z added over s (m), N")

@@ -55,8 +55,8 @@ Damping = Annotated[
 """Six by six numbers; None where directions are not coupled, so that nothing is computed for them."""
 Preload = tuple[si.Force | None, si.Force | None, si.Force | None, si.Torque | None, si.Torque | None, si.Torque | None]
 FORMS = "six numbers, two blocks (of three numbers or 3x3), or six rows of six"
-NOTHING = (None,) * 6
-NONE = (NOTHING,) * 6
+NO_ROW = (None,) * 6
+NO_MATRIX = (NO_ROW,) * 6
 
 
 def six_rows(found: Any) -> Any:
@@ -173,8 +173,8 @@ class Elastic(Force):
 class Connection(Elastic):
     """Base of elastic connections with a stiffness and damping of their own (it has no kind: scenes name its subclasses)."""
 
-    stiffness: Stiffness = Field(NONE, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
-    damping: Damping = Field(NONE, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    stiffness: Stiffness = Field(NO_MATRIX, description="K: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
+    damping: Damping = Field(NO_MATRIX, description="C: six numbers, two 3x3 matrices, or a symmetric 6x6 matrix")
 
     _six_rows = field_validator("stiffness", "damping", mode="before")(six_rows)
     _symmetric = field_validator("stiffness", "damping")(check_symmetric)

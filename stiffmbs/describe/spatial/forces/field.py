@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...element import Symbolic
 from ...units import si
-from .elastic import NOTHING, Connection, Preload, pull_back, stored
+from .elastic import NO_ROW, Connection, Preload, pull_back, stored
 
 
 class FieldForce(Connection):
@@ -33,7 +33,7 @@ class FieldForce(Connection):
         "free": "components",
     }
 
-    preload: Preload = Field(NOTHING, description="force and torque on i at s0, N and N m")
+    preload: Preload = Field(NO_ROW, description="force and torque on i at s0, N and N m")
     free: tuple[si.Length, si.Length, si.Length, si.Angle, si.Angle, si.Angle] | None = Field(
         None, description="s0: place and rotation vector of i against j without force, m and rad"
     )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ....describe.formula.field import Formula
+from ....describe.formula.formula import Formula
 from ....describe.formula.text import FormulaError
 from ....describe.formula.value import formula_value
 from .. import solids

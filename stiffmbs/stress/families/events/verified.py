@@ -20,7 +20,7 @@ from ...case import Case, Outcome, Verdict
 
 WAY = np.linspace(0, 10, 2_000_001)
 """Places at which forces are integrated, m or rad."""
-SMALL = 1e-3
+WORTH_A_WORD = 1e-3
 """Relative error of a speed above which words must go with it."""
 
 
@@ -66,7 +66,7 @@ def _judged(scene: Callable[[], Model | spatial.Model], channel: str, expected: 
     notes = "; ".join(solution.notes)
     if error > bar:
         return Verdict(Outcome.WRONG, error, float(bar), f"outside its bar; {notes}")
-    if error > SMALL * expected and "max_step" not in notes:
+    if error > WORTH_A_WORD * expected and "max_step" not in notes:
         return Verdict(Outcome.WRONG, error, float(bar), f"no word of max_step; {notes}")
     return Verdict(Outcome.RIGHT, error, float(bar), notes)
 

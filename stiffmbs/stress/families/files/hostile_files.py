@@ -115,7 +115,7 @@ CASES = (
     _dataset("a tower of powers as a speed", MOTION % "VELOCITY, ICDISP=1, FUNCTION=9**9**9", "line 8"),
     _dataset("a high power to integrate", MOTION % "ACCEL, FUNCTION=(1+TIME)**100000", "line 8", "integral"),
     _dataset("a number beyond all", MOTION % "FUNCTION=1E400*TIME", "line 8", "1E400"),
-    _dataset("variables that double each other", HEAD + VARIABLES + "VARIABLE/40, FUNCTION=TIME\nSFORCE/1, I=3, J=1, TRANSLATIONAL, FUNCTION=VARVAL(1)\n" + FALL, "VARVAL", "parts"),
+    _dataset("variables that double each other", HEAD + VARIABLES + "VARIABLE/40, FUNCTION=TIME\nSFORCE/1, I=3, J=1, TRANSLATIONAL, FUNCTION=VARVAL(1)\n" + FALL, "variables.VARIABLE_", "at most 2000"),
     _nested("step({}, 0, 0, 1, 1)", lambda x: x * x * (3 - 2 * x)),
     _nested("step5({}, 0, 0, 1, 1)", lambda x: x**3 * (10 - 15 * x + 6 * x * x)),
     _nested("max({}, 0.5)", lambda x: max(x, 0.5)),

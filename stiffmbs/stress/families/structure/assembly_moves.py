@@ -10,9 +10,9 @@ import numpy as np
 
 from .... import spatial
 from ....describe.body import Body
+from ....describe.building.model_builder import ModelBuilder
 from ....describe.marker import Marker
 from ....describe.model import JOINTS, Model
-from ....describe.model_builder import ModelBuilder
 from ....jobs.check import check
 from ....jobs.run import run
 from ...case import Case, Outcome, Verdict, measured, told

@@ -7,14 +7,14 @@ from functools import partial
 
 from .... import spatial
 from ....describe.body import Body
+from ....describe.building.model_builder import ModelBuilder
 from ....describe.marker import Marker
 from ....describe.model import FORCES, JOINTS, Model
-from ....describe.model_builder import ModelBuilder
 from ....jobs.check import check
 from ....jobs.run import run
 from ...case import Case, Outcome, Verdict, measured, told
 
-APART = "connected to nothing"
+SEPARATE = "connected to nothing"
 FREE = "by itself"
 
 
@@ -94,7 +94,7 @@ def _says(scene: Callable[[], ModelBuilder], about: str, names: tuple[str, ...],
 
 
 def _alone(name: str, scene: Callable[[], ModelBuilder], *names: str) -> Case:
-    judge = partial(_says, scene, APART, names, runs=True)
+    judge = partial(_says, scene, SEPARATE, names, runs=True)
     return Case(name, "check and run: bodies connected to nothing", judge, Outcome.TOLD if names else Outcome.RIGHT)
 
 

@@ -4,43 +4,29 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Callable, Collection, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack, overload
+from typing import Any, ClassVar, Generic, TypeVar, overload
 
 from pydantic import TypeAdapter
 from pydantic import ValidationError as PydanticError
 
-from ..errors import InputError
-from .body import check_names
-from .element import Element, Force, Joint
-from .fields import Described, sentence
-from .formula.names import NAMES
-from .formula.text import FormulaError
-from .given import Law
+from ...errors import InputError
+from ..body import check_names
+from ..element import Element, Force, Joint
+from ..fields import Described, sentence
+from ..formula.names import NAMES
+from ..formula.text import FormulaError
+from ..given import Law
+from ..kinds import Kinds
+from ..marker import GROUND, MarkerReference
+from ..model_data import RESERVED, ModelData, check_element, contents
+from ..own_elements import check_class
+from ..requests.check import ByChannel, by_channel, check_output
+from ..requests.order import dimensions, with_named
+from ..requests.output_field import RequestField
+from ..states.inputs import InputValue
+from ..states.linear_system import StateEntry
+from ..states.section import check_states, names_in_formulas
 from .handle import Handle
-from .kinds import Kinds
-from .marker import GROUND, MarkerReference
-from .model_data import RESERVED, ModelData, check_element, contents
-from .own_elements import check_class
-from .requests.check import ByChannel, by_channel, check_output
-from .requests.order import dimensions, with_named
-from .requests.output_field import RequestField
-from .settings import RunSettings, Settings, SteadyMotion, takes_settings
-from .states.inputs import InputValue
-from .states.linear_system import StateEntry
-from .states.section import check_states, names_in_formulas
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from matplotlib.figure import Figure as Sheet
-
-    from ..jobs.check import Report
-    from ..jobs.equilibrium import EquilibriumFound
-    from ..jobs.given_inputs import Given
-    from ..jobs.modes import Modes
-    from ..jobs.start_from import StartFrom
-    from ..results.solution import Solution
-    from ..studies.simulation import Simulation
 
 Data = TypeVar("Data", bound=ModelData)
 Body = TypeVar("Body", bound=Described)
@@ -76,12 +62,6 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"
-
-    def _repr_html_(self) -> str:
-        """What a notebook shows."""
-        from ..show.html import model_html
-
-        return model_html(self)
 
     @overload
     def add(self, name: str, part: Body) -> BodyHandle: ...
@@ -348,90 +328,9 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         InputError
             As for `data`.
         """
-        from .model_text import model_text
+        from ..model_text import model_text
 
         return model_text(self.data())
-
-    @takes_settings
-    def run(
-        self,
-        settings: RunSettings | None = None,
-        watch: Callable[[float], None] | None = None,
-        start_from: StartFrom | None = None,
-        inputs: Mapping[str, Given] | None = None,
-        **changes: Unpack[Settings],
-    ) -> Solution:
-        """Solve the model; parameters, result and errors are those of `stiffmbs.run`."""
-        from ..jobs.run import run
-
-        return run(self, settings, watch, start_from, inputs, **changes)
-
-    @takes_settings
-    def verify(
-        self,
-        settings: RunSettings | None = None,
-        watch: Callable[[float], None] | None = None,
-        start_from: StartFrom | None = None,
-        **changes: Unpack[Settings],
-    ) -> Solution:
-        """Solve the model, and again to see what its results are worth; parameters, result and errors are those of `stiffmbs.verify`."""
-        from ..verification.verify import verify
-
-        return verify(self, settings, watch, start_from, **changes)
-
-    @takes_settings
-    def equilibrium(
-        self,
-        settings: RunSettings | None = None,
-        start_from: StartFrom | None = None,
-        motion: SteadyMotion | None = None,
-        **changes: Unpack[Settings],
-    ) -> EquilibriumFound:
-        """The pose at rest, or in steady motion, in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
-        from ..jobs.equilibrium import equilibrium
-
-        return equilibrium(self, settings, start_from, motion, **changes)
-
-    @takes_settings
-    def simulation(
-        self,
-        inputs: Mapping[str, float] | None = None,
-        settings: RunSettings | None = None,
-        **changes: Unpack[Settings],
-    ) -> Simulation:
-        """The model to be solved step by step; parameters, result and errors are those of `stiffmbs.simulation`."""
-        from ..studies.simulation import simulation
-
-        return simulation(self, inputs, settings, **changes)
-
-    @takes_settings
-    def modes(
-        self,
-        settings: RunSettings | None = None,
-        at: float | None = None,
-        start_from: StartFrom | None = None,
-        **changes: Unpack[Settings],
-    ) -> Modes:
-        """Natural frequencies, damping and shapes; parameters, result and errors are those of `stiffmbs.modes`."""
-        from ..jobs.modes import modes
-
-        return modes(self, settings, at, start_from, **changes)
-
-    @takes_settings
-    def check(self, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
-        """Examine the model: degrees of freedom, redundancy; parameters, result and errors are those of `stiffmbs.check`."""
-        from ..jobs.check import check
-
-        return check(self, settings, **changes)
-
-    def draw(
-        self, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
-        view: str = "", names: bool = True, forces: bool = True,
-    ) -> Sheet | None:  # fmt: skip
-        """Draw the model at an instant; parameters, result and errors are those of `stiffmbs.draw`."""
-        from ..show.drawing.draw import draw
-
-        return draw(self, path, at, described, checked, view, names, forces)
 
 
 def _key(name: str) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from ..errors import InputError
-from .formula.names import FormulaNames
+from ...errors import InputError
+from ..formula.names import FormulaNames
 
 if TYPE_CHECKING:
     from .model_builder import ModelBuilder

@@ -1,0 +1,86 @@
+"""Contacts of cylinders, boxes and ellipsoids as elements of a scene.  MSC Adams/Solver, CONTACT and GRAPHICS statements."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...describe.spatial.number_format import plain
+from ..statements.contact import BOX, CYLINDER, ELLIPSOID, PLANE, SPHERE, Contact, Shape
+from ..statements.units import Units
+from .mechanism import Mechanism
+
+PAIRS = {
+    (SPHERE, CYLINDER): "sphere_cylinder_impact",
+    (SPHERE, BOX): "sphere_box_impact",
+    (CYLINDER, PLANE): "cylinder_plane_impact",
+    (BOX, PLANE): "box_plane_impact",
+    (ELLIPSOID, PLANE): "ellipsoid_plane_impact",
+}
+
+
+def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mechanism) -> dict[str, Any]:
+    """The element of a contact.
+
+    Raises
+    ------
+    DatasetFault
+        When no element is between such shapes.
+    """
+    one, other = (first, second) if (first.sort, second.sort) in PAIRS else (second, first)
+    kind = PAIRS.get((one.sort, other.sort))
+    if kind is None:
+        known = ", ".join(" and ".join(pair) for pair in ((SPHERE, PLANE), (SPHERE, SPHERE), *PAIRS))
+        raise contact.fault(f"found {first.sort} and {second.sort}, expected {known}")
+    units = mechanism.dataset.units
+    made: dict[str, Any] = {
+        "type": kind,
+        "i": _middle(one, contact, mechanism),
+        "j": _middle(other, contact, mechanism),
+        **_law(contact, units),
+    }
+    for shape in (one, other):
+        made |= {
+            name: plain(size * units.length) for name, size in _sizes(shape, with_sphere=one.sort == SPHERE).items()
+        }
+    return made
+
+
+def _sizes(shape: Shape, with_sphere: bool) -> dict[str, float]:
+    sizes = [abs(size) for size in shape.sizes]
+    names: tuple[str, ...]
+    if shape.sort == CYLINDER:
+        names = ("cylinder_radius", "cylinder_length") if with_sphere else ("radius", "length")
+    else:
+        names = {SPHERE: ("radius",), PLANE: ()}.get(shape.sort, ("x", "y", "z"))
+    return dict(zip(names, sizes, strict=True))
+
+
+def _middle(shape: Shape, contact: Contact, mechanism: Mechanism) -> str:
+    """The marker at a solid's middle."""
+    place = mechanism.place(shape.marker, contact, "the marker of GRAPHICS")
+    half = {BOX: shape.sizes, CYLINDER: (0.0, 0.0, *shape.sizes[1:])}.get(shape.sort)
+    if half is None:
+        return place.reference
+    way = place.initial.axes @ np.array(half) / 2 * mechanism.dataset.units.length
+    return mechanism.moved(place, f"{place.name}_middle_of_{contact.name}", way).reference
+
+
+def _law(contact: Contact, units: Units) -> dict[str, float]:
+    """The numbers of IMPACT and friction in SI."""
+    speed, friction = units.of(length=1, time=-1), contact.friction
+    law = {
+        "stiffness": contact.stiffness * units.force / units.length**contact.exponent,
+        "exponent": contact.exponent,
+        "damping": contact.damping * units.of(force=1, length=-1, time=1),
+        "depth": contact.depth * units.length,
+    }
+    if friction is not None:
+        law |= {
+            "static_friction": friction.static,
+            "friction": friction.dynamic,
+            "stiction_velocity": friction.stiction_velocity * speed,
+            "friction_velocity": friction.friction_velocity * speed,
+        }
+    return {name: plain(value) for name, value in law.items()}

@@ -1,0 +1,1 @@
+"""Models that are built in Python, piece by piece."""

@@ -1,0 +1,113 @@
+"""What can be done with a model: each method is the package's function of that name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Unpack
+
+from ..settings import RunSettings, Settings, SteadyMotion, takes_settings
+from .model_builder import Body, BodyHandle, Data, ModelBuilder
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure as Sheet
+
+    from ...jobs.check import Report
+    from ...jobs.equilibrium import EquilibriumFound
+    from ...jobs.given_inputs import Given
+    from ...jobs.modes import Modes
+    from ...jobs.start_from import StartFrom
+    from ...results.solution import Solution
+    from ...studies.simulation import Simulation
+
+
+class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
+    """A model that can be solved, examined and drawn."""
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from ...show.html import model_html
+
+        return model_html(self)
+
+    @takes_settings
+    def run(
+        self,
+        settings: RunSettings | None = None,
+        watch: Callable[[float], None] | None = None,
+        start_from: StartFrom | None = None,
+        inputs: Mapping[str, Given] | None = None,
+        **changes: Unpack[Settings],
+    ) -> Solution:
+        """Solve the model; parameters, result and errors are those of `stiffmbs.run`."""
+        from ...jobs.run import run
+
+        return run(self, settings, watch, start_from, inputs, **changes)
+
+    @takes_settings
+    def verify(
+        self,
+        settings: RunSettings | None = None,
+        watch: Callable[[float], None] | None = None,
+        start_from: StartFrom | None = None,
+        **changes: Unpack[Settings],
+    ) -> Solution:
+        """Solve the model, and again to see what its results are worth; parameters, result and errors are those of `stiffmbs.verify`."""
+        from ...verification.verify import verify
+
+        return verify(self, settings, watch, start_from, **changes)
+
+    @takes_settings
+    def equilibrium(
+        self,
+        settings: RunSettings | None = None,
+        start_from: StartFrom | None = None,
+        motion: SteadyMotion | None = None,
+        **changes: Unpack[Settings],
+    ) -> EquilibriumFound:
+        """The pose at rest, or in steady motion, in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
+        from ...jobs.equilibrium import equilibrium
+
+        return equilibrium(self, settings, start_from, motion, **changes)
+
+    @takes_settings
+    def simulation(
+        self,
+        inputs: Mapping[str, float] | None = None,
+        settings: RunSettings | None = None,
+        **changes: Unpack[Settings],
+    ) -> Simulation:
+        """The model to be solved step by step; parameters, result and errors are those of `stiffmbs.simulation`."""
+        from ...studies.simulation import simulation
+
+        return simulation(self, inputs, settings, **changes)
+
+    @takes_settings
+    def modes(
+        self,
+        settings: RunSettings | None = None,
+        at: float | None = None,
+        start_from: StartFrom | None = None,
+        **changes: Unpack[Settings],
+    ) -> Modes:
+        """Natural frequencies, damping and shapes; parameters, result and errors are those of `stiffmbs.modes`."""
+        from ...jobs.modes import modes
+
+        return modes(self, settings, at, start_from, **changes)
+
+    @takes_settings
+    def check(self, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
+        """Examine the model: degrees of freedom, redundancy; parameters, result and errors are those of `stiffmbs.check`."""
+        from ...jobs.check import check
+
+        return check(self, settings, **changes)
+
+    def draw(
+        self, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
+        view: str = "", names: bool = True, forces: bool = True,
+    ) -> Sheet | None:  # fmt: skip
+        """Draw the model at an instant; parameters, result and errors are those of `stiffmbs.draw`."""
+        from ...show.drawing.draw import draw
+
+        return draw(self, path, at, described, checked, view, names, forces)

@@ -1,0 +1,117 @@
+"""Checked formulas: what they use, and in which order."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from ..marker import MarkerReference
+from ..table import Table
+from ..units.units import Quantity
+from .dimension import UNKNOWN, Known
+from .nodes import is_measure, is_reaction, joint_of, measured_markers, reading_order
+from .text import UNIT
+
+
+@dataclass(frozen=True, eq=False)
+class Formula:
+    """A checked formula.
+
+    Attributes
+    ----------
+    text : str
+        As written.
+    tree : ast.expr
+        Its syntax tree (`stiffmbs.describe.formula.text.parse`).
+    variables : tuple of str
+        Names that the field gives a meaning to (``s`` and ``v`` of a spring's law).
+    values : dict of str to float
+        The scene's parameters, units and constants that it uses, in SI units.
+    velocities : bool
+        Whether it may hold velocities.
+    tables : mapping of str to Table
+        The scene's tables that it calls as functions.
+    dimension : Known
+        Of its value.
+    parameters : mapping of str to Quantity
+        The scene's parameters among `values`, with their dimensions.
+    expanded : str
+        The text with the scene's variables in their places; empty where the scene has none.
+    states : tuple of str
+        The states of the model that it uses, by their full names.
+    """
+
+    text: str
+    tree: ast.expr
+    variables: tuple[str, ...]
+    values: dict[str, float]
+    velocities: bool = False
+    tables: Mapping[str, Table] = field(default_factory=dict)
+    dimension: Known = UNKNOWN
+    parameters: Mapping[str, Quantity] = field(default_factory=dict)
+    expanded: str = ""
+    states: tuple[str, ...] = ()
+
+    def coordinates(self) -> Iterator[tuple[str, str]]:
+        """The (body, coordinate) pairs that it uses, in reading order."""
+        yield from self._coordinates
+
+    @cached_property
+    def _coordinates(self) -> list[tuple[str, str]]:
+        attributes = [node for node in reading_order(self.tree) if isinstance(node, ast.Attribute)]
+        return [(x.value.id, x.attr) for x in attributes if isinstance(x.value, ast.Name) and x.value.id != UNIT]
+
+    def measures(self) -> Iterator[tuple[str, tuple[MarkerReference, ...]]]:
+        """The measures that it uses with their markers, in reading order."""
+        yield from self._measures
+
+    @cached_property
+    def _measures(self) -> list[tuple[str, tuple[MarkerReference, ...]]]:
+        calls = [node for node in reading_order(self.tree) if is_measure(node)]
+        return [(node.func.id, measured_markers(node)) for node in calls]  # type: ignore[attr-defined]
+
+    def reactions(self) -> Iterator[tuple[str, str]]:
+        """The components of reactions that it uses, with their joints, in reading order."""
+        yield from self._reactions
+
+    @cached_property
+    def _reactions(self) -> list[tuple[str, str]]:
+        calls = [node for node in reading_order(self.tree) if is_reaction(node)]
+        return [(node.func.id, joint_of(node)) for node in calls]  # type: ignore[attr-defined]
+
+    @cached_property
+    def kept(self) -> dict[Any, Any]:
+        """What is worked out of it once, by what it is; nothing at first."""
+        return {}
+
+    def bodies(self) -> Iterator[str]:
+        """The bodies that it names, some more than once."""
+        for body, _ in self.coordinates():
+            yield body
+        for _, markers in self.measures():
+            yield from (marker.body for marker in markers)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Formula) and all(
+            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables", "_told")
+        )
+
+    @property
+    def _told(self) -> str:
+        """What the tree says, with variables in their places."""
+        return ast.unparse(self.tree)
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+    def __repr__(self) -> str:
+        return f"Formula({self.text!r})"
+
+
+def called_tables(tree: ast.expr, tables: Mapping[str, Table]) -> dict[str, Table]:
+    """The tables that a formula calls, by name."""
+    called = (node.func.id for node in reading_order(tree) if isinstance(node, ast.Call))  # type: ignore[attr-defined]
+    return {name: tables[name] for name in called if name in tables}

@@ -1,0 +1,73 @@
+"""The nodes of a formula's tree: in which order they are read, and which of them stand for measures and reactions."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from ..marker import GROUND, MarkerReference
+from .names import MEASURES, REACTIONS
+from .text import FormulaError
+
+TIME = "t"
+TAKERS = (*MEASURES, *REACTIONS)
+"""What is called with names: of markers, of joints."""
+
+
+def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
+    """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
+    yield tree
+    match tree:
+        case ast.Attribute():
+            return
+        case ast.Call(_, arguments):
+            children = [] if is_named(tree) else arguments
+        case _:
+            children = [child for child in ast.iter_child_nodes(tree) if isinstance(child, ast.expr)]
+    for child in children:
+        yield from reading_order(child)
+
+
+def is_measure(node: ast.AST) -> bool:
+    """Whether a node is a measure between markers such as ``dm(bar.end, ground)``."""
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MEASURES
+
+
+def is_reaction(node: ast.AST) -> bool:
+    """Whether a node is a component of a joint's reaction such as ``fy(guide)``."""
+    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in REACTIONS
+
+
+def is_named(node: ast.AST) -> bool:
+    """Whether a node is a measure or a reaction, whose arguments are names."""
+    return is_measure(node) or is_reaction(node)
+
+
+def joint_of(node: ast.AST) -> str:
+    """The joint of a reaction, by its full name."""
+    assert isinstance(node, ast.Call)
+    match node.args:
+        case [ast.Name(joint)]:
+            return joint
+        case [ast.Attribute(ast.Name(owner), name)]:
+            return f"{owner}.{name}"
+    raise FormulaError(f"found '{ast.unparse(node)}', expected the name of one joint")
+
+
+def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
+    """The markers of a measure: two references to bodies or their markers, ground where one is left out, and perhaps a
+    third one, whose axes the measure is taken along.
+    """
+    assert isinstance(node, ast.Call)
+    markers = []
+    for argument in node.args:
+        match argument:
+            case ast.Name(body):
+                markers.append(MarkerReference(body=body))
+            case ast.Attribute(ast.Name(body), marker):
+                markers.append(MarkerReference(body=body, marker=marker))
+            case _:
+                raise FormulaError(f"found '{ast.unparse(argument)}' in a measure, expected a body or body.marker")
+    if len(markers) not in (1, 2, 3):
+        raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected one to three")
+    return tuple(markers) if len(markers) > 1 else (markers[0], MarkerReference(body=GROUND))

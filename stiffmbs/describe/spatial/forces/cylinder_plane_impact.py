@@ -1,0 +1,45 @@
+"""Contact of a cylinder with a plane."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ...element import Symbolic
+from ...units import si
+from ..impact import Impact, Touch
+from ..marker import Marker
+
+UPRIGHT = 1e-6
+"""Sine of the angle between axis and normal at which the lowest point of an end's rim is no longer told from its middle."""
+
+
+class CylinderPlaneImpact(Impact):
+    """A solid cylinder that presses on a plane with the lowest point of the rim of each end.
+
+    Lying on its mantle it touches with both ends; standing upright with the middle of the lower end.  The law is that of
+    `Impact` at each of the two points: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    """
+
+    kind: ClassVar[str] = "cylinder_plane_impact"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"friction": 0.2, "static_friction": 0.3})
+
+    i: Marker = Field(description="the middle of the cylinder, its z along the axis")
+    j: Marker = Field(description="on the plane, its z pointing out of the solid")
+    radius: si.PositiveLength = Field(description="m")
+    length: si.PositiveLength = Field(description="m")
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        from sympy import sqrt
+
+        n, axis = e.j.z, e.i.z
+        lean = e.named(axis.dot(n))
+        across = e.named(sqrt(1 - lean**2 + UPRIGHT**2))
+        middle = e.named((e.i.point - e.j.point).dot(n) - e.radius * across)
+        down = e.named(e.radius * (n - lean * axis) / across)
+        return [
+            Touch(middle + half * lean, e.i.point + half * axis - down, n) for half in (e.length / 2, -e.length / 2)
+        ]

@@ -1,0 +1,39 @@
+"""Contact of an ellipsoid with a plane."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ...element import Symbolic
+from ...units import si
+from ..impact import Impact, Touch
+from ..marker import Marker
+
+
+class EllipsoidPlaneImpact(Impact):
+    """A solid ellipsoid that presses on a plane with its lowest point.
+
+    The law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    """
+
+    kind: ClassVar[str] = "ellipsoid_plane_impact"
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"friction": 0.2, "static_friction": 0.3})
+
+    i: Marker = Field(description="the middle of the ellipsoid, with its axes")
+    j: Marker = Field(description="on the plane, its z pointing out of the solid")
+    x: si.PositiveLength = Field(description="semi-axis along x of i, m")
+    y: si.PositiveLength = Field(description="along y, m")
+    z: si.PositiveLength = Field(description="along z, m")
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        from sympy import sqrt
+
+        n = e.j.z
+        ways = [e.named(half * axis.dot(n)) for half, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
+        height = e.named(sqrt(sum(way**2 for way in ways)))
+        up = e.named((e.x * ways[0] * e.i.x + e.y * ways[1] * e.i.y + e.z * ways[2] * e.i.z) / height)
+        return [Touch((e.i.point - e.j.point).dot(n) - height, e.i.point - up, n)]

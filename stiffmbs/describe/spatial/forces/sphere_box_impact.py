@@ -1,0 +1,54 @@
+"""Contact of a sphere with a box."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ...element import Symbolic
+from ...units import si
+from ..impact import Impact, Touch, seen_from
+from ..marker import Marker
+from ..outside import INSIDE, above, length, touch_of_sphere
+
+
+class SphereBoxImpact(Impact):
+    """A sphere about marker i that presses on a face, an edge or a corner of a solid box.
+
+    The point of contact is the one of the box nearest to the sphere's centre.  The run stops where the centre enters the box.
+    The law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    """
+
+    kind: ClassVar[str] = "sphere_box_impact"
+    beyond: ClassVar[str] = INSIDE
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"radius": 0.1},
+        {"radius": 0.1, "friction": 0.2, "static_friction": 0.3},
+    )
+
+    i: Marker = Field(description="the sphere's centre")
+    j: Marker = Field(description="the middle of the box, with its axes")
+    radius: si.PositiveLength = Field(description="of the sphere, m")
+    x: si.PositiveLength = Field(description="size of the box along x of j, m")
+    y: si.PositiveLength = Field(description="along y, m")
+    z: si.PositiveLength = Field(description="along z, m")
+
+    @classmethod
+    def way(cls, e: Symbolic) -> Any:
+        """From the nearest point of the box to the sphere's centre, along the axes of j."""
+        from sympy import sign
+
+        at = e.named(seen_from(e.i.point, e.j))
+        return e.named(
+            [sign(part) * above(abs(part) - size / 2) for part, size in zip(at, (e.x, e.y, e.z), strict=True)]
+        )
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        return [touch_of_sphere(e, cls.way(e))]
+
+    @classmethod
+    def limits(cls, e: Symbolic) -> Any:
+        return (length(*cls.way(e)) - e.radius / 1000,)

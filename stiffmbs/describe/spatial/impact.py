@@ -1,0 +1,131 @@
+"""Contact of solids by Adams' IMPACT, with Coulomb friction by its smooth curve, shared by the pairs of shapes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Self
+
+from pydantic import Field, model_validator
+
+from ..element import Force, Symbolic
+from ..fields import Measured
+from ..units import si
+from .marker import Marker
+from .wrench import Pairs, velocity
+
+SLOW = 1e-6
+"""Part of the stiction velocity that keeps the direction of sliding from being undefined at rest."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Where two solids may touch, in ground axes.
+
+    Attributes
+    ----------
+    gap : Expr
+        Distance of the surfaces, m; below zero where they overlap.
+    point : Matrix
+        Of contact, m.
+    normal : Matrix
+        Unit vector towards the solid of marker i.
+    """
+
+    gap: Any
+    point: Any
+    normal: Any
+
+
+class Impact(Force):
+    """Base of contacts by IMPACT (it has no kind: scenes name its subclasses, which say where solids touch).
+
+    Where the gap g is below zero the solids repel each other with N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)).  They rub with
+    mu(v) N against the sliding velocity v at the point of contact.  mu goes from 0 to mu_s at the stiction velocity and on to mu_d
+    at the friction velocity, each by a cubic.  Without damping and friction there is the potential k (-g)^(e+1)/(e+1).
+
+    MSC Adams/Solver, CONTACT statement and IMPACT function.
+    """
+
+    i: Marker
+    j: Marker
+    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^e")
+    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="e")
+    damping: si.Damping = Field(0.0, description="c, N s/m")
+    depth: si.PositiveLength = Field(1e-4, description="d, penetration from which on all of the damping acts, m")
+    static_friction: si.NumberOrZero | None = Field(None, description="mu_s")
+    friction: si.NumberOrZero | None = Field(None, description="mu_d")
+    stiction_velocity: si.PositiveVelocity = Field(0.01, description="sliding speed at which friction is largest, m/s")
+    friction_velocity: si.PositiveVelocity = Field(0.1, description="sliding speed from which on it is mu_d, m/s")
+
+    @model_validator(mode="after")
+    def _rubs(self) -> Self:
+        if (self.static_friction is None) != (self.friction is None):
+            raise ValueError("found one of friction and static_friction, expected both or neither")
+        if self.friction is not None and not self.stiction_velocity < self.friction_velocity:
+            raise ValueError("found a friction_velocity up to the stiction_velocity, expected a larger one")
+        return self
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        """All places where the solids may touch, each with a force of its own."""
+        raise NotImplementedError
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """Each force on the relative velocity of the points in contact."""
+        pairs: Pairs = []
+        for touch in cls.touches(e):
+            n, point = e.named(touch.normal), e.named(touch.point)
+            v = e.named(velocity(e, e.i, point) - velocity(e, e.j, point))
+            rate = e.named(v.dot(n))
+            pressure = e.named(_pressure(e, e.named(touch.gap), rate))
+            pairs.append((pressure, rate))
+            if e.friction is not None:
+                sliding = e.named(v - rate * n)
+                drag = e.named(-_per_speed(e, sliding) * pressure)
+                pairs += [(drag * part, along) for part, along in zip(sliding, v, strict=True)]
+        return pairs
+
+    @classmethod
+    def potential(cls, e: Symbolic) -> Any:
+        from sympy import Piecewise
+
+        power = e.exponent + 1
+        gaps = [e.named(touch.gap) for touch in cls.touches(e)]
+        return sum(Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True)) for gap in gaps)
+
+    @classmethod
+    def event_functions(cls, e: Symbolic) -> Any:
+        return tuple(e.named(touch.gap) for touch in cls.touches(e))
+
+
+def _pressure(e: Symbolic, gap: Any, rate: Any) -> Any:
+    from sympy import Piecewise
+
+    force = e.named(e.stiffness * (-gap) ** e.exponent - e.damping * rate * _rising(-gap / e.depth))
+    return Piecewise((Piecewise((force, force > 0), (0, True)), gap < 0), (0, True))
+
+
+def _per_speed(e: Symbolic, sliding: Any) -> Any:
+    """mu over the sliding speed."""
+    from sympy import sqrt
+
+    speed = e.named(sqrt(sliding.dot(sliding) + (SLOW * e.stiction_velocity) ** 2))
+    up = e.static_friction * (2 * _rising((speed / e.stiction_velocity + 1) / 2) - 1)
+    down = _rising((speed - e.stiction_velocity) / (e.friction_velocity - e.stiction_velocity))
+    return (up + (e.friction - e.static_friction) * down) / speed
+
+
+def _rising(x: Any) -> Any:
+    """Adams' STEP from 0 at 0 to 1 at 1."""
+    from sympy import Max, Min
+
+    z = Min(Max(x, 0), 1)
+    return z**2 * (3 - 2 * z)
+
+
+def seen_from(point: Any, marker: Any) -> Any:
+    """The components of a point along the axes of a marker, from its own point."""
+    from sympy import Matrix
+
+    return Matrix([(point - marker.point).dot(axis) for axis in (marker.x, marker.y, marker.z)])

@@ -1,0 +1,70 @@
+"""CONTACT of cylinders, boxes and ellipsoids: where their middles are, sizes and laws in SI, in either order."""
+
+import numpy as np
+import pytest
+
+from stiffmbs.errors import InputError
+
+from .adams_parts import made
+
+GRAPHICS = """GRAPHICS/1, PLANE, RM=1, XMIN=-1, XMAX=1, YMIN=-1, YMAX=1
+GRAPHICS/2, ELLIPSOID, CM=31, XSCALE=400, YSCALE=200, ZSCALE=100
+GRAPHICS/3, CYLINDER, CM=22, LENGTH=300, SIDES=20, RADIUS=40, SEG=20
+GRAPHICS/4, BOX, CORNER=33, X=100, Y=-60, Z=40
+GRAPHICS/5, ELLIPSOID, CM=31, XSCALE=80, YSCALE=80, ZSCALE=80
+GRAPHICS/6, CYLINDER, CM=2, LENGTH=-300, RADIUS=40
+"""
+LAW = "IMPACT, STIFFNESS=1E5, DAMPING=10, EXPONENT=2.2, DMAX=0.1"
+RUBBING = f"{LAW}, COULOMB_FRICTION=ON, MU_STATIC=0.3, MU_DYNAMIC=0.1, STICTION_TRANS=100, FRICTION_TRANS=1000"
+
+
+def contact(i, j, law=LAW):
+    return made(f"{GRAPHICS}CONTACT/1, IGEOM={i}, JGEOM={j}, {law}", "MILLIMETER")
+
+
+@pytest.mark.parametrize(
+    ("i", "j", "kind", "sizes"),
+    [
+        (1, 2, "ellipsoid_plane_impact", {"x": 0.2, "y": 0.1, "z": 0.05}),
+        (3, 1, "cylinder_plane_impact", {"radius": 0.04, "length": 0.3}),
+        (1, 4, "box_plane_impact", {"x": 0.1, "y": 0.06, "z": 0.04}),
+        (4, 5, "sphere_box_impact", {"radius": 0.04, "x": 0.1, "y": 0.06, "z": 0.04}),
+        (5, 6, "sphere_cylinder_impact", {"radius": 0.04, "cylinder_radius": 0.04, "cylinder_length": 0.3}),
+    ],
+)
+def test_pairs_of_solids(i, j, kind, sizes):
+    force = contact(i, j)["forces"]["CONTACT_1"]
+    assert force["type"] == kind
+    assert {name: force[name] for name in sizes} == pytest.approx(sizes)
+    assert force["stiffness"] == pytest.approx(1e5 * 1e3**2.2) and force["exponent"] == 2.2
+    assert (force["damping"], force["depth"]) == pytest.approx((1e4, 1e-4)) and "friction" not in force
+
+
+def test_friction_has_its_velocities_in_si():
+    force = contact(1, 3, RUBBING)["forces"]["CONTACT_1"]
+    names = ("static_friction", "friction", "stiction_velocity", "friction_velocity")
+    assert [force[name] for name in names] == pytest.approx([0.3, 0.1, 0.1, 1])
+
+
+def test_middles_of_boxes_and_cylinders():
+    """A box stands at its corner with signed sides, a cylinder begins at its marker and goes along z, which is along -x there."""
+    found = contact(4, 1)
+    part, _, name = found["forces"]["CONTACT_1"]["i"].partition(".")
+    corner = np.array(found["bodies"][part]["markers"]["MARKER_33"]["point"])
+    np.testing.assert_allclose(
+        found["bodies"][part]["markers"][name]["point"] - corner, [0.05, -0.03, 0.02], atol=1e-12
+    )
+    found = contact(5, 6)
+    name = found["forces"]["CONTACT_1"]["j"].partition(".")[2]
+    np.testing.assert_allclose(
+        found["markers"][name]["point"], [0, 0.15, 0.001], atol=1e-12
+    )  # z of marker 2 is along -y
+
+
+def test_pairs_that_are_not_solved_are_refused():
+    with pytest.raises(
+        InputError, match="CONTACT/1: found BOX and CYLINDER, expected SPHERE and PLANE, SPHERE and SPHERE"
+    ):
+        contact(4, 3)
+    with pytest.raises(InputError, match="found no RADIUS, expected a number above zero"):
+        made("GRAPHICS/1, PLANE, RM=1\nGRAPHICS/3, CYLINDER, CM=22, LENGTH=300\nCONTACT/1, IGEOM=3, JGEOM=1, " + LAW)

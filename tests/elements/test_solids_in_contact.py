@@ -1,0 +1,87 @@
+"""Contacts of cylinders, boxes, ellipsoids and spheres by IMPACT: energy, closed forms, shapes that touch as drawn."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+
+G = 9.81
+LAW = "stiffness: 1e5, exponent: 1.5"
+RUBBING = f"{LAW}, damping: 300, depth: 1e-4, friction: 0.2, static_friction: 0.3, stiction_velocity: 1e-3, friction_velocity: 2e-3"
+
+
+def solved(force, body, gravity=(0, 0, -G), duration=0.4, points=21):
+    text = (
+        f"dimensions: 3\ngravity: {list(gravity)}\nbodies:\n  b: {{mass: 1, {body}}}\nforces:\n  c: {{{force}}}\n"
+        f"run: {{duration: {duration}, points: {points}, rtol: 1e-9}}\n"
+    )
+    return stiffmbs.run(stiffmbs.read_scene(text))
+
+
+BALL = "inertia: [0.004, 0.004, 0.004]"
+SPHERE_BOX = "type: sphere_box_impact, i: b, j: ground, radius: 0.1, x: 1, y: 0.8, z: 0.2"
+SPHERE_CYLINDER = (
+    "type: sphere_cylinder_impact, i: b, j: ground, radius: 0.1, cylinder_radius: 0.5, cylinder_length: 0.2"
+)
+CYLINDER = "type: cylinder_plane_impact, i: b, j: ground, radius: 0.1, length: 0.4"
+ELLIPSOID = "type: ellipsoid_plane_impact, i: b, j: ground, x: 0.3, y: 0.2, z: 0.1"
+BOX = "type: box_plane_impact, i: b, j: ground, x: 0.3, y: 0.2, z: 0.1"
+FALLING = [  # by an edge, by a corner, tumbling
+    (SPHERE_BOX, f"{BALL}, position: [0.55, 0, 0.25]"),
+    (SPHERE_BOX, f"{BALL}, position: [0.54, 0.43, 0.25]"),
+    (SPHERE_CYLINDER, f"{BALL}, position: [0.53, 0.1, 0.22]"),
+    (
+        CYLINDER,
+        "inertia: [0.014, 0.014, 0.005], position: [0, 0, 0.2], orientation: [0.8, 0.6, 0, 0], omega: [1, 2, 3]",
+    ),
+    (ELLIPSOID, "inertia: [0.004, 0.009, 0.01], position: [0, 0, 0.2], omega: [1, 2, 3]"),
+    (BOX, "inertia: [0.004, 0.009, 0.01], position: [0, 0, 0.2], omega: [1, 2, 3]"),
+]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("force", "body"), FALLING)
+def test_energy_is_kept_over_impacts(force, body):
+    found = solved(f"{force}, {LAW}", body)
+    assert np.abs(found["c.fz"]).max() > 5 or np.abs(np.diff(found["b.vz"])).max() > 0.5
+    np.testing.assert_allclose(found["energy.total"], found["energy.total"][0], rtol=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("force", "inertia", "height", "points"),
+    [
+        (SPHERE_BOX, BALL, 0.2, 1),
+        (SPHERE_CYLINDER, BALL, 0.2, 1),
+        (CYLINDER, "inertia: [0.014, 0.005, 0.014], orientation: [0.5, 0.5, 0.5, 0.5]", 0.1, 2),
+        (ELLIPSOID, "inertia: [0.01, 0.01, 0.01]", 0.1, 1),
+        (BOX, "inertia: [0.004, 0.009, 0.01]", 0.05, 4),
+    ],
+)
+def test_solids_rest_at_their_height_and_slide_by_coulombs_law(force, inertia, height, points):
+    """At rest each point carries its part of the weight; sliding fast, mu g slows the body down."""
+    sunk = (G / points / 1e5) ** (2 / 3)
+    found = solved(f"{force}, {RUBBING}", f"{inertia}, position: [0, 0, {height - sunk}]", duration=0.05, points=6)
+    np.testing.assert_allclose(found["b.z"], height - sunk, atol=1e-6)
+    found = solved(
+        f"{force}, {RUBBING}",
+        f"{inertia}, position: [0, 0, {height - sunk}], velocity: [1, 0, 0]",
+        duration=0.02,
+        points=6,
+    )
+    np.testing.assert_allclose(found["b.vx"], 1 - 0.2 * G * found.time, atol=2e-3)
+
+
+def test_a_sphere_meets_the_edge_of_a_box_at_its_distance():
+    """Without gravity a sphere flies past an edge at 0.0999 m of it, or at 0.1001 m without any force."""
+    for distance, touched in ((0.0999, True), (0.1001, False)):
+        body = f"{BALL}, position: [{0.5 + distance / np.sqrt(2)}, -0.2, {0.1 + distance / np.sqrt(2)}], velocity: [0, 1, 0]"
+        found = solved(f"{SPHERE_BOX}, {LAW}", body, (0, 0, 0), 0.1, 5)
+        force = np.hypot(found["c.fx"], found["c.fz"])
+        assert (force.max() > 0.01) == touched
+        np.testing.assert_allclose(found["c.fx"], found["c.fz"], atol=1e-9)
+
+
+def test_friction_needs_both_coefficients():
+    with pytest.raises(stiffmbs.InputError, match="found one of friction and static_friction"):
+        solved(f"{CYLINDER}, {LAW}, friction: 0.2", BALL)
