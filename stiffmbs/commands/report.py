@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +25,7 @@ from .scene import (  # fmt: skip
 
 if TYPE_CHECKING:
     from ..describe.scene import Scene
+    from ..results.solution import Solution
     from ..show.sections import Section
 
 
@@ -32,11 +35,16 @@ if TYPE_CHECKING:
 @click.option("--verify/--no-verify", default=True, show_default=True, help="Whether peaks get error bars.")
 @click.option("--equilibrium", is_flag=True, help="With the static equilibrium.")
 @click.option("--compare", is_flag=True, help="With run time against error of bdf, dop853 and auto.")
+@click.option("--kc", multiple=True, metavar="AXLE", help="With kinematics and compliance of an axle, such as front.")
+@click.option("--loads", is_flag=True, help="With the largest loads of all bushings.")
 @solving_options
-def report(scene: str, output: Path | None, verify: bool, equilibrium: bool, compare: bool, **options: Any) -> None:
+def report(
+    scene: str, output: Path | None, verify: bool, equilibrium: bool, compare: bool, kc: tuple[str, ...], loads: bool,
+    **options: Any,
+) -> None:  # fmt: skip
     """Check and solve SCENE and write one page on it: findings, settings, peaks with error bars, figures, the solver's steps.
 
-    Where there is no equilibrium or no reference for a comparison, the page says why.
+    Where there is no equilibrium, no such axle or no reference for a comparison, the page says why.
     Exit status: 0 done, 1 stopped early (the page is written all the same), 2 the input is wrong.
     """
     from ..show.report import check_report, write_report
@@ -47,8 +55,13 @@ def report(scene: str, output: Path | None, verify: bool, equilibrium: bool, com
         refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes_of(options))
         solution = solve_scene(scene, loaded, verify)
-        asked = {"equilibrium": equilibrium, "compare": compare}
-        sections = [_section(name, loaded) for name, wanted in asked.items() if wanted]
+        asked: list[tuple[str, Callable[[], Section]]] = [
+            *([("Static equilibrium", lambda: _equilibrium(loaded))] if equilibrium else []),
+            *((f"Kinematics and compliance: {axle}", partial(_kc, loaded, axle)) for axle in kc),
+            *([("Road loads", lambda: _loads(loaded, solution))] if loads else []),
+            *([("Solvers compared", lambda: _compared(loaded))] if compare else []),
+        ]
+        sections = [_section(title, made) for title, made in asked]
         text = "" if scene == STANDARD_INPUT else file_text(scene)
         write_report(path, loaded, solution, text, sections)
     except StiffmbsError as error:
@@ -62,14 +75,14 @@ def report(scene: str, output: Path | None, verify: bool, equilibrium: bool, com
     sys.exit(0 if solution.outcome.name == "DONE" else STOPPED_EARLY)
 
 
-def _section(name: str, scene: Scene) -> Section:
+def _section(title: str, made: Callable[[], Section]) -> Section:
     """What is asked for besides, or why there is none."""
     from ..show.sections import Section
 
     try:
-        return SECTIONS[name](scene)
+        return made()
     except StiffmbsError as error:
-        return Section(TITLES[name], (f"none: {error}",))
+        return Section(title, (f"none: {error}",))
 
 
 def _equilibrium(scene: Scene) -> Section:
@@ -79,12 +92,22 @@ def _equilibrium(scene: Scene) -> Section:
     return equilibrium_section(equilibrium(scene), scene)
 
 
+def _kc(scene: Scene, axle: str) -> Section:
+    from ..show.kinematics_and_compliance import kc_section
+    from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
+
+    return kc_section(kinematics_and_compliance(scene, axle))
+
+
+def _loads(scene: Scene, solution: Solution) -> Section:
+    from ..show.road_loads import road_loads_section
+    from ..studies.suspension.road_loads import road_loads
+
+    return road_loads_section(road_loads(scene, {"run": solution}))
+
+
 def _compared(scene: Scene) -> Section:
     from ..comparison.compare import compare
     from ..comparison.report_section import comparison_section
 
     return comparison_section(compare(scene))
-
-
-SECTIONS = {"equilibrium": _equilibrium, "compare": _compared}
-TITLES = {"equilibrium": "Static equilibrium", "compare": "Solvers compared"}

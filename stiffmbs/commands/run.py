@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     "--output",
     "output",
     type=click.Path(path_type=Path),
-    help="Write every channel: .csv, .npz, .nc or .tab; to SCENE.results.npz without it and without --json.",
+    help="Write every channel: .csv, .npz, .nc, .tab or .res; to SCENE.results.npz without it and without --json.",
 )
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")

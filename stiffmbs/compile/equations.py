@@ -34,7 +34,7 @@ class Equations:
         Number of unknowns.
     at : dict of str to ndarray
         Where each kind of unknown stands in the vector of unknowns, `ABSENT` where it does not: coordinates that are
-        not independent, multipliers of redundant and fulfilled equations, and mu of equations that have no position form.
+        not independent, multipliers of redundant and satisfied equations, and mu of equations that have no position form.
     pattern : tuple of ndarrays
         Row and column of each slot of the matrix, by columns.
     """

@@ -16,7 +16,11 @@ from ..structure.overconstraint import listed
 
 GROWN = 200.0
 """Times its usual value that a multiplier must reach on one side of a change of its sign; on the other one it must reach that value.
-Measured: 66 at an output in the flat pose of four-bars that go on as they should, 3e4 where the branch is left to chance."""
+Measured on 810 pairs of runs (bdf and dop853, 60 and 400 outputs) of sliders on turning guides, parallelograms, kites and slider cranks in
+the plane and in space, which miss their singular pose by parts d of their size.  From d = 1e-3 on it is resolved, and none is noted
+(growth up to 140 from 1e-2 on, 1800 at 1e-3, where no pose is near enough).  At 1e-4 the motion is resolved too; 7 % are noted, where
+a change of 1e-9 in a length comes back 1e3 to 1e6 times as large.  Where chance decides (1e-6 and less) 44 of 48 runs of the slider
+are noted, 18 of 56 and 18 of 48 of the four-bars and 6 of 32 in space: outputs far from the pose do not show its reactions."""
 SAMPLES = 1000
 """Outputs from which the usual value is taken."""
 NOISE = 1e-9

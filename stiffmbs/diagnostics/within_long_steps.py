@@ -20,7 +20,7 @@ TOLERANCES = 1e4
 1.2e3 in steps of stick and slip, with the slopes of all forces taken into account."""
 FINE = 20_000
 """Parts of a run's time in which Python functions are looked at: nothing else tells where these have features."""
-DOUBTFUL = 0.1
+WORTH_A_NOTE = 0.1
 """Part of both bounds up to which nothing was overlooked, by accelerations at states that are not brought back to the constraints."""
 SLIGHT = 0.01
 """Part of the tolerance by which positions and velocities within a step may be off: a stiff force makes much of that."""
@@ -56,7 +56,9 @@ def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray
     n_q = found.dynamics.system.n_q
     tolerances = settings.rtol, absolute_tolerances(found.dynamics.system, settings)[n_q:]
     ends, states = (found.begin[:count], found.end[:count]), (found.q[:count], found.u[:count])
-    return found.dynamics.contradicting(ends, FROM_MIDDLE, states, tolerances, (DOUBTFUL * PART, DOUBTFUL * TOLERANCES))
+    return found.dynamics.contradicting(
+        ends, FROM_MIDDLE, states, tolerances, (WORTH_A_NOTE * PART, WORTH_A_NOTE * TOLERANCES)
+    )
 
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:

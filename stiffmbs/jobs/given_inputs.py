@@ -35,7 +35,7 @@ def with_inputs(data: ModelData, inputs: Mapping[str, Given] | None, settings: R
     ----------
     data : ModelData
     inputs : mapping of str to number, callable, (times, values) or Table
-        A smooth callable is followed by a spline to eleven digits.  One with corners or jumps is read at the output instants and
+        A smooth callable is followed by a spline to eleven digits.  One that jumps, or whose slope does, is read at the output instants and
         on both sides of jumps, with straight lines between.
     settings : RunSettings
         Of the run.

@@ -1,4 +1,4 @@
-"""Writing every channel over time to a file: .csv, .npz, .nc, .tab."""
+"""Writing every channel over time to a file: .csv, .npz, .nc, .tab, .res."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import numpy as np
 from ..describe.files.quoted import quoted
 from ..errors import InputError
 from ..solve.storage import blocks, release
+from .adams_results import write_adams_results
 from .saved import record
 from .solution import Solution
 
@@ -65,6 +66,7 @@ WRITERS: dict[str, Callable[[Path, Solution], None]] = {
     ".npz": _write_npz,
     ".nc": _write_netcdf,
     ".tab": _write_table,
+    ".res": write_adams_results,
 }
 
 
@@ -111,7 +113,8 @@ def write(path: Path, solution: Solution) -> None:
     ----------
     path : Path
         Ends in .csv (a header line of names and units, time first), .npz (arrays by channel name, ``time``, and what
-        `Solution.load` needs besides, under names with a slash), .nc, or .tab (columns apart by tabs, for other programs).  Channels without
+        `Solution.load` needs besides, under names with a slash), .nc, .tab (columns apart by tabs, for other programs), or .res
+        (Adams' XML).  Channels without
         a unique value are marked: by a column ``rail.fy.not_unique`` of ones, by an array ``not_unique`` of names, or
         by the attribute ``unique`` of each variable.
     """

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..studies.suspension.characteristics import UNITS
 from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance, Sweep
+from .sections import Section, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
 
 SHOWN = {
     "bump": ("toe", "camber", "lateral", "longitudinal", "load"),
@@ -53,14 +58,8 @@ def kc_csv(found: KinematicsAndCompliance) -> str:
     return "\n".join(rows) + "\n"
 
 
-def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
-    """A row of curves for each load case, left and right.
-
-    Raises
-    ------
-    OSError
-        When the file cannot be written.
-    """
+def kc_figure(found: KinematicsAndCompliance) -> Sheet:
+    """A row of curves for each load case, left and right."""
     from matplotlib.figure import Figure
 
     columns = max(len(SHOWN[name]) for name in found.sweeps)
@@ -69,7 +68,34 @@ def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
     for row, sweep in zip(axes, found.sweeps.values(), strict=True):
         _draw_row(row, sweep)
     figure.suptitle(f"{found.name}: {found.axle.left} (solid), {found.axle.right} (dashed)")
-    figure.savefig(path)
+    return figure
+
+
+def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
+    """The same as a file.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    kc_figure(found).savefig(path)
+
+
+def kc_section(found: KinematicsAndCompliance) -> Section:
+    """Slopes at the middle and values at both ends of all curves, and the curves, for a report."""
+    tables = []
+    for sweep in found.sweeps.values():
+        x, case = sweep.abscissa, sweep.case
+        heads = (f"{case.name}: {case.swept}", *(f"at {each:g} {case.unit}" for each in (x[0], x[-1])), "slope", "unit")
+        rows = [
+            (channel, f"{values[0]:.5g}", f"{values[-1]:.5g}", f"{sweep.slope(channel):.5g}", f"{unit_of(channel) or '1'}/{case.unit}")
+            for channel, values in sweep.channels.items()
+        ]  # fmt: skip
+        tables.append(Table(heads, tuple(rows)))
+    title = f"Kinematics and compliance: {found.axle.left} and {found.axle.right}"
+    told = f"Left and right differ by at most {found.asymmetry():.1e}, relative to their curves."
+    return Section(title, (found.message, told), tuple(tables), (kc_figure(found),))
 
 
 def _draw_row(row: np.ndarray, sweep: Sweep) -> None:

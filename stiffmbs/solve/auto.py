@@ -27,7 +27,7 @@ from .ida.engine import Reached
 from .initial import InitialValues
 from .segments import Segment, joined
 from .solver import Traits
-from .trajectory import Grid, Outcome, ProgressCallback, Trajectory
+from .trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 
 LOOK = 32
 """Explicit steps between two looks at what holds them back."""
@@ -56,6 +56,11 @@ def solve(
     """Integrate with `dop853`, and with `bdf` while that is cheaper; the contract is in `stiffmbs.solve.trajectory`."""
     dynamics.forget_pivots()
     return _Shared(dynamics, grid, settings, watch).run(start)
+
+
+def begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> bool:
+    """Whether the fastest rate at the start has `bdf` tried from the first on."""
+    return _Shared(dynamics, grid, settings, unwatched)._is_stiff_at_once(start)
 
 
 @dataclass

@@ -12,6 +12,7 @@ from ..describe.settings import RunSettings
 from ..presolve.linear_equations import independent_coordinates
 from ..presolve.presolve import Part, parts_of
 from . import traits_of
+from .auto import begins_implicit
 from .dynamics import Dynamics
 from .events.restart import restarted
 from .initial import InitialValues
@@ -64,8 +65,9 @@ def presolved(
 ) -> tuple[Subsystem, ...]:
     """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
 
-    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.  Where all
-    steps are implicit, quaternions do not follow spins; explicit ones would only come nearer to the limit of their stability.
+    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.  Where
+    steps are implicit from the start on, quaternions do not follow spins; explicit ones would only come nearer to the limit of
+    their stability.
 
     Parameters
     ----------
@@ -79,13 +81,25 @@ def presolved(
     if not may_presolve(settings):
         return ()
     traits = traits_of(settings)
-    way = (grid.end - grid.start) * start.u if traits.implicit and not traits.switches else None
+    implicit = traits.implicit and (not traits.switches or _begins_implicit(dynamics, start, grid, settings))
+    way = (grid.end - grid.start) * start.u if implicit else None
     parts = parts_of(model, dynamics.system, way, apart=grid.times is not None)
     subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
     if traits.implicit:
         for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
             leave_out_coordinates(solved, grid.start)
     return subsystems
+
+
+def _begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> bool:
+    """Whether a solver that may switch takes implicit steps first; asked in space alone, where bodies may spin."""
+    if dynamics.system.of_body.dimensions == 2:
+        return False
+    state = dynamics.state
+    q, u = state.q.copy(), state.u.copy()
+    found = begins_implicit(dynamics, start, grid, settings)
+    state.q[:], state.u[:] = q, u
+    return found
 
 
 def solve_subsystems(

@@ -130,7 +130,7 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
             return (
                 f"a sensitive (chaotic) motion: from t = {of_levels[0].t:.4g} s on {of_levels[0].body} is elsewhere in "
                 f"{names[1]}, and that parts from {names[2]} at t = {of_levels[1].t:.4g} s; a tighter tolerance puts "
-                "the parting off but never away, so beyond it the results are one of many possible motions"
+                "the divergence off but never away, so beyond it the results are one of many possible motions"
             )
     remedy = f"tighten {'the step' if traits_of(settings).fixed_steps else 'rtol'}"
     other = names[1] if of_levels and of_levels[0] else names[-1]

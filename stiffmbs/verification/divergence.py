@@ -19,7 +19,7 @@ TURNING = (*SPACE.positions[SPACE.linear :], *SPACE.velocities[SPACE.linear :])
 LEAST_LENGTH = 1e-300
 """Lengths that are divided by are at least this, so that what does not turn has no axis."""
 SENSITIVE = 2.0
-"""A motion is sensitive where a tighter tolerance puts the parting off by less than this factor of time."""
+"""A motion is sensitive where a tighter tolerance puts the divergence off by less than this factor of time."""
 
 
 @dataclass(frozen=True)

@@ -160,5 +160,12 @@ def test_a_request_of_the_angle_keeps_counting_turns():
     assert spins(model) == {}
 
 
+def test_auto_keeps_spins_apart_where_it_begins_with_bdf():
+    found = rolling(20).run(duration=20, output=0.5, solver="auto")
+    assert any("auto chose bdf" in note for note in found.notes)
+    assert any("spin" in line for line in found.presolve)
+    assert found.solver["steps"] < 500
+
+
 def test_explicit_steps_follow_the_spin():
     assert not any("spin" in line for line in top(80).run(duration=0.1, solver="auto").presolve)

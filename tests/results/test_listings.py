@@ -27,6 +27,7 @@ def results(tmp_path_factory):
     solution = stiffmbs.run(ADAMS / "dataset.adm", rtol=1e-9)
     solution.save(path)
     solution.save(path.with_suffix(".tab"))
+    solution.save(path.with_suffix(".res"))
     return path
 
 
@@ -44,6 +45,13 @@ def test_a_run_is_what_its_own_table_says(results):
     told = CliRunner().invoke(main, ["diff", str(results), str(results.with_suffix(".tab")), "--tolerance", "1e-12"])
     assert told.exit_code == 0 and "PART_2.x - PART_2.x: 0 at" in told.output
     assert "constraint" not in told.output
+
+
+def test_a_run_is_what_its_own_adams_results_say(results):
+    ours, theirs = read_columns(results.with_suffix(".tab")), read_columns(results.with_suffix(".res"))
+    assert {name for name in ours if not name.isdecimal()} <= set(theirs) and len(ours["time"]) > 10
+    for name, values in theirs.items():
+        np.testing.assert_array_equal(values, ours["time" if name == "time.TIME" else name])
 
 
 def test_adams_xml_results_are_read(tmp_path):

@@ -117,3 +117,13 @@ def test_wrong_input_gets_one_sentence(scene, output, part, tmp_path, monkeypatc
     assert result.exit_code == 2
     assert part in result.output and "Traceback" not in result.output
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.long
+def test_a_car_s_page_has_its_axles_and_the_loads_of_its_bushings(page_of):
+    page = page_of("bushing_axle", "--no-verify", "--duration", "0.1", "--kc", "", "--kc", "rear", "--loads")
+    assert "Kinematics and compliance: left and right" in page.headings
+    assert "Kinematics and compliance: rear" in page.headings and "Road loads" in page.headings
+    assert any("found no body 'rear.left.upright'" in text for text in page.texts)
+    for text in ("left.wheel_rate", "left.lower.front_bush", "lateral_parallel: force to the left at both patches"):
+        assert text in page.texts

@@ -182,7 +182,7 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
         assert part in told
 
 
-LONG = ("bricard", "car", "governor", "leaf_sprung_car", "quarter_car", "spatial_chain")
+LONG = ("bricard", "bushing_axle", "car", "governor", "leaf_sprung_car", "quarter_car", "spatial_chain")
 
 
 @pytest.mark.parametrize(

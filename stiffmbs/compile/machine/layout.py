@@ -135,15 +135,36 @@ note the last time asked for, count steps accepted and rejected, and keep the fi
 
 
 ELIMINATED = Layout({
-    "state": INTS, "n": INT, "n_u": INT, "n_f": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "ready": INT_CELL,
-    "f_source": INDICES, "f_row": INDICES, "gamma_source": INDICES, "gamma_row": INDICES,
+    "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "lists": INTS,
+    "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
+    "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
+})  # fmt: skip
+"""J M^-1 J^T (`stiffmbs.solve.linear.eliminated`): whether no joint closes a loop, whether it is factored by blocks, and the table of
+these or of the entries; whether there are factors, what their pivots keep, and have kept at the most; forces, M^-1/2, accelerations."""
+
+ENTRY_ELIMINATION = Layout({
+    "n": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "gamma_source": INDICES, "gamma_row": INDICES,
     "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "at_lam": INTS,
     "product_end": INDICES, "product_first": INDICES, "product_second": INDICES,
     "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
-    "scale": FLOATS, "j_scale": FLOATS, "j": FLOATS,
-    "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "a": FLOATS, "b": FLOATS, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
+    "j_scale": FLOATS, "j": FLOATS, "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "b": FLOATS,
 })  # fmt: skip
-"""J M^-1 J^T and its factors by flat lists (`stiffmbs.solve.linear.eliminated`)."""
+"""The matrix and its factors by flat lists (`stiffmbs.solve.linear.matrix_entries`)."""
+
+BLOCK_ELIMINATION = Layout({
+    "n_gamma": INT, "gamma_source": INDICES, "gamma_place": INDICES,
+    "n_first": INT, "n_j": INT, "j_source": INDICES, "j_at": INDICES, "j_scale": FLOATS, "j": FLOATS,
+    "n_pairs": INT, "pair": INDICES, "n_singles": INT, "single": INDICES,
+    "n_forming": INT, "forming": INDICES, "n_products": INT, "product": INDICES,
+    "n_nodes": INT, "node": INDICES, "n_panels": INT, "blocks": FLOATS, "update": INDICES, "right": INDICES,
+    "place": INTS, "pivot": FLOATS, "diagonal": FLOATS, "n_x": INT, "x": FLOATS, "y": FLOATS,
+})  # fmt: skip
+"""The same by dense blocks (`stiffmbs.solve.linear.joint_blocks`).  Velocities are taken by threes.  Rows of `pair`: a joint's place in x, its block of J for three velocities of a body, the
+first of them, the block's width.  Where each has one entry of J at the most, rows of `single`: place in x, entry, velocity.  Rows of
+`forming`: a shape, where lines are added, their stride, and both factors with theirs; of `product`: where the product of two single
+entries is added, and both.  Rows of `node`: size, width, start and stride of the node's panel, start and width of what stands right
+of its block after the elimination, divided by the pivots, place in x, first pivot, end of its rows in `update` (a shape, where lines
+are taken from, their stride, both factors), end in `right`, which holds the places in x of what stands right of blocks."""
 
 
 SCHEME = Layout({
@@ -165,7 +186,7 @@ is the mean; rows there is room for (0 where none is kept), rows kept, the usual
 
 EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
-    "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
+    "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
     "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
     "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "polynomial": FLOATS,
@@ -294,6 +315,11 @@ def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     table = np.zeros(len(layout), dtype=np.int64)
     fill(table, layout, values)
     return table
+
+
+def arrays_of(layout: Layout, lists: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    """Lists of numbers, or of rows of them, as flat arrays of the layout's types."""
+    return {name: np.asarray(values, dtype=DTYPES[layout[name]]).reshape(-1) for name, values in lists.items()}
 
 
 def fill(table: np.ndarray, layout: Layout, values: Mapping[str, Any]) -> None:

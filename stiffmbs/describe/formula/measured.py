@@ -16,6 +16,11 @@ _COORDINATES = {
     "force": "fx fy fz", "torque": "tx ty tz torque",
 }  # fmt: skip
 """Of bodies, and the channels of joints and forces that requests may read."""
+_OF_TYRES = {
+    "force": "longitudinal lateral load", "torque": "overturning rolling aligning", "number": "slip",
+    "angle": "slip_angle camber", "length": "deflection deflection_x deflection_y",
+}  # fmt: skip
+"""The further channels of tyres."""
 _MEASURES = {
     "length": "dx dy dz dm", "angle": "ax ay az psi theta phi", "number": "q0 q1 q2 q3", "velocity": "vx vy vz vm vr",
     "angular velocity": "wx wy wz wm", "acceleration": "accx accy accz accm",
@@ -36,8 +41,9 @@ def _units_by_name(dimensions: dict[str, str]) -> dict[str, str]:
     }
 
 
-COORDINATES, MEASURES = _by_name(_COORDINATES), _by_name(_MEASURES)
-_UNITS, _MEASURE_UNITS = _units_by_name(_COORDINATES), _units_by_name(_MEASURES)
+COORDINATES, MEASURES = {**_by_name(_COORDINATES), **_by_name(_OF_TYRES)}, _by_name(_MEASURES)
+_UNITS = {**_units_by_name(_COORDINATES), **_units_by_name(_OF_TYRES)}
+_MEASURE_UNITS = _units_by_name(_MEASURES)
 TIME = measured_in("time")
 
 

@@ -83,8 +83,6 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
                 f"expected {term.element}, whose first body is known"
             )
     for owner, name in output.channels():
-        if owner in model.forces and name in model.forces[owner].own_states():
-            continue
         if channel(owner, name) in channels_of_states(model):
             continue
         if not name:
@@ -114,7 +112,10 @@ def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
     """The channels of a body, of a joint or force, or of the whole."""
     if owner in model.bodies:
         return names.of_bodies
-    return names.of_elements if owner in model.joints or owner in model.forces else OF_RUN.get(owner, ())
+    if owner in model.forces:
+        force = model.forces[owner]
+        return (*names.of_elements, *force.channels, *force.own_states())
+    return names.of_elements if owner in model.joints else OF_RUN.get(owner, ())
 
 
 def _is_known(owner: str, acting: Mapping[str, Any], model: Any, others: Mapping[str, Output]) -> bool:

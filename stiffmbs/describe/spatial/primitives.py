@@ -43,7 +43,7 @@ def align(i: Any, j: Any) -> list[Any]:
 
 
 def orient(i: Any, j: Any) -> list[Any]:
-    """All axes are parallel; fulfilled also by half turns about an axis and by a change of the axes' names."""
+    """All axes are parallel; satisfied also by half turns about an axis and by a change of the axes' names."""
     return [perpendicular(i.x, j.y), perpendicular(i.y, j.z), perpendicular(i.z, j.x)]
 
 

@@ -41,11 +41,11 @@ RELAPSE, STRETCH, LONGER = 2000, 2000, 4
 """Steps between looks at a held order, in which the vibration dies away (250 are too few to see what is gained); steps with
 the order held at first, and how many times as many after each relapse."""
 GAIN = 3.0
-"""How much longer steps must become with the order held: foreseen from the slow motion before it is, and seen after that.  The errors of order 2
-are larger at the same tolerance.  On a car on bushings of 1e7 N/m 1.4 to 1.9 is foreseen; steps were then as long as before, and errors ten
+"""How much longer steps must become with the order held: predicted from the slow motion before it is, and seen after that.  The errors of order 2
+are larger at the same tolerance.  On a car on bushings of 1e7 N/m 1.4 to 1.9 is predicted; steps were then as long as before, and errors ten
 times as large.  On a bar on one bushing, where the order is held, steps become 3 to 40 times as long."""
 NO_LOSS = 1.5
-"""The same, foreseen, where a faint vibration is damped away: longer steps come after that."""
+"""The same, predicted, where a faint vibration is damped away: longer steps come after that."""
 MARGIN, ERROR_CONSTANT = 0.1, 2 / 9
 """Error of a step that an integrator aims at, relative to the tolerance; that of order 2, over the third derivative times the cube of the step."""
 TIGHTEST = 1e-7

@@ -18,13 +18,14 @@ from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues
-from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED
+from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED, UNSTABLE
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
+from .stable_step import StableStep
 
 ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)")
 WORTH_TELLING = 0.1
@@ -73,6 +74,7 @@ class AdaptiveRun:
         self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
         work.step_bound.follow(features)
         self._tolerances = settings.rtol, work.atol
+        self._stable_step = StableStep(scheme, dynamics)
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._begun = 0  # steps before the present segment
@@ -122,18 +124,29 @@ class AdaptiveRun:
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
+        stable_step = self._stable_step
+        stable_step.begin(work)
+        look_at, held_at = self._begun + most, work.count("stiff_steps") + self._held(most, leaving)
         while status == PAUSED:
-            held = max(1, most // SOON) if leaving else most
-            status = advance(stop, most, held, self._grid.times is None, work.at)
+            wait = min(look_at - work.count("steps"), stable_step.wait(work))
+            status = advance(stop, wait, held_at - work.count("stiff_steps"), self._grid.times is None, work.at)
             work.collect(self._rows)
             if is_logged():
                 log_step(work.t, work.h)
             self._watch(work.t)
             if work.t < self._grid.end:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))
+            if status == UNSTABLE:
+                stable_step.ask(work, self._grid.end)
+                status = PAUSED
+                continue
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
+                stable_step.look(work, self._grid.end)
+                if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
+                    continue
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.capacity) if leaving else most
+            look_at, held_at = work.count("steps") + most, work.count("stiff_steps") + self._held(most, leaving)
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
                 self._store_rows()
@@ -143,6 +156,11 @@ class AdaptiveRun:
             self._events += 1
             self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
         return status
+
+    @staticmethod
+    def _held(most: int, leaving: Leaving | None) -> int:
+        """Steps that stability must hold back for a look before so many are taken."""
+        return max(1, most // SOON) if leaving else most
 
     def _go_past(self, breakpoint: float) -> None:
         """Start anew behind a breakpoint, where min(2*t, 1) has its new slope; what is asked for at it is the state before."""

@@ -55,7 +55,7 @@ def updates(blocks: Blocks) -> dict[str, np.ndarray]:
     targets = [target for k in range(len(blocks.nodes)) for target in _targets(blocks, k)]
     line_target, line, rows = _spread([_lines(target.size) for target in targets], 2)
     run_target, own, into, quads = _spread([target.runs for target in targets], 3)
-    piece_run, shift, count = _spread([_pieces(n) for n in quads.tolist()], 2)
+    piece_run, shift, count = _spread([pieces_of(n) for n in quads.tolist()], 2)
     piece_target = run_target[piece_run]
     column = [
         np.array([getattr(target, name) for target in targets], dtype=np.int64)
@@ -96,7 +96,7 @@ def _lines(size: int) -> list[tuple[int, int]]:
 
 
 @cache
-def _pieces(quads: int) -> list[tuple[int, int]]:
+def pieces_of(quads: int) -> list[tuple[int, int]]:
     """Shift and number of quads of each part of a run."""
     most = max(QUADS)
     return [(QUAD * first, min(most, quads - first)) for first in range(0, quads, most)]

@@ -19,7 +19,7 @@ from stiffmbs.solve.native.event_search.explicit_events import RETRIED, retaken
 from stiffmbs.solve.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, next_row
 from stiffmbs.solve.native.stages import copied
-from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF
+from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF, UNSTABLE
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 from stiffmbs.solve.native.uncertain_end import MOST_MOVED, SHORTER, uncertain_end
 
@@ -35,7 +35,10 @@ number of the state: some ten minutes."""
 
 @compiled
 def _watch_stiffness(x, c, h):
-    """Count steps whose h |lambda|, seen from two stages at the step's end, is beyond what accuracy alone allows."""
+    """Count steps that stability bounds, or whose h |lambda|, seen from two stages at the step's end, is beyond what accuracy alone allows."""
+    if 0.0 < x.stable < x.h:
+        x.stiff_steps += 1
+        return
     k_end = shifted(x.k, c.stages * x.n)
     k_last = shifted(x.k, (c.stages - 1) * x.n)
     rate = 0.0
@@ -81,6 +84,8 @@ def _step(x, c, s, m, end):
     x.span = 0.0
     t = x.t
     h = min(x.h, x.longest)
+    if x.stable > 0.0:
+        h = min(h, x.stable)
     bound = step_bound_view(x.step_bound)
     if bound.n > 0:
         h = min(h, longest_step(bound, t))
@@ -154,7 +159,8 @@ def _keep_if_long(x, c, s, m):
 def advance(end, steps, held, own_steps, explicit):
     """Integrate towards `end`, for so many steps, until stability has held back `held` of them, or the memory for rows is full.
 
-    AT_END, AT_EVENT (a force has changed its law there), PAUSED (call again to go on), or a negative status.
+    AT_END, AT_EVENT (a force has changed its law there), PAUSED (call again to go on), UNSTABLE (a step went beyond what stability
+    allows: call again with that for a bound), or a negative status.
     """
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
@@ -171,6 +177,7 @@ def advance(end, steps, held, own_steps, explicit):
             return AT_END
         if x.at_event:
             return AT_EVENT
+        stiff = x.stiff_steps
         status = _step(x, c, s, m, end)
         if x.end_at_event:
             if status == STEP_TOO_SMALL:
@@ -186,6 +193,8 @@ def advance(end, steps, held, own_steps, explicit):
         _keep_if_long(x, c, s, m)
         if own_steps:
             store_step(x)
+        if x.stable == 0.0 and x.stiff_steps > stiff:
+            return UNSTABLE
         if x.steps >= ENOUGH_STEPS and _is_hopeless(x, end):
             return STIFF
     return PAUSED

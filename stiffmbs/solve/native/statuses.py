@@ -17,8 +17,8 @@ NO_STATE = -8
 """The equations of algebraic states have no unique solution near their last values, or Newton's iteration does not find it."""
 
 STEP_TOO_SMALL, STIFF = -4, -5
-PAUSED, AT_END, AT_EVENT = 0, 1, 2
-"""Of a call for explicit steps: to be called again, done, and stopped where a force changes its law."""
+PAUSED, AT_END, AT_EVENT, UNSTABLE = 0, 1, 2, 3
+"""Of a call for explicit steps: to be called again, done, stopped where a force changes its law, and to be called again with a bound on steps."""
 
 OK, RECOVERABLE, FAILED = 0, 1, -1
 """What a callback of SUNDIALS returns: after a recoverable failure IDA tries a smaller step."""

@@ -67,7 +67,7 @@ CASES = (
     ),
     *(_case("flight far shorter than its output spacing", flying, _flight, 1e-15, duration=1e-12, output=0.1, **how) for how in WAYS),
     *(
-        _case("change of hands each 2 us", stiffened, partial(_spacing, output=2e-6), 1e-6, duration=1.0, output=2e-6, rtol=1e-4, **how)
+        _case("change of integrator each 2 us", stiffened, partial(_spacing, output=2e-6), 1e-6, duration=1.0, output=2e-6, rtol=1e-4, **how)
         for how in WAYS[:1]
     ),
 )  # fmt: skip

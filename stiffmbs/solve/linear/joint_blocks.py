@@ -1,0 +1,285 @@
+"""J M^-1 J^T by dense blocks of joints: the lists along which they are formed and eliminated (`stiffmbs.solve.native.elimination.by_blocks`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate, combinations_with_replacement, product
+from typing import Any
+
+import numpy as np
+
+from ...compile.equations import ABSENT
+from ...compile.machine.layout import BLOCK_ELIMINATION, arrays_of
+from ...compile.system import System
+from .block_updates import pieces_of
+from .blocks import QUAD, padded
+
+MOST_LINES = 6
+"""Of a product of two quads, in registers."""
+CACHE_LINE = 64
+"""Bytes that a processor loads at a time."""
+Rows = list[tuple[int, ...]]
+Piece = tuple[int, int, int]
+"""Shape, first line and first column of a part of a product that fits into registers."""
+
+
+class Joints:
+    """The joints in the order of their elimination, each a node with a panel: its block, then those of later joints.
+
+    Parameters
+    ----------
+    rows : list of ndarray of int
+        The equations of each joint that are solved for.
+    bodies : list of list of int
+        Those that each joint acts on, ground left out.
+
+    Attributes
+    ----------
+    sizes, widths : lists of int
+        Equations of each joint, and the same filled up to whole quads.
+    below : list of list of int
+        The later joints that the elimination of each changes.
+    """
+
+    def __init__(self, rows: list[np.ndarray], bodies: list[list[int]]) -> None:
+        self.rows, self.bodies = rows, bodies
+        self.sizes = list(map(len, rows))
+        self.widths = list(map(padded, self.sizes))
+        self.below = _filled(bodies)
+
+    @property
+    def updates(self) -> int:
+        """Multiplications of the elimination."""
+        heights = (
+            sum(self.sizes[b] for b in below) + left
+            for size, below in zip(self.sizes, self.below, strict=True)
+            for left in range(size)
+        )
+        return sum(height * (height + 1) // 2 for height in heights)
+
+    @cached_property
+    def offsets(self) -> list[dict[int, int]]:
+        """Where the blocks of each panel begin in its lines, the joint's own at 0; its length under the number of joints."""
+        return [
+            dict(
+                zip(
+                    [k, *below, len(self.rows)],
+                    accumulate((self.widths[b] for b in [k, *below]), initial=0),
+                    strict=True,
+                )
+            )
+            for k, below in enumerate(self.below)
+        ]
+
+    @cached_property
+    def strides(self) -> list[int]:
+        """Lengths of the panels' lines."""
+        return [offsets[len(self.rows)] for offsets in self.offsets]
+
+    @cached_property
+    def starts(self) -> list[int]:
+        """Where each panel begins, and where the last ends."""
+        return list(
+            accumulate((size * stride for size, stride in zip(self.sizes, self.strides, strict=True)), initial=0)
+        )
+
+    @cached_property
+    def multiplied_starts(self) -> list[int]:
+        """Behind all panels: where the blocks right of each joint's own begin, multiplied by its inverse; where the last end."""
+        lengths = (s * (stride - w) for s, stride, w in zip(self.sizes, self.strides, self.widths, strict=True))
+        return list(accumulate(lengths, initial=self.starts[-1]))
+
+    @cached_property
+    def places(self) -> list[int]:
+        """Where each joint begins in a vector of whole quads, and where the last ends."""
+        return list(accumulate(self.widths, initial=0))
+
+
+@dataclass(frozen=True)
+class Jacobian:
+    """J by blocks of a joint and a body, column by column, each filled up to whole quads.
+
+    Attributes
+    ----------
+    source, at, column : ndarrays of int
+        Of each entry: its value, its place, its velocity.  What is added to other entries comes last.
+    begin : dict
+        Where the block of a joint and a body begins.
+    end : int
+        Where the last ends.
+    thirds : dict
+        For a joint, a body and the first of three of its velocities, the rows of the joint in which each has entries.
+    """
+
+    source: np.ndarray
+    at: np.ndarray
+    column: np.ndarray
+    begin: dict[tuple[int, int], int]
+    end: int
+    thirds: dict[tuple[int, int, int], list[set[int]]]
+
+
+def jacobian_of(joints: Joints, system: System, kept: np.ndarray) -> Jacobian:
+    """The blocks of J, of which the entries `kept` stand in equations that are solved for."""
+    node, within = np.zeros(system.n_c, dtype=np.int64), np.zeros(system.n_c, dtype=np.int64)
+    for k, rows in enumerate(joints.rows):
+        node[rows], within[rows] = k, np.arange(len(rows))
+    jacobian, width = system.term("acceleration", "J"), system.of_body.n_u
+    row, column = jacobian.row[kept], jacobian.column[kept]
+    body, line = column // width, column % width
+    pairs = [(k, own) for k, bodies in enumerate(joints.bodies) for own in bodies]
+    begins = list(accumulate((width * joints.widths[k] for k, _ in pairs), initial=0))
+    begin = dict(zip(pairs, begins, strict=False))
+    starts = np.array([begin[both] for both in zip(node[row].tolist(), body.tolist(), strict=True)], dtype=np.int64)
+    at = starts + line * np.array(joints.widths, dtype=np.int64)[node[row]] + within[row]
+    thirds: dict[tuple[int, int, int], list[set[int]]] = {}
+    for k, own, place, r in zip(node[row].tolist(), body.tolist(), line.tolist(), within[row].tolist(), strict=True):
+        third = thirds.setdefault((k, own, place - place % 3), [set(), set(), set()])
+        third[place % 3].add(r)
+    order = np.argsort(_occurrence(at), kind="stable")
+    return Jacobian(jacobian.source[kept][order], at[order], column[order], begin, begins[-1], thirds)
+
+
+def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any]:
+    """What the table holds of joints (`stiffmbs.compile.machine.layout.BLOCK_ELIMINATION`).
+
+    Parameters
+    ----------
+    joints : Joints
+    system : System
+    kept : ndarray of int
+        The entries of J in equations that are solved for.
+    """
+    place = np.full(system.n_c, ABSENT)
+    for start, rows in zip(joints.places, joints.rows, strict=False):
+        place[rows] = start + np.arange(len(rows))
+    gamma = system.term("acceleration", "gamma")
+    solved = np.flatnonzero(place[gamma.row] != ABSENT)
+    j, scale = jacobian_of(joints, system, kept), 1.0 / np.sqrt(system.mass)
+    updates = [list(_updates(joints, k)) for k in range(len(joints.sizes))]
+    right = [[x for b in below for x in range(joints.places[b], joints.places[b + 1], QUAD)] for below in joints.below]
+    pairs, singles = _pairs(joints, j, system.of_body.n_u)
+    forming, products = _products(joints, j)
+    lists = {
+        "gamma_source": gamma.source[solved], "gamma_place": place[gamma.row[solved]],
+        "j_source": j.source, "j_at": j.at, "j_scale": scale[j.column], "j": _at_a_line(j.end),
+        "pair": pairs, "single": singles, "forming": forming, "product": products,
+        "node": list(_nodes(joints, updates, right)), "blocks": _at_a_line(joints.multiplied_starts[-1]),
+        "update": [row for part in updates for row in part], "right": [x for part in right for x in part], "place": place,
+        "pivot": np.zeros(sum(joints.sizes)), "diagonal": np.zeros(sum(joints.sizes)),
+        "x": _at_a_line(joints.places[-1]), "y": _at_a_line(joints.places[-1]),
+    }  # fmt: skip
+    return {
+        **arrays_of(BLOCK_ELIMINATION, lists), "n_gamma": len(solved), "n_first": len(np.unique(j.at)), "n_j": len(j.at),
+        "n_pairs": len(pairs), "n_singles": len(singles), "n_forming": len(forming), "n_products": len(products),
+        "n_nodes": len(joints.sizes), "n_panels": joints.starts[-1], "n_x": joints.places[-1],
+    }  # fmt: skip
+
+
+def _occurrence(at: np.ndarray) -> np.ndarray:
+    """0 where a number stands first in a list, 1 where it stands again."""
+    again = np.ones(len(at), dtype=np.int64)
+    again[np.unique(at, return_index=True)[1]] = 0
+    return again
+
+
+def _nodes(joints: Joints, updates: list[Any], right: list[Any]) -> Iterator[tuple[int, ...]]:
+    """The rows of ``node``."""
+    ends = (accumulate(map(len, part)) for part in (updates, right))
+    first = accumulate(joints.sizes, initial=0)
+    for k, (pivot, update_end, right_end) in enumerate(zip(first, *ends, strict=False)):
+        size, width, stride = joints.sizes[k], joints.widths[k], joints.strides[k]
+        panel = size, width, joints.starts[k], stride, joints.multiplied_starts[k], stride - width
+        yield *panel, joints.places[k], pivot, update_end, right_end
+
+
+def _pairs(joints: Joints, j: Jacobian, width: int) -> tuple[Rows, Rows]:
+    """The rows of ``pair`` and ``single``."""
+    pairs: Rows = []
+    singles: Rows = []
+    for (k, body, first), rows in j.thirds.items():
+        begin, velocity, x = j.begin[k, body] + first * joints.widths[k], width * body + first, joints.places[k]
+        if _is_thin(rows):
+            singles += [
+                (x + row, begin + i * joints.widths[k] + row, velocity + i) for i, own in enumerate(rows) for row in own
+            ]
+        else:
+            pairs.append((x, begin, velocity, joints.widths[k]))
+    return pairs, singles
+
+
+def _products(joints: Joints, j: Jacobian) -> tuple[Rows, Rows]:
+    """The rows of ``forming`` and ``product``: products of blocks of J of two joints of a body."""
+    of_third: dict[tuple[int, int], list[int]] = {}
+    for k, body, first in sorted(j.thirds):
+        of_third.setdefault((body, first), []).append(k)
+    forming: Rows = []
+    single: Rows = []
+    for (body, first), meeting in of_third.items():
+        for k, other in combinations_with_replacement(meeting, 2):
+            start, stride = joints.starts[k] + joints.offsets[k][other], joints.strides[k]
+            widths = joints.widths[k], joints.widths[other]
+            a, b = (j.begin[one, body] + first * width for one, width in zip((k, other), widths, strict=True))
+            rows, columns = j.thirds[k, body, first], j.thirds[other, body, first]
+            if _is_thin(rows) and _is_thin(columns):
+                single += [
+                    (start + row * stride + column, a + i * widths[0] + row, b + i * widths[1] + column)
+                    for i, both in enumerate(zip(rows, columns, strict=True))
+                    for row, column in product(*both)
+                ]
+                continue
+            forming += [
+                (shape, start + line * stride + shift, stride, a + line, widths[0], b + shift, widths[1])
+                for shape, line, shift in _parts(joints.sizes[k], widths[1])
+            ]
+    return forming, single
+
+
+def _is_thin(rows: list[set[int]]) -> bool:
+    """Whether each of three velocities stands in one equation at the most."""
+    return max(map(len, rows)) < 2
+
+
+def _updates(joints: Joints, k: int) -> Iterator[tuple[int, ...]]:
+    """What the elimination of a joint takes out of the panels of later ones: the rows of ``update`` of one node."""
+    below, offsets = joints.below[k], joints.offsets[k]
+    for first, b in enumerate(below):
+        factors = joints.multiplied_starts[k] + offsets[b] - joints.widths[k]
+        for a in below[first:]:
+            into, lines = joints.starts[b] + joints.offsets[b][a], joints.starts[k] + offsets[a]
+            for shape, line, column in _parts(joints.sizes[b], joints.widths[a]):
+                yield shape, into + line * joints.strides[b] + column, joints.strides[b], factors + line, lines + column
+
+
+def _parts(lines: int, width: int) -> Iterator[Piece]:
+    """The parts of a product of so many lines."""
+    for first in range(0, lines, MOST_LINES):
+        rows = min(MOST_LINES, lines - first)
+        for shift, quads in pieces_of(width // QUAD):
+            yield 2 * rows - (2 - quads), first, shift
+
+
+def _at_a_line(count: int) -> np.ndarray:
+    """Zeros that begin with a cache line: quads that lie in two of them are written and read again far more slowly."""
+    longer = np.zeros(count + CACHE_LINE // 8)
+    first = -longer.ctypes.data % CACHE_LINE // 8
+    return longer[first : first + count]
+
+
+def _filled(bodies: list[list[int]]) -> list[list[int]]:
+    """The later joints that share a body with each, or come to do so by elimination."""
+    of_body: dict[int, list[int]] = {}
+    for k, places in enumerate(bodies):
+        for body in places:
+            of_body.setdefault(body, []).append(k)
+    below: list[set[int]] = [set() for _ in bodies]
+    for meeting in of_body.values():
+        for first, k in enumerate(meeting):
+            below[k] |= set(meeting[first + 1 :])
+    for own in below:
+        if own:
+            parent = min(own)
+            below[parent] |= own - {parent}
+    return [sorted(own) for own in below]
