@@ -125,11 +125,14 @@ class AdaptiveRun:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
         stable_step = self._stable_step
-        stable_step.begin(work)
-        look_at, held_at = self._begun + most, work.count("stiff_steps") + self._held(most, leaving)
+        bounds = stable_step.begin(work)
+        look_at, held_at = self._looks(most, leaving) if bounds else (0, 0)
         while status == PAUSED:
-            wait = min(look_at - work.count("steps"), stable_step.wait(work))
-            status = advance(stop, wait, held_at - work.count("stiff_steps"), self._grid.times is None, work.at)
+            wait, held = most, self._held(most, leaving)
+            if bounds:
+                wait = min(look_at - work.count("steps"), stable_step.wait(work))
+                held = held_at - work.count("stiff_steps")
+            status = advance(stop, wait, held, self._grid.times is None, work.at)
             work.collect(self._rows)
             if is_logged():
                 log_step(work.t, work.h)
@@ -142,11 +145,13 @@ class AdaptiveRun:
                 continue
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
-                stable_step.look(work, self._grid.end)
-                if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
-                    continue
+                if bounds:
+                    stable_step.look(work, self._grid.end)
+                    if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
+                        continue
             most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.capacity) if leaving else most
-            look_at, held_at = work.count("steps") + most, work.count("stiff_steps") + self._held(most, leaving)
+            if bounds:
+                look_at, held_at = self._looks(most, leaving)
             if status == PAUSED and leaving and leaving.pays(work):
                 self.left = True
                 self._store_rows()
@@ -156,6 +161,10 @@ class AdaptiveRun:
             self._events += 1
             self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
         return status
+
+    def _looks(self, most: int, leaving: Leaving | None) -> tuple[int, int]:
+        """Counts of steps, and of those that stability held back, at which the next look is due."""
+        return self.work.count("steps") + most, self.work.count("stiff_steps") + self._held(most, leaving)
 
     @staticmethod
     def _held(most: int, leaving: Leaving | None) -> int:

@@ -63,7 +63,7 @@ class Integration:
             "scheme": scheme.table, "n": n, "n_q": self._n_q,
             "project": settings.projection, "tolerance": POSITION_TOLERANCE,
             "rtol": settings.rtol, "atol": atol,
-            "longest": settings.max_step or np.inf, "stable": 0.0, "step_bound": self.step_bound.table,
+            "longest": settings.max_step or np.inf, "stable": np.inf, "step_bound": self.step_bound.table,
             "shortest": SHORTEST_PART * (grid.end - grid.start),
             "t": grid.start, "t_before": grid.start, "h": settings.step,
             "n_event_functions": n_event_functions, "end_at_event": END_AT_EVENT.address if self._watch.n else 0, "signs": np.zeros(n_event_functions),

@@ -28,6 +28,9 @@ SMALLEST_ERROR = 1e-4
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
 STRETCHED = 1.01
 """The last step may be this much longer than asked for, so that no tiny one is left."""
+FAR_BEYOND = 2.0
+"""Times the longest step that stability allows, from which on rounding grows to the tolerance before the error estimate shows it; steps
+that the estimate holds back come to some 1.2 times."""
 STIFF_PART, ENOUGH_STEPS, TOO_MANY_STEPS = 0.1, 10_000, 1e9
 """A run is given up when this part of its steps was held back by stability, after so many, with so many ahead for each
 number of the state: some ten minutes."""
@@ -46,8 +49,10 @@ def _watch_stiffness(x, c, h):
     for i in range(x.n):
         rate += (k_end[i] - k_last[i]) ** 2
         move += (x.y[i] - x.y_stage[i]) ** 2
-    if h * h * rate > c.stability**2 * move and move > 0.0:
+    limit = c.stability**2 * move
+    if h * h * rate > limit and move > 0.0:
         x.stiff_steps += 1
+        x.far_beyond += 1 if h * h * rate > FAR_BEYOND**2 * limit else 0
 
 
 @compiled
@@ -159,8 +164,8 @@ def _keep_if_long(x, c, s, m):
 def advance(end, steps, held, own_steps, explicit):
     """Integrate towards `end`, for so many steps, until stability has held back `held` of them, or the memory for rows is full.
 
-    AT_END, AT_EVENT (a force has changed its law there), PAUSED (call again to go on), UNSTABLE (a step went beyond what stability
-    allows: call again with that for a bound), or a negative status.
+    AT_END, AT_EVENT (a force has changed its law there), PAUSED (call again to go on), UNSTABLE (a step went far beyond what
+    stability allows: call again with that for a bound), or a negative status.
     """
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
@@ -177,7 +182,7 @@ def advance(end, steps, held, own_steps, explicit):
             return AT_END
         if x.at_event:
             return AT_EVENT
-        stiff = x.stiff_steps
+        far_beyond = x.far_beyond
         status = _step(x, c, s, m, end)
         if x.end_at_event:
             if status == STEP_TOO_SMALL:
@@ -193,7 +198,7 @@ def advance(end, steps, held, own_steps, explicit):
         _keep_if_long(x, c, s, m)
         if own_steps:
             store_step(x)
-        if x.stable == 0.0 and x.stiff_steps > stiff:
+        if x.stable == 0.0 and x.far_beyond > far_beyond:
             return UNSTABLE
         if x.steps >= ENOUGH_STEPS and _is_hopeless(x, end):
             return STIFF
