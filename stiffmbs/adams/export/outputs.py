@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from ...describe.formula.formula import Formula
 from ...describe.spatial.model import SpatialData
@@ -23,21 +24,21 @@ def state_names(scene: SpatialData) -> dict[str, str]:
 def states(scene: SpatialData) -> Iterator[tuple[str, Write]]:
     """States by name, each with what writes it: DIFF, implicit for algebraic ones; outputs are VARIABLEs."""
     for k, (name, value) in enumerate(scene.state_values().items(), 1):
-
-        def write(functions: Functions, k: int = k, value: StateValue = value) -> Iterator[str]:
-            if value.rate is None:
-                raise Refusal("found the state of an element, expected one of the section states")
-            implicit = ["IMPLICIT"] if value.algebraic else []
-            law = functions.text(value.rate)
-            yield statement("DIFF", k, f"IC = {number(value.start)}", *implicit, f"FUNCTION = {law}")
-
-        yield name, write
+        yield name, partial(_state, k, value)
     for k, (name, formula) in enumerate(scene.state_outputs().items(), 1):
+        yield name, partial(_output, k, formula)
 
-        def report(functions: Functions, k: int = k, formula: Formula = formula) -> Iterator[str]:
-            yield statement("VARIABLE", k, f"FUNCTION = {functions.text(formula)}")
 
-        yield name, report
+def _state(k: int, value: StateValue, functions: Functions) -> Iterator[str]:
+    if value.rate is None:
+        raise Refusal("found the state of an element, expected one of the section states")
+    implicit = ["IMPLICIT"] if value.algebraic else []
+    law = functions.text(value.rate)
+    yield statement("DIFF", k, f"IC = {number(value.start)}", *implicit, f"FUNCTION = {law}")
+
+
+def _output(k: int, formula: Formula, functions: Functions) -> Iterator[str]:
+    yield statement("VARIABLE", k, f"FUNCTION = {functions.text(formula)}")
 
 
 def requests(scene: SpatialData, functions: Functions) -> Iterator[str]:
