@@ -61,6 +61,7 @@ def _public(name):
     return Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets" / f"{name}.xml"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, 1])
 def test_accelerations_with_every_kind_of_joint_and_actuator(tmp_path, seed):
     path = _file(tmp_path, EVERYTHING)
@@ -80,6 +81,7 @@ def test_accelerations_of_larger_public_models(name):
         assert worst_difference(_public(name), compiled(_public(name)), seed) < 1e-6
 
 
+@pytest.mark.long
 def test_a_run_against_mujoco(tmp_path):
     """Half a second of the same motion; MuJoCo by RK4 with steps of 0.1 ms."""
     import mujoco

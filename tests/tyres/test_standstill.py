@@ -83,6 +83,7 @@ def test_sideways_motion_beside_a_standstill(name):
     assert min(abs(value - expected) for value in found) < 1e-6 * abs(expected)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", TYRES)
 def test_motions_beside_creeping_are_those_beside_a_standstill(name):
     at_rest, *creeping = (
@@ -93,6 +94,7 @@ def test_motions_beside_creeping_are_those_beside_a_standstill(name):
         assert np.allclose(found, at_rest, rtol=1e-4, atol=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", TYRES)
 def test_a_cambered_wheel_stands(name):
     """Camber thrust, ply steer and conicity are of rolling tyres: at rest nothing pushes the wheel aside."""
@@ -110,7 +112,7 @@ def test_a_cambered_wheel_that_rolls_has_its_thrust():
     assert found["lateral"] < -100
 
 
-@pytest.mark.parametrize("name", ["lagging fiala", "lagging magic"])
+@pytest.mark.parametrize("name", ["lagging fiala", pytest.param("lagging magic", marks=pytest.mark.long)])
 def test_a_blocked_wheel_is_in_equilibrium_on_a_slope_and_does_not_creep(name):
     model = standing(TYRES[name], camber=0.03, gravity=(1.5, 0.4, -9.7))
     model.add("blocked", Drive(joint="pin", velocity="0"))
@@ -122,6 +124,7 @@ def test_a_blocked_wheel_is_in_equilibrium_on_a_slope_and_does_not_creep(name):
     assert np.ptp(run["fork.x"]) < 1e-8 and np.ptp(run["fork.y"]) < 1e-8
 
 
+@pytest.mark.long
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["fiala", "magic"])
 def test_a_tyre_without_lengths_has_no_equilibrium_on_a_slope(name):
