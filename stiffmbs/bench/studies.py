@@ -79,7 +79,7 @@ class StudyRuns:
                 Row("study", f"{way}, by the clock; {gains[way]:.2f} times as fast as one", off, statistics.median(spent), False)
                 for way, spent in clock.items()
             ),
-            Row("memory", f"{_memory() - before:.0f} MB more after {(2 * rounds) * len(study.cases)} cases", 0.0, 0.0, False),
+            Row("memory", f"{_memory() - before:.0f} MB more after {(2 * rounds) * len(study.cases)} cases", 0.0, sum(alone), False),
         ]  # fmt: skip
 
 

@@ -111,6 +111,7 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
 
 
 LONG_LOOKS = ("elements_in_space", "chain_scaling", "stiffness", "half_car_study", "bushing_fit", "car")
+BEYOND_THE_SOLVER = {"bushing_fit": 0.1}  # noise of the measured curves
 WITHOUT_YARDSTICK = ("linear_algebra", "car", "chain_in_space", "elements_in_space")
 
 
@@ -126,7 +127,7 @@ def test_quick_look_in_json(name):
     assert report["problem"] == FAMILIES[name][0].name
     for row in report["rows"]:
         assert row.keys() == {"solver", "setting", "error", "seconds", "peer"}
-        assert row["error"] < 1e-3
+        assert row["error"] < BEYOND_THE_SOLVER.get(name, 1e-3)
         assert row["seconds"] > 0
     assert {row["peer"] for row in report["rows"]} == ({False} if name in WITHOUT_YARDSTICK else {True, False})
 

@@ -158,7 +158,8 @@ def test_ctrl_c_ends_without_a_traceback_at_any_moment(folder, delay):
     time.sleep(delay)
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate()
-    assert process.returncode in (0, INTERRUPTED)
+    # before Python has a handler of its own, the signal ends the process
+    assert process.returncode in (0, INTERRUPTED, -signal.SIGINT)
     assert "Traceback" not in errors
     assert "Error" not in errors
 
