@@ -93,6 +93,17 @@ def _overlap(w, k, number):
 
 
 @compiled
+def _beyond(w, k, value, one, other, least):
+    """Whether a function at a value is in a zone that is neither of two, further than it overlaps with these and than `least`."""
+    here, low, high = zone(w, k, value), min(one, other), max(one, other)
+    if here > high:
+        return value - _edge(w, k, high) > max(least, _overlap(w, k, high))
+    if here < low:
+        return _edge(w, k, low - 1) - value > max(least, _overlap(w, k, low - 1))
+    return False
+
+
+@compiled
 def noted(target, values, count):
     """Keep the values of all event functions."""
     for k in range(count):
@@ -148,7 +159,7 @@ def _reaches(w, k, start, start_rate, end, end_rate, missed):
     )
     if k < w.n_event_functions:
         return zone(w, k, low) != one or zone(w, k, high) != one
-    return zone(w, k, low) < min(one, other) or zone(w, k, high) > max(one, other)
+    return _beyond(w, k, low, one, other, 0.0) or _beyond(w, k, high, one, other, 0.0)
 
 
 @compiled
@@ -300,13 +311,7 @@ def _visits(w, k, value, low, high):
         return here != one and abs(value) > w.depth
     if abs(one - other) > 1:
         return here != one
-    if here > max(one, other):
-        passed = max(one, other)
-        return value - _edge(w, k, passed) > max(w.depth, _overlap(w, k, passed))
-    if here < min(one, other):
-        passed = min(one, other) - 1
-        return _edge(w, k, passed) - value > max(w.depth, _overlap(w, k, passed))
-    return False
+    return _beyond(w, k, value, one, other, w.depth)
 
 
 @compiled
