@@ -135,7 +135,9 @@ def read_joint(statement: Statement, units: Units) -> Joint:
     found = Arguments(statement, "JOINT", names)
     for name in OF_FRICTION:
         if name in found:
-            raise found.fault(f"found {name}, friction of old versions, expected a FRICTION statement", found.line(name))
+            raise found.fault(
+                f"found {name}, friction of old versions, expected a FRICTION statement", found.line(name)
+            )
     kind = found.one_of(*JOINT_KINDS)
     if kind is None:
         raise found.fault(f"found no kind of joint, expected one of {', '.join(JOINT_KINDS)}")
