@@ -13,7 +13,8 @@ from ..errors import InputError, SolverError
 from ..linear_analysis.steady_motion import eigenvalues_beside
 from ..solve.dynamics import Dynamics
 from ..solve.equilibrium import Equilibrium, find_equilibrium
-from ..solve.force_balance import balance_at
+from ..solve.force_balance import balance_at, forces_by_velocity
+from ..solve.found_speeds import with_found_spins
 from ..solve.initial import InitialValues
 from ..solve.nearest_equilibrium import nearest_equilibrium
 from ..solve.steady_motion import SteadyMotion
@@ -53,11 +54,15 @@ def settled_in_motion(
     """
     motion = _motion(model, dynamics, start, described)
     dynamics.state.q[:] = start.q
+    if len(motion.spinning):
+        balance_at(dynamics, t, motion)
+        motion = with_found_spins(dynamics, motion, forces_by_velocity(dynamics))
     try:
         found = find_equilibrium(dynamics, t, motion)
     except SolverError:
         dynamics.state.q[:] = start.q
         found = nearest_equilibrium(dynamics, t, motion)
+    motion = found.motion
     _refuse_joints(dynamics, t)
     _refuse_unsteady(dynamics, t, motion)
     values = _eigenvalues(dynamics, t, motion, found)
@@ -91,7 +96,8 @@ def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, describe
     velocity, about = (_vector(system, name, getattr(described, name)) for name in ("velocity", "about"))
     rotation = _rotation(model, described)
     spinning = np.array([_spin(system, name) for name in described.rolling], dtype=int)
-    motion = SteadyMotion(velocity, rotation, about, spinning, np.zeros(len(spinning)))
+    found = described.speed == "found" and bool(np.any(velocity))
+    motion = SteadyMotion(velocity, rotation, about, spinning, np.zeros(len(spinning)), found)
     state.q[:] = start.q
     spins = start.u[spinning] - motion.carried(dynamics)[spinning]
     return replace(motion, spins=spins)
