@@ -32,7 +32,7 @@ STEADY, ALLOWED = 1e-6, 1e-8
 def settled_in_motion(
     model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described
 ) -> Settled:
-    """An equilibrium in steady motion.
+    """An equilibrium in steady motion, and whether it is stable.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def settled_in_motion(
     dynamics : Dynamics
         Of the model.
     start : InitialValues
-        The pose from which it is sought, and the spins of bodies that no rolling constraint tells.
+        The pose from which it is sought, and the spins of bodies that neither rolling constraints nor forces tell.
     t : float
         s.
     described : SteadyMotion
@@ -52,6 +52,22 @@ def settled_in_motion(
     SolverError
         Where none is found, a joint does not let the mechanism move so, or forces do not stay as they are.
     """
+    found = _found(model, dynamics, start, t, described)
+    values = _eigenvalues(dynamics, t, found)
+    notes = (_stability(values, dynamics.system.n_u),)
+    eigenvalues = () if values is None else tuple(values.tolist())
+    return Settled(_moving(start, found, notes), found.moves, found.imbalance, (), notes, eigenvalues)
+
+
+def start_in_motion(
+    model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described
+) -> InitialValues:
+    """The start of a run in steady motion, whether that is stable or not; parameters and errors as for `settled_in_motion`."""
+    found = _found(model, dynamics, start, t, described)
+    return _moving(start, found, ("whether the steady motion that the run starts in is stable was not looked at",))
+
+
+def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described) -> Equilibrium:
     motion = _motion(model, dynamics, start, described)
     dynamics.state.q[:] = start.q
     if len(motion.spinning):
@@ -62,23 +78,23 @@ def settled_in_motion(
     except SolverError:
         dynamics.state.q[:] = start.q
         found = nearest_equilibrium(dynamics, t, motion)
-    motion = found.motion
     _refuse_joints(dynamics, t)
-    _refuse_unsteady(dynamics, t, motion)
-    values = _eigenvalues(dynamics, t, motion, found)
-    notes = (_stability(values, dynamics.system.n_u),)
-    moving = replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
-    return Settled(moving, found.moves, found.imbalance, (), notes, () if values is None else tuple(values.tolist()))
+    _refuse_unsteady(dynamics, t, found.motion)
+    return found
 
 
-def _eigenvalues(dynamics: Dynamics, t: float, motion: SteadyMotion, found: Equilibrium) -> np.ndarray | None:
+def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) -> InitialValues:
+    return replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
+
+
+def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray | None:
     """Those of motions beside the steady one; None where they cannot be told."""
     if dynamics.system.n_u > MOST_FOR_STABILITY:
         return None
     state = dynamics.state
     state.q[:], state.u[:] = found.q, found.u
     dynamics.accelerate(t)
-    return eigenvalues_beside(dynamics, t, motion, found.acceleration)
+    return eigenvalues_beside(dynamics, t, found.motion, found.acceleration)
 
 
 def _stability(values: np.ndarray | None, n_u: int) -> str:

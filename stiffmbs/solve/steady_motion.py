@@ -155,6 +155,8 @@ class SteadyMotion:
         """
         system, u = dynamics.system, dynamics.state.u
         turning, by_move = _matrix(self.rotation), self.by_move(dynamics)
+        if not np.any(self.rotation) and (np.all(system.holonomic) or not len(self.spinning)):
+            return by_move, by_move
         if system.of_body.linear == 2:
             return by_move, csc_array(by_move @ by_move)
         own, whole = self._own(dynamics), u.reshape(-1, 6)[:, 3:]
@@ -173,6 +175,8 @@ class SteadyMotion:
     def by_move(self, dynamics: Dynamics) -> csc_array:
         """W x for displacements in ground axes and rotations in each body's own: derivatives of the velocities by moves without
         those of spins, and of the accelerations by velocities; shape (n_u, n_u)."""
+        if not np.any(self.rotation):
+            return csc_array((dynamics.system.n_u,) * 2)
         turning, own = _matrix(self.rotation), self._own(dynamics)
         if dynamics.system.of_body.linear == 2:
             return csc_array(block_diag([block_diag([turning, np.zeros((1, 1))])] * len(own)))
