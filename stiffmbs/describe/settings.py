@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 from .fields import Described, Measured
@@ -113,6 +113,15 @@ class RunSettings(Described):
     if TYPE_CHECKING:
 
         def __init__(self, **fields: Unpack[Settings]) -> None: ...
+
+    @field_validator("solver", mode="before")
+    @classmethod
+    def _no_scheme(cls, solver: Any) -> Any:
+        if solver in get_args(SchemeName):
+            raise ValueError(
+                f"found '{solver}', which is a scheme of the solver 'projected'; expected solver: projected, scheme: {solver}"
+            )
+        return solver
 
     @model_validator(mode="after")
     def _one_grid(self) -> RunSettings:
