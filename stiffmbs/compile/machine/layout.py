@@ -309,9 +309,9 @@ which the test must let them grow else."""
 
 
 EVENT_SEARCH = Layout({
-    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
+    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
-    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
+    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 })  # fmt: skip
