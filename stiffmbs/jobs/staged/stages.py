@@ -7,19 +7,19 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from ..describe.files.stages import OWN_SETTINGS, Stage
-from ..describe.scene import Scene, notes_of
-from ..describe.settings import RunSettings
-from ..errors import InputError, StiffmbsError
-from ..results.joined import joined
-from ..results.saved_state import SavedState
-from ..results.solution import Solution
-from ..solve.settings import changed, output_grid
-from ..solve.trajectory import ProgressCallback
-from .equilibrium import equilibrium
-from .given_inputs import Given
-from .run import run
-from .start_from import StartFrom, state_to_start_from
+from ...describe.files.stages import OWN_SETTINGS, Stage
+from ...describe.scene import Scene, notes_of
+from ...describe.settings import RunSettings
+from ...errors import InputError, StiffmbsError
+from ...results.joined import joined
+from ...results.saved_state import SavedState
+from ...results.solution import Solution
+from ...solve.settings import changed, output_grid
+from ...solve.trajectory import ProgressCallback
+from ..equilibrium import equilibrium
+from ..given_inputs import Given
+from ..run import run
+from ..start_from import StartFrom, state_to_start_from
 from .until import run_until
 
 

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.files.until import Until
-from ..errors import InputError
-from ..results.solution import Solution
+from ...describe.files.until import Until
+from ...errors import InputError
+from ...results.solution import Solution
 
 POINTS, LEVELS = 33, 3
 """Points in a step that is looked at again, and how often: the last ones are 1/32768 of it apart."""
