@@ -11,12 +11,13 @@ from dataclasses import dataclass, field, fields
 from .functions.adams_functions import ADAMS_FUNCTIONS
 from .functions.angles import ANGLES_OF_AXES
 from .functions.expression import ExpressionError, parse
+from .functions.inputs import PLANTS
 from .functions.reactions import REACTIONS
+from .functions.splines import CURVES
 from .functions.translate import (
     ANGLES,
     ANGULAR_VELOCITIES,
     COUPLED,
-    CURVES,
     PLAIN,
     POSITIONS,
     VELOCITIES,
@@ -29,7 +30,7 @@ from .statements.units import Units
 
 ANYWHERE = {
     *POSITIONS, *ANGLES, *VELOCITIES, *ANGULAR_VELOCITIES, *PLAIN, *ADAMS_FUNCTIONS, *CURVES, *ANGLES_OF_AXES, *REACTIONS,
-    "INTERP", "ARYVAL", "VARVAL", "DIF", "DIF1", "INCANG",
+    "INTERP", "ARYVAL", *PLANTS, "VARVAL", "DIF", "DIF1", "INCANG",
 }  # fmt: skip
 IN_REQUESTS = {*ANYWHERE, *COUPLED, *ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ROUNDING_FUNCTIONS, "ORIENT"}
 REPORTED = ("REQUEST", "VARIABLE", "SENSOR")

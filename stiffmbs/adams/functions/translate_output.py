@@ -11,8 +11,9 @@ from ..statements.constraints import GeneralConstraint, Numbered
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
+from .identifier import identifier
 from .reactions import COMPONENTS, component_of
-from .translate import Translation, identifier
+from .translate import Translation
 from .trees import call, measured, name_of, number, over, power, times, total
 
 ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")

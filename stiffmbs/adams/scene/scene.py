@@ -64,6 +64,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
         "gravity": vector(dataset.gravity),
+        "inputs": translation.inputs,
         "variables": mechanism.variables,
         "markers": {},
         "bodies": {},

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from . import bodies, constraints, contact, elastic, forces, friction, outputs, sensor, systems
+from . import bodies, constraints, contact, elastic, forces, friction, outputs, plant, sensor, systems
 from .text import Statement
 from .units import Units
 
@@ -35,6 +35,7 @@ READERS: dict[str, Reader] = {
     "CONTACT": contact.read_contact,
     "FRICTION": friction.read_friction,
     "SENSOR": sensor.read_sensor,
+    **{name: partial(plant.read_plant, keyword=name) for name in ("PINPUT", "POUTPUT")},
     "DIFF": systems.read_differential,
     "LSE": systems.read_linear_system,
     "TFSISO": systems.read_transfer_function,
@@ -58,8 +59,6 @@ LEFT_OUT = {
     "KINEMATICS": "analysis settings",
     "LSOLVER": "analysis settings",
     "PREFERENCES": "analysis settings",
-    "PINPUT": "analysis settings",
-    "POUTPUT": "analysis settings",
     "PSTATE": "analysis settings",
     "STRING": "data that nothing here uses",
     "CURVE": "data that nothing here uses",
