@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from .curves import WITHOUT_EFFECT as CURVE_STARTS
 from .sensor import WITHOUT_EFFECT
 
 _NO_STATICS = "in statics states find their own equilibrium"
@@ -19,6 +20,8 @@ LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
         "MAX_STICTION_DEFORMATION": "the joint creeps below STICTION_TRANSITION_VELOCITY",
         "INACTIVE": "friction is zero in statics",
     },
+    "CURVE": {"MINPAR": "of a subroutine", "MAXPAR": "of a subroutine"},
+    "PTCV": dict.fromkeys(CURVE_STARTS, "parts start where they are drawn"),
     "SENSOR": dict.fromkeys(WITHOUT_EFFECT, "no effect on the motion"),
     "DIFF": {"STATIC_HOLD": _NO_STATICS},
     "LSE": {"STATIC_HOLD": _NO_STATICS},
