@@ -20,8 +20,9 @@ from .adams_functions import ADAMS_FUNCTIONS
 from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED
 from .function import Function
+from .reactions import BY_ITS_PLACE, REACTIONS, component_of, reaction
 from .states import depending_on_themselves, differential, rate_name, value_name, value_of_system
-from .trees import measured, name_of, over, power, product, times, total
+from .trees import measured, name_of, number, over, power, product, times, total
 
 POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
 VELOCITIES, ANGULAR_VELOCITIES = ("VX", "VY", "VZ", "VM", "VR"), ("WX", "WY", "WZ", "WM")
@@ -41,6 +42,11 @@ CURVES: dict[str, dict[str, Any]] = {
     "LINE": {"lines": True},
 }
 """Functions of splines, and how the scene's table goes through the points."""
+COUPLED = (
+    "MOTION", "GCON", "COUPLER", "GEAR", "SFORCE", "VFORCE", "VTORQ", "VTORQUE", "GFORCE", "SPDP", "BUSH", "BEAM", "FIELD",
+    "FX", "FY", "FZ", "FM", "TX", "TY", "TZ", "TM",
+)  # fmt: skip
+"""Functions of forces that requests alone may use."""
 NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 
 
@@ -141,6 +147,13 @@ class Translation:
             return name_of(rate_name(equation)) if equation.implicit else translate(equation.function.tree)
         if name in ANGLES_OF_AXES:
             return self._angle(name, arguments, function)
+        if name in REACTIONS:
+            return self._reaction(name, arguments, function)
+        if name in COUPLED:
+            raise function.fault(
+                f"found {name} in '{quoted(function.text)}', a force that hangs on others at the same instant, expected it in a "
+                "REQUEST, or JOINT or JPRIM"
+            )
         if name == "INCANG":
             ends = [self.reference(identifier(arguments, k, function), function) for k in range(3)]
             return included_angle(*ends)
@@ -205,6 +218,21 @@ class Translation:
             raise function.fault(f"found {len(idents)} markers of {name}, expected 1 or 2")
         places = [self.mechanism.place(ident, function) if ident else on_ground() for ident in (*idents, 0)[:2]]
         return angle(name, self.mechanism, *places)
+
+    def _reaction(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
+        """JOINT(id, jflag, comp, rm) of a joint between two markers."""
+        ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
+        if (name, ident) in self.mechanism.dataset.inactive:
+            return number(0.0)
+        joint = self.mechanism.dataset.statements.get(name, {}).get(ident)
+        if joint is None:
+            raise function.fault(f"found {name}({ident}, ...), expected the number of a {name}")
+        if joint.kind in BY_ITS_PLACE:
+            raise function.fault(f"found the reaction of {joint.label}, {joint.kind}, expected it in a REQUEST alone")
+        which = component_of(name, component, function)
+        frame = self.mechanism.place(axes, function, "RM") if axes else None
+        force = reaction(joint, which, bool(on_j), frame, self.mechanism)
+        return over(force, self.units.of(force=1, length=1 if which[0] == "T" else 0))
 
     def curve(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]

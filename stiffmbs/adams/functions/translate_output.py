@@ -11,13 +11,12 @@ from ..statements.constraints import GeneralConstraint, Numbered
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
+from .reactions import COMPONENTS, component_of
 from .translate import Translation, identifier
 from .trees import call, measured, name_of, number, over, power, times, total
 
 ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")
 ANGLES = ("PSI", "THETA", "PHI")
-FORCES = ("FM", "FX", "FY", "FZ", "TM", "TX", "TY", "TZ")
-"""In the order of the components that functions such as JOINT number from 1."""
 ELEMENTS = {
     **{name: name for name in (
         "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR",
@@ -51,7 +50,7 @@ class OutputTranslation(Translation):
             return self._orientation(arguments, function)
         if name in ELEMENTS:
             return self._of_element(name, arguments, function)
-        if name in FORCES:
+        if name in COMPONENTS:
             i, j, axes = (*(identifier(arguments, k, function) for k in range(len(arguments))), 0, 0)[:3]
             return over(self.between(name, i, j, axes, function), self._force_unit(name))
         if name in ROUNDING_FUNCTIONS:
@@ -89,14 +88,12 @@ class OutputTranslation(Translation):
             return number(0.0)
         if found is None:
             raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
-        if not 1 <= component <= len(FORCES):
-            raise function.fault(f"found the component {component} of {name}, expected 1 to {len(FORCES)}")
+        which = component_of(name, component, function)
         if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
             raise function.fault(f"found the force of {found.label} on its marker J, which it does not have")
         if on_j and isinstance(found, SingleForce) and found.action_only:
             return number(0.0)
-        name = FORCES[component - 1]
-        return over(self._component(name, [(found, bool(on_j))], axes, function), self._force_unit(name))
+        return over(self._component(which, [(found, bool(on_j))], axes, function), self._force_unit(which))
 
     def _force_unit(self, component: str) -> float:
         return self.units.of(force=1, length=1 if component[0] == "T" else 0)

@@ -7,7 +7,8 @@ import re
 from typing import Any
 
 from ..functions.function import Function
-from ..functions.translate_output import FORCES, OutputTranslation
+from ..functions.reactions import COMPONENTS
+from ..functions.translate_output import OutputTranslation
 from ..functions.trees import measured
 from ..statements.fault import DatasetFault
 from ..statements.outputs import Request
@@ -73,7 +74,7 @@ class Requests:
     def _force(self, request: Request) -> dict[str, str]:
         function = Function("FORCE", ast.Constant(0), request.line, request.label)
         found = {}
-        for name in FORCES:
+        for name in COMPONENTS:
             try:
                 tree = self._translation.between(name, request.i or 0, request.j or 0, request.axes or 0, function)
             except DatasetFault as fault:

@@ -16,6 +16,8 @@ from .bodies import bodies, ground_markers
 from .bodies import notes as body_notes
 from .contacts import contacts
 from .forces import Forces
+from .friction import frictions
+from .friction import notes as friction_notes
 from .gears import gears
 from .initial_conditions import at_start, set_in_motion
 from .initial_conditions import notes as start_notes
@@ -50,6 +52,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         ("states", partial(states, translation)),
         ("forces", Forces(mechanism, translation).all),
         ("forces", partial(contacts, mechanism, translation)),
+        ("forces", partial(frictions, mechanism, translation)),
     ]
     made = of_each(enumerate(makers), lambda numbered: {str(numbered[0]): numbered[1][1]()})
     sections: dict[str, dict[str, Any]] = {"joints": {}, "states": {}, "forces": {}}
@@ -71,6 +74,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             *mechanism.notes(),
             *body_notes(mechanism),
             *rack_notes(mechanism),
+            *friction_notes(mechanism),
             *start_notes(dataset),
             *requests.notes,
         ],

@@ -15,6 +15,7 @@ from .contact import Contact
 from .elastic import Beam, Elastic, SpringDamper
 from .fault import DatasetFault, raise_all
 from .forces import SingleForce, VectorForce, read_gravity
+from .friction import JointFriction
 from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
 from .outputs import Array, Request, Spline, Variable
 from .text import Statement, statements, untitled
@@ -100,6 +101,10 @@ class Dataset:
     @property
     def contacts(self) -> Mapping[int, Contact]:
         return self.statements.get("CONTACT", {})
+
+    @property
+    def frictions(self) -> Mapping[int, JointFriction]:
+        return self.statements.get("FRICTION", {})
 
     @property
     def requests(self) -> Mapping[int, Request]:

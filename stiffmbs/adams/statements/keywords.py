@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from . import bodies, constraints, contact, elastic, forces, outputs, systems
+from . import bodies, constraints, contact, elastic, forces, friction, outputs, systems
 from .text import Statement
 from .units import Units
 
@@ -33,6 +33,7 @@ READERS: dict[str, Reader] = {
     "SPLINE": outputs.read_spline,
     "ARRAY": outputs.read_array,
     "CONTACT": contact.read_contact,
+    "FRICTION": friction.read_friction,
     "DIFF": systems.read_differential,
     "LSE": systems.read_linear_system,
     "TFSISO": systems.read_transfer_function,
@@ -86,7 +87,6 @@ REFUSED = {
     "CVSF": CURVED,
     "SFSF": CURVED,
     "CLEARANCE": "distances between surfaces are not computed",
-    "FRICTION": "Adams' friction with stiction has no counterpart; joint_friction of a scene is smooth",
     "NFORCE": "fields between more than two markers are not read",
     "UCON": ROUTINE,
     "GSE": ROUTINE,

@@ -104,6 +104,7 @@ PAIRED_COLUMNS = Layout({
 
 BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
+    "compile_pivots": INT_CELL, "setup_pivots": INT_CELL, "solve_pivots": INT_CELL,
     "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
@@ -112,7 +113,8 @@ BLOCK_LU = Layout({
     "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
 """The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
-of columns in pairs that takes over where those cannot be trusted.  `ready` says whether the counts are of this run: whether the factors at
+of columns in pairs that takes over where those cannot be trusted, `compile_pivots` that of the C function that puts the addresses of
+its routines into the next two cells.  `ready` says whether the counts are of this run: whether the factors at
 hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, and trials that were failed."""
 
 DYNAMICS = Layout({
@@ -293,9 +295,9 @@ which the test must let them grow else."""
 
 
 EVENT_SEARCH = Layout({
-    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
+    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
-    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
+    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 })  # fmt: skip
