@@ -72,6 +72,8 @@ class NativeIda:
     n_event_functions : int
         Switches of the system; `advance` returns where one of them changes its sign.
     matrix : Matrix
+    connection : Connection
+        To IDA, for compiled code.
 
     Raises
     ------
@@ -106,7 +108,7 @@ class NativeIda:
         self.matrix = matrix
         session = Session(self.matrix.libraries())
         self._finalizer = weakref.finalize(self, session.close)
-        self._ida = ida = Connection(
+        self.connection = self._ida = ida = Connection(
             equations, state, self.matrix, np.arange(n) if reported is None else reported, session
         )
         self.y, self.yp, self.n_event_functions = ida.y, ida.yp, ida.n_event_functions
