@@ -27,6 +27,8 @@ from .motions import motions
 from .racks import notes as rack_notes
 from .relations import relations
 from .requests import Requests
+from .sensors import conditions
+from .sensors import notes as sensor_notes
 
 RUN = {"duration": 5, "output": 0.01}
 """How a dataset is run, which says nothing about it itself."""
@@ -69,12 +71,14 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "at_start": at_start(mechanism),
         "requests": requests.all(),
         "run": dict(RUN),
+        "stages": [{"until": conditions(dataset)}] if dataset.sensors else [],
         "notes": [
             *dataset.notes,
             *mechanism.notes(),
             *body_notes(mechanism),
             *rack_notes(mechanism),
             *friction_notes(mechanism),
+            *sensor_notes(dataset),
             *start_notes(dataset),
             *requests.notes,
         ],

@@ -18,6 +18,7 @@ from .forces import SingleForce, VectorForce, read_gravity
 from .friction import JointFriction
 from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
 from .outputs import Array, Request, Spline, Variable
+from .sensor import Sensor
 from .text import Statement, statements, untitled
 from .units import Units, read_units
 
@@ -109,6 +110,11 @@ class Dataset:
     @property
     def requests(self) -> Mapping[int, Request]:
         return self.statements.get("REQUEST", {})
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Those that end a simulation."""
+        return tuple(sensor for sensor in self._all(Sensor) if sensor.then)
 
     @property
     def variables(self) -> Mapping[int, Variable]:

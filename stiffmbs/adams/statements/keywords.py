@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from . import bodies, constraints, contact, elastic, forces, friction, outputs, systems
+from . import bodies, constraints, contact, elastic, forces, friction, outputs, sensor, systems
 from .text import Statement
 from .units import Units
 
@@ -34,6 +34,7 @@ READERS: dict[str, Reader] = {
     "ARRAY": outputs.read_array,
     "CONTACT": contact.read_contact,
     "FRICTION": friction.read_friction,
+    "SENSOR": sensor.read_sensor,
     "DIFF": systems.read_differential,
     "LSE": systems.read_linear_system,
     "TFSISO": systems.read_transfer_function,
@@ -72,7 +73,6 @@ FLEXIBLE, ROUTINE, CURVED = (
     "curves and surfaces in space are not read",
 )
 REFUSED = {
-    "SENSOR": "it ends or changes a run, which is not followed here",
     "FLEX_BODY": FLEXIBLE,
     "FE_PART": FLEXIBLE,
     "FE_NODE": FLEXIBLE,
