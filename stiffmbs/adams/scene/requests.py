@@ -44,7 +44,10 @@ class Requests:
             components = self._between_markers(request) if request.sort else self._functions(request)
             if components:
                 found[request.name] = components
+        inputs = self._translation.inputs
         for variable in self._mechanism.dataset.variables.values():
+            if variable.name in inputs:
+                continue
             formula = self._formula(variable.function, variable.label)
             if formula is not None:
                 found[variable.name] = formula

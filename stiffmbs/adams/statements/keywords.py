@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from . import bodies, constraints, contact, elastic, forces, friction, outputs, sensor, systems
+from . import bodies, constraints, contact, curves, elastic, forces, friction, outputs, plant, sensor, systems
 from .text import Statement
 from .units import Units
 
@@ -35,6 +35,9 @@ READERS: dict[str, Reader] = {
     "CONTACT": contact.read_contact,
     "FRICTION": friction.read_friction,
     "SENSOR": sensor.read_sensor,
+    **{name: partial(plant.read_plant, keyword=name) for name in ("PINPUT", "POUTPUT")},
+    "CURVE": curves.read_curve,
+    "PTCV": curves.read_point_on_curve,
     "DIFF": systems.read_differential,
     "LSE": systems.read_linear_system,
     "TFSISO": systems.read_transfer_function,
@@ -58,11 +61,8 @@ LEFT_OUT = {
     "KINEMATICS": "analysis settings",
     "LSOLVER": "analysis settings",
     "PREFERENCES": "analysis settings",
-    "PINPUT": "analysis settings",
-    "POUTPUT": "analysis settings",
     "PSTATE": "analysis settings",
     "STRING": "data that nothing here uses",
-    "CURVE": "data that nothing here uses",
     "SURFACE": "data that nothing here uses",
     "TITLE": "text",
 }
@@ -81,8 +81,7 @@ REFUSED = {
     "MFORCE": FLEXIBLE,
     "MODAL": FLEXIBLE,
     "EXTERNAL_SYSTEM": FLEXIBLE,
-    "PTCV": CURVED,
-    "CVCV": CURVED,
+    "CVCV": "two curves that touch are not followed; a point on a curve is, PTCV",
     "PTSF": CURVED,
     "CVSF": CURVED,
     "SFSF": CURVED,
