@@ -24,7 +24,7 @@ from .step_log import StepLog
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
-LONGEST_CALL, STEP = 0.1, 1e-7
+LONGEST_CALL, STEP_TIME = 0.1, 1e-7
 """Time, s, after which a call returns, for progress and interruption; of a step for each unknown, by a rough measure (a clock
 would make results hang on the machine's mood, as Newton's iteration is eased between calls)."""
 
@@ -114,7 +114,7 @@ class NativeIda:
         self.y, self.yp, self.n_event_functions = ida.y, ida.yp, ida.n_event_functions
         self._statistics = Statistics(session.libraries, ida.memory)
         self._flag, self._begun = 0, False
-        self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
+        self._pace = int(np.clip(LONGEST_CALL / (STEP_TIME * n), 1, MOST_STEPS))
         self._look = self._usual_pace = self._pace
         self._trace = np.empty((0, 2 + 2 * n))
         ida.set_tolerances(rtol, atol)
