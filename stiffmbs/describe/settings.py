@@ -18,7 +18,7 @@ MOST_OUTPUTS = 10_000_000
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Stretches of time that a run must be able to tell apart, and how long each must be, relative to the times themselves."""
 
-MANY = 1e300
+UNCOUNTED = 1e300
 
 
 class Settings(TypedDict, total=False):
@@ -132,7 +132,7 @@ class RunSettings(Described):
         asked = self.duration / self.output if self.output is not None else self.points
         if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
             raise ValueError(
-                f"found {min(asked, MANY):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
+                f"found {min(asked, UNCOUNTED):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
             )
         return self
 

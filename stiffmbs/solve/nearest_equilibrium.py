@@ -11,8 +11,8 @@ from ..compile.system import System
 from ..errors import SolverError
 from .dynamics import Dynamics
 from .equilibrium import (
+    LEAST_SHIFT,
     ROTATION,
-    SLOWEST,
     TRANSLATION,
     Equilibrium,
     as_equilibrium,
@@ -35,7 +35,7 @@ def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> E
     for count in range(MOST_MOVES):
         if known.balanced:
             return as_equilibrium(dynamics, t, known, count)
-        move = newton_move(dynamics, SLOWEST, known, at_start(known))
+        move = newton_move(dynamics, LEAST_SHIFT, known, at_start(known))
         part = 1.0 / max(1.0, float(np.max(np.abs(move[: system.n_u]) / limits)))
         found = _along(dynamics, t, known, part * move) if np.isfinite(part) else None
         if found is None:

@@ -88,7 +88,7 @@ def test_an_interrupted_second_run_leaves_the_first(no_search):
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 @pytest.mark.parametrize("name", ["bouncing_ball", "cam_follower", "elastic_bearing", "half_car", "stick_slip"])
 def test_runs_that_have_seen_everything_are_left_alone(name, how):
-    for rtol in (1e-3, 1e-6, 1e-9):
+    for rtol in (1e-3, 1e-6):
         assert not told(stiffmbs.run(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"), rtol=rtol, **how))
 
 
