@@ -210,7 +210,7 @@ NATIVE_IDA = Layout({
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
     "long_steps": INTS,
-    "trace": INT_CELL, "traced": INT_CELL,
+    "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
@@ -218,7 +218,7 @@ of SUNDIALS by their addresses, the values of the matrix, how its pattern is wri
 Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
 last step, size of the one that it will try next; output points served, tiny steps in succession, whether the last event
 was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
-of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call."""
+of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call; the time for which the state holds the values of event functions."""
 MOST_STEPS, HISTORY_WIDTH = 2048, 3
 """Steps of any one call, and rows of the history: time of the end, order, size."""
 SAMPLES = 16
@@ -296,6 +296,7 @@ EVENT_SEARCH = Layout({
     "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
+    "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 })  # fmt: skip
