@@ -26,7 +26,7 @@ from stiffmbs.solve.native.paired_columns import solve as solve_with_pivots
 from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK
 
 LU = list(BLOCK_LU).index("lu")
-LARGEST_RESIDUAL = 1e-9
+LARGEST_RESIDUAL = 1e-7
 """Part of the sizes of a row's terms that a trial may leave.  Fixed orders leave 1e-13 to 1e-15."""
 CHANGED = 2.0
 """Factor by which a pivot differs from that of the last trial when the next is made."""
