@@ -104,7 +104,7 @@ PAIRED_COLUMNS = Layout({
 
 BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
-    "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL,
+    "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL, "refined": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
@@ -113,7 +113,8 @@ BLOCK_LU = Layout({
 })  # fmt: skip
 """The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
 of columns in pairs that takes over where those cannot be trusted.  `ready` says whether the counts are of this run: whether the factors at
-hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, and trials that were failed."""
+hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, trials that were failed, and
+whether solutions are refined."""
 
 DYNAMICS = Layout({
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
