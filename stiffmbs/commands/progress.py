@@ -10,8 +10,8 @@ from typing import Any
 from .terminal.listener import Listener
 from .terminal.logging_options import is_quiet
 
-PATIENCE = 2.0
-BETWEEN_UPDATES = 0.1
+SHOWN_AFTER, BETWEEN_UPDATES = 2.0, 0.1
+"""Seconds after which progress is shown, and from one time that it is written to the next."""
 
 
 class ProgressBar:
@@ -38,7 +38,7 @@ class ProgressBar:
         if not self._seen:
             return
         now = time.monotonic()
-        if now - self._begun < PATIENCE or now - self._shown < BETWEEN_UPDATES:
+        if now - self._begun < SHOWN_AFTER or now - self._shown < BETWEEN_UPDATES:
             return
         self._shown = now
         reached = f"t = {t:.4g} s" + (self._listener.step if self._listener else "")
@@ -46,7 +46,7 @@ class ProgressBar:
 
     def _tell_stage(self, stage: str, slow: bool) -> None:
         """Show what is done before and between steps: at once where it takes long, as deriving and compiling do."""
-        if slow or self._bar is not None or time.monotonic() - self._begun > PATIENCE:
+        if slow or self._bar is not None or time.monotonic() - self._begun > SHOWN_AFTER:
             self._show(description=stage)
 
     def _show(self, **changed: Any) -> None:

@@ -12,13 +12,11 @@ import click
 
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
+from .progress import SHOWN_AFTER
 from .scene import STOPPED_EARLY, changes_of, in_file, refuse, refuse_own_input, solving_options
 
 if TYPE_CHECKING:
     import xarray
-
-PATIENCE = 2.0
-"""Seconds after which progress is shown."""
 
 
 @click.command(short_help="Solve a scene for many values of its parameters.")
@@ -114,7 +112,7 @@ class _Bar:
 
     def __call__(self, done: int, total: int, left: float) -> None:
         if self._bar is None:
-            if not sys.stderr.isatty() or left < PATIENCE:
+            if not sys.stderr.isatty() or left < SHOWN_AFTER:
                 return
             from rich.console import Console
             from rich.progress import Progress

@@ -11,7 +11,7 @@ from ..bench.benchmark import Row as Measured
 from ..bench.decades import at_errors
 from .row import Row
 
-LEAST = 1e-9
+CLOCK_RESOLUTION = 1e-9
 """Time, s, that a solution takes at the least: clocks may show none."""
 
 
@@ -93,7 +93,7 @@ def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequen
 def _read(rows: Sequence[Row], measure: str, values: Sequence[float], target: float) -> float | None:
     """What one solver needs at an error, of values at each of its rows; None where its errors are all on one side."""
     points = [
-        Measured(row.solver, row.setting, row.errors[measure], max(value, LEAST), False)
+        Measured(row.solver, row.setting, row.errors[measure], max(value, CLOCK_RESOLUTION), False)
         for row, value in zip(rows, values, strict=True)
     ]
     return (

@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..jobs.run import Runnable, data_of
 from .at_error import AtError, decades, times_at
 from .entries import USUAL, Entry
-from .plan import LONGEST, PATIENCE, REPEATS, TOLERANCES, Plan, base_settings, plan_of
+from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, base_settings, plan_of
 from .reference import Reference, Tell, reference
 from .row import Row
 from .sweep import Point, Sweep
@@ -94,7 +94,7 @@ def compare(
     steps: Sequence[float] = (),
     measure: str = "positions",
     repeats: int = REPEATS,
-    longest: float = LONGEST,
+    longest: float = LONGEST_RUN,
     settings: RunSettings | None = None,
     tell: Tell | None = None,
     **changes: Unpack[Settings],
@@ -146,7 +146,7 @@ def compare(
     base = base_settings(data, settings, changes)
     entries = plan.entries(base)
     tell = tell or (lambda line: None)
-    exact = reference(data, base, PATIENCE * plan.longest, tell)
+    exact = reference(data, base, LONGER_REFERENCE * plan.longest, tell)
     refuse_unmeasured(plan, exact)
     sweep = Sweep(data, base, exact, plan.longest, tell)
     swept = (point for entry in entries for point in sweep.points(entry, plan.values(entry, base)))

@@ -18,7 +18,7 @@ from .compare import measured, refuse_unmeasured
 from .comparison_over import AtValue, ComparisonOver
 from .entries import USUAL, Entry
 from .measures import measure_of
-from .plan import LONGEST, PATIENCE, REPEATS, TOLERANCES, Plan, base_settings, plan_of
+from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, base_settings, plan_of
 from .reference import Tell, reference
 from .row import Row
 from .sweep import Sweep
@@ -44,7 +44,7 @@ def compare_over(
     steps: Sequence[float] = (),
     measure: str = "positions",
     repeats: int = REPEATS,
-    longest: float = LONGEST,
+    longest: float = LONGEST_RUN,
     settings: RunSettings | None = None,
     tell: Tell | None = None,
     **changes: Unpack[Settings],
@@ -89,7 +89,7 @@ def compare_over(
         name, entries = data.name, plan.entries(base)
         report = _prefixed(f"{parameter} = {value:.4g}", tell)
         try:
-            exact = reference(data, base, PATIENCE * plan.longest, report)
+            exact = reference(data, base, LONGER_REFERENCE * plan.longest, report)
             refuse_unmeasured(plan, exact)
             sweep = Sweep(data, base, exact, plan.longest, report)
             one, interrupted = _at_value(value, sweep, plan, entries, at_error, report)

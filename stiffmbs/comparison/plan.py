@@ -22,9 +22,9 @@ TOLERANCES = tuple(float(f"{10.0**k:.2g}") for k in np.arange(-3, -8.01, -1 / PE
 STEPS = tuple(10.0**k for k in np.arange(-2, -5.1, -1 / PER_DECADE))
 """Steps of the schemes with fixed steps, in parts of the duration."""
 REPEATS = 9
-LONGEST = 20.0
+LONGEST_RUN = 20.0
 """Time, s, after which a run is given up."""
-PATIENCE = 10.0
+LONGER_REFERENCE = 10.0
 """So many times as long may each run of the reference take."""
 OF_SOLVERS = ("solver", "scheme", "formulation", "rtol", "step")
 """Settings that a comparison chooses itself."""

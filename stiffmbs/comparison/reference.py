@@ -22,11 +22,11 @@ from .measures import MEASURES, ROTATION, compared, difference, largest
 
 TIGHT, TIGHTER, LOOSER = 1e-12, 1e-13, 1e-11
 """Relative tolerances: the first is tried first, the next where the two disagree, the last where one does not end."""
-WELL, AGREED = 1e-6, 1e-5
+NEAR_ENOUGH, AGREED = 1e-6, 1e-5
 """Parts of a channel's motion: two runs that differ by less need no tighter ones; by more they have no reference."""
 FORCES_AGREED = 1e-2
 """Part of a force's size by which it may differ: of stiff springs it magnifies what positions differ by."""
-STILL = 1e-4
+NO_MOTION = 1e-4
 """Motions smaller than this, in sizes of the mechanism and rad, need not agree to a part of themselves."""
 RESOLVED = 3.0
 """Errors are measured down to so many times what the two integrators differ by."""
@@ -145,7 +145,7 @@ def reference(model: ModelData, settings: RunSettings, allowed: float, tell: Tel
             continue
         if best is None or found.part("positions") < best.part("positions"):
             best = found
-        if best.part("positions") <= WELL:
+        if best.part("positions") <= NEAR_ENOUGH:
             break
     if best is None:
         raise SolverError(unended)
@@ -177,7 +177,7 @@ def _pair(model: ModelData, settings: RunSettings, rtol: float, allowed: float, 
 
 def _sizes(solution: Solution, size: float) -> dict[str, float]:
     """Scales of channels; of places no less than what rounding of a mechanism at rest is small beside."""
-    least = {"position": STILL * size, "angle": STILL}
+    least = {"position": NO_MOTION * size, "angle": NO_MOTION}
     found = scales(solution.channels, size, solution.requested)
     return {name: max(scale, least.get(kind_of(name), 0.0)) for name, scale in found.items()}
 

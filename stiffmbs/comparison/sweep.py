@@ -23,7 +23,7 @@ from .entries import Entry
 from .reference import Reference, Tell
 from .row import Row
 
-ENOUGH = 2
+ENOUGH_SETTINGS = 2
 """So many settings in succession that are far more accurate than asked for end a sweep."""
 WARM_UP = 1e-3
 """Part of the duration that is solved before a run is timed, so that all is compiled and set up."""
@@ -91,7 +91,7 @@ class Sweep:
             yield point
             if target is not None and not point.message:
                 beyond = beyond + 1 if point.errors[target[0]] < target[1] / WINDOW else 0
-            if given_up or beyond == ENOUGH:
+            if given_up or beyond == ENOUGH_SETTINGS:
                 return
 
     def _first(self, job: Job, entry: Entry, setting: str) -> tuple[Point, bool]:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 _PROTOTYPE = ctypes.CFUNCTYPE(
     ctypes.c_double, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p
 )
-DIFFERENCE, LEAST = 6e-6, 1e-3
-"""Step of central differences, relative to an argument (the cube root of the rounding error), which counts as `LEAST` at least."""
+DIFFERENCE, LEAST_ARGUMENT = 6e-6, 1e-3
+"""Step of central differences, relative to an argument (the cube root of the rounding error), which counts as `LEAST_ARGUMENT` at least."""
 COMPLEX_STEP = 1e-30
 
 
@@ -87,7 +87,7 @@ class Callback:
             moved[k] += 1j * COMPLEX_STEP
             return self._value(moved, count).imag / COMPLEX_STEP
         above, below = x.copy(), x.copy()
-        step = DIFFERENCE * max(abs(x[k]), LEAST)
+        step = DIFFERENCE * max(abs(x[k]), LEAST_ARGUMENT)
         above[k], below[k] = x[k] + step, x[k] - step
         return (self._value(above, count) - self._value(below, count)) / (above[k] - below[k])
 

@@ -3,16 +3,20 @@
 A bump of 0.1 m in a table over distance, or a Gaussian of it, may lie between the ends of a step.  The edges here part the
 argument of each law into zones such that within a zone nothing is overlooked: a cubic describes the table, tanh has
 saturated, exp has vanished.  Solvers see to it that no step passes a whole zone (`stiffmbs.solve.native.event_search.within_step`).
+A law goes on beyond an edge as it was before it for a while, and a step that goes no further has overlooked nothing: a damper
+that swings by a millimetre a second over a knot of its table does not change its law.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from .system import System
+from .table_values import ends_of, value_of
 
 
 def _on_both_sides(*edges: float) -> np.ndarray:
@@ -32,47 +36,76 @@ DESCRIBED = 1e-3
 """Part of the range of a table's values up to which one cubic describes pieces of it that then are one zone."""
 WITHIN = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Places within a piece at which that is looked at."""
+SMOOTH = 1e-3
+"""Part of the narrower zone beside an edge of a function over which the function is straight."""
+DEPARTED, NOTHING = 1e-3, 1e-9
+"""Departure of a table from its tangent at an edge up to which it goes on as before the edge: part of its change from there, and
+of the range of its values in both zones."""
+BARELY = 2.0**-20
+"""Part of a zone over which a table goes on in any case: less is rounding of its argument."""
+NEARER = 2.0 ** -np.arange(21)
+"""Parts of a zone at which that is looked at."""
 
 
-def edges_of(system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The edges of all event functions, in the order of the values of the set ``event_function``.
+@dataclass(frozen=True)
+class Zones:
+    """Zones of all event functions, in the order of the values of the set ``event_function``.
 
-    Returns
-    -------
+    Attributes
+    ----------
     first : ndarray of int, shape (n + 1,)
         Where the edges of each function begin among all.
     edges : ndarray
         Increasing for each function; of an event function zero alone.
+    overlap : ndarray
+        How far the law goes on beyond each edge, to both sides, as it was before the edge; zero for an event function.
     period : ndarray, shape (n,)
         Of a law that repeats; 0 for others.
     """
-    found = [(np.zeros(1), 0.0)] * system.n_event_functions + list(_of_arguments(system))
-    counts = [len(edges) for edges, _ in found]
-    first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-    return (
-        first,
-        np.concatenate([np.empty(0), *(edges for edges, _ in found)]),
-        np.array([period for _, period in found]),
+
+    first: np.ndarray
+    edges: np.ndarray
+    overlap: np.ndarray
+    period: np.ndarray
+
+
+def zones_of(system: System) -> Zones:
+    """The zones of all event functions of a system."""
+    of_event_function = np.zeros(1), np.zeros(1), 0.0
+    found = [of_event_function] * system.n_event_functions + list(_of_arguments(system))
+    counts = [len(edges) for edges, _, _ in found]
+    return Zones(
+        np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        np.concatenate([np.empty(0), *(edges for edges, _, _ in found)]),
+        np.concatenate([np.empty(0), *(overlap for _, overlap, _ in found)]),
+        np.array([period for _, _, period in found]),
     )
 
 
-def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, float]]:
-    """Edges and period for each argument: kind after kind, element after element."""
+def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+    """Edges, overlaps and period for each argument: kind after kind, element after element."""
     for group in system.groups:
         own = group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ()
         for start in own:
             for name, number in group.record.laws:
                 if name != "table":
-                    yield FIXED[name], 0.0
+                    yield FIXED[name], SMOOTH * _narrower(FIXED[name]), 0.0
                     continue
                 at = int(start + group.numbers[start + number])
                 count = int(group.numbers[at])
                 yield _of_table(group.numbers[at : at + 2 + count + 4 * (count - 1)].tobytes())
 
 
+def _narrower(edges: np.ndarray, period: float = 0.0) -> np.ndarray:
+    """The width of the narrower zone beside each edge; beyond the outermost ones zones have no end, or the law repeats."""
+    around = edges[0] + period - edges[-1] if period else np.inf
+    widths = np.concatenate([[around], np.diff(edges), [around]])
+    return np.minimum(widths[:-1], widths[1:])
+
+
 @lru_cache(maxsize=256)
-def _of_table(data: bytes) -> tuple[np.ndarray, float]:
-    """The edges of a table (`stiffmbs.compile.table_values.spline_data`), and its period."""
+def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
+    """The edges of a table (`stiffmbs.compile.table_values.spline_data`), their overlaps, and its period."""
     numbers = np.frombuffer(data)
     count = int(numbers[0])
     knots, pieces = numbers[2 : 2 + count], numbers[2 + count :].reshape(-1, 4)
@@ -82,9 +115,23 @@ def _of_table(data: bytes) -> tuple[np.ndarray, float]:
     y = (((a * z + b) * z + c) * z + d).ravel()
     allowed = DESCRIBED * float(np.ptp(y))
     starts = list(_zones(x, y, 0, count - 1, allowed))
-    periodic = bool(numbers[1])
-    edges = knots[starts] if periodic else knots[[*starts, count - 1]]
-    return edges, float(knots[-1] - knots[0]) if periodic else 0.0
+    period = float(knots[-1] - knots[0]) if numbers[1] else 0.0
+    at = np.array(starts if period else [*starts, count - 1])
+    return knots[at], _overlaps(numbers, at, _narrower(knots[at], period)), period
+
+
+def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.ndarray:
+    """How far from the knots `at` a table keeps, on both sides, to its tangents on the other one."""
+    knots, level, before, behind = (values[..., None] for values in ends_of(numbers))
+    distances = narrower[:, None] * NEARER
+    sides = {side: value_of(numbers, knots[at] + side * distances) - level[at] for side in (1.0, -1.0)}
+    span = np.ptp(np.hstack(list(sides.values())), axis=1)[:, None]
+    keeps = np.ones(distances.shape, dtype=bool)
+    for side, slope in ((1.0, before), (-1.0, behind)):
+        change = sides[side]
+        keeps &= np.abs(change - side * slope[at] * distances) <= DEPARTED * np.abs(change) + NOTHING * span
+    near = np.logical_and.accumulate(keeps[:, ::-1], axis=1).sum(axis=1)
+    return narrower * BARELY * 2.0 ** np.maximum(near - 1, 0)
 
 
 def _zones(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -> Iterator[int]:

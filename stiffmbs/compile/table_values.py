@@ -55,25 +55,42 @@ def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def curve(table: Table) -> Curve:
     """The values of a table, as kernels compute them: outside its points it goes on straight, or repeats."""
-    count, x, pieces = parts_of(table)
+    data = spline_data(table)
+    return lambda arguments: value_of(data, np.asarray(arguments, dtype=float))
 
-    def values(arguments: np.ndarray) -> np.ndarray:
-        """The table at an array of arguments."""
-        at = np.asarray(arguments, dtype=float)
-        if table.ends == "periodic":
-            at = x[0] + np.mod(at - x[0], x[-1] - x[0])
-        inside = np.clip(at, x[0], x[-1])
-        k = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, count - 2)
-        a, b, c, d = np.moveaxis(pieces[k], -1, 0)
-        h = inside - x[k]
-        slope = (3 * a * h + 2 * b) * h + c
-        return ((a * h + b) * h + c) * h + d + slope * (at - inside)
 
-    return values
+def value_of(data: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """The values of a table of `spline_data` at an array of arguments."""
+    x, pieces = _taken_apart(data)
+    if data[1] == PERIODIC:
+        at = x[0] + np.mod(at - x[0], x[-1] - x[0])
+    inside = np.clip(at, x[0], x[-1])
+    k = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
+    a, b, c, d = np.moveaxis(pieces[k], -1, 0)
+    h = inside - x[k]
+    slope = (3 * a * h + 2 * b) * h + c
+    return np.asarray(((a * h + b) * h + c) * h + d + slope * (at - inside))
+
+
+def ends_of(data: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The knots of a table of `spline_data`, its values there, and its slopes before and behind each knot."""
+    x, pieces = _taken_apart(data)
+    h = np.diff(x)
+    a, b, c, _ = pieces.T
+    at_ends = (3 * a * h + 2 * b) * h + c
+    periodic = data[1] == PERIODIC
+    before = np.append(at_ends[-1] if periodic else c[0], at_ends)
+    behind = np.append(c, c[0] if periodic else at_ends[-1])
+    return x, value_of(data, x), before, behind
 
 
 def parts_of(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
     """Number of points, the points, and the coefficients of each piece, highest first."""
-    data = spline_data(table)
+    x, pieces = _taken_apart(spline_data(table))
+    return len(x), x, pieces
+
+
+def _taken_apart(data: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The points, and the coefficients of each piece."""
     count = int(data[0])
-    return count, data[2 : 2 + count], data[2 + count :].reshape(-1, 4)
+    return data[2 : 2 + count], data[2 + count :].reshape(-1, 4)

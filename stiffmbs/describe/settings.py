@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 from .fields import Described, Measured
@@ -18,7 +18,7 @@ MOST_OUTPUTS = 10_000_000
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Stretches of time that a run must be able to tell apart, and how long each must be, relative to the times themselves."""
 
-MANY = 1e300
+UNCOUNTED = 1e300
 
 
 class Settings(TypedDict, total=False):
@@ -114,6 +114,15 @@ class RunSettings(Described):
 
         def __init__(self, **fields: Unpack[Settings]) -> None: ...
 
+    @field_validator("solver", mode="before")
+    @classmethod
+    def _no_scheme(cls, solver: Any) -> Any:
+        if solver in get_args(SchemeName):
+            raise ValueError(
+                f"found '{solver}', which is a scheme of the solver 'projected'; expected solver: projected, scheme: {solver}"
+            )
+        return solver
+
     @model_validator(mode="after")
     def _one_grid(self) -> RunSettings:
         if self.output is not None and self.points is not None:
@@ -123,7 +132,7 @@ class RunSettings(Described):
         asked = self.duration / self.output if self.output is not None else self.points
         if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
             raise ValueError(
-                f"found {min(asked, MANY):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
+                f"found {min(asked, UNCOUNTED):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
             )
         return self
 

@@ -11,9 +11,9 @@ from ..compile.state import LEFT_OPEN
 from ..solve.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 
-SAMPLES, LEAST = 20, 4000
+SAMPLES, LEAST_SAMPLES = 20, 4000
 """Poses to look at between two outputs, the second one included, and at least on the whole way."""
-BESIDE = 10.0
+LEFT_OUT = 10.0
 """Violations of equations left out, relative to the largest of the others at a pose between outputs, that interpolation makes."""
 MOST_ASSEMBLIES = 500
 """Poses between outputs that are brought to the constraints."""
@@ -63,7 +63,7 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Depar
         state.evaluate("position", t)
         values = np.abs(state.values["position"])
         gaps = values[left_out]
-        if not gaps.max() > allowed + BESIDE * values[kept].max(initial=0.0):
+        if not gaps.max() > allowed + LEFT_OUT * values[kept].max(initial=0.0):
             continue
         assemblies += 1
         if dynamics.assemble(t) < 0:
@@ -76,7 +76,7 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Depar
 def _poses(dynamics: Dynamics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
     """The outputs, and poses between them on cubics that have their velocities: the output before, the time, s, and the pose."""
     of_body, bodies = dynamics.system.of_body, dynamics.system.of_body.n_q * len(dynamics.system.bodies)
-    count = max(SAMPLES, LEAST // len(way.t))
+    count = max(SAMPLES, LEAST_SAMPLES // len(way.t))
     parts = np.arange(1, count + 1) / count
     for k in range(len(way.t) - 1):
         h, q = way.t[k + 1] - way.t[k], way.q[k]

@@ -9,7 +9,7 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..solve.dynamics import Dynamics, OutputRows
-from ..solve.events.divergence import BEYOND, LIGHT, exponential, reaches
+from ..solve.events.divergence import SPEED_OF_LIGHT, UNBOUNDED_MOTION, exponential, reaches
 from ..solve.storage import blocks, release
 
 RESOLVED = 1e-6
@@ -44,10 +44,10 @@ def _grown(system: System, rows: OutputRows) -> str:
     if not system.bodies:
         return ""
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
-    limit, resolved = BEYOND * system.size, RESOLVED * system.size / np.finfo(float).eps
+    limit, resolved = UNBOUNDED_MOTION * system.size, RESOLVED * system.size / np.finfo(float).eps
     if (
         _width(rows.q) * np.max(of_places, initial=0.0) <= min(limit, resolved)
-        and _width(rows.u) * np.max(of_rates) <= LIGHT
+        and _width(rows.u) * np.max(of_rates) <= SPEED_OF_LIGHT
     ):
         return ""  # of nearly all runs; not with nan
     far, speed = np.empty(len(rows.t)), np.empty(len(rows.t))
@@ -57,10 +57,10 @@ def _grown(system: System, rows: OutputRows) -> str:
         release(rows.q, rows.u)
     if np.nanmax(far) > limit and exponential(rows.t, np.fmax.accumulate(far)):
         return _growth_sentence(
-            system, rows, far, limit, f"{BEYOND:.0e} times the mechanism's size of {system.size:.3g} m"
+            system, rows, far, limit, f"{UNBOUNDED_MOTION:.0e} times the mechanism's size of {system.size:.3g} m"
         )
-    if np.nanmax(speed) > LIGHT:
-        return _growth_sentence(system, rows, speed, LIGHT, "the speed of light")
+    if np.nanmax(speed) > SPEED_OF_LIGHT:
+        return _growth_sentence(system, rows, speed, SPEED_OF_LIGHT, "the speed of light")
     if np.nanmax(far) > resolved and _connected(system):
         what = f"where rounding takes more than {RESOLVED:.0e} of the mechanism's size of {system.size:.3g} m"
         return _growth_sentence(system, rows, far, resolved, what)
@@ -88,7 +88,7 @@ def _connected(system: System) -> bool:
 
 def _growth_sentence(system: System, rows: OutputRows, values: np.ndarray, limit: float, what: str) -> str:
     first = int(np.argmax(values > limit))
-    unit = "m/s" if limit == LIGHT else "m"
+    unit = "m/s" if limit == SPEED_OF_LIGHT else "m"
     return (
         f"the motion grows beyond sense: at t = {rows.t[first]:.6g} s {_body(system, rows, first)} is past {what}, and comes to "
         f"{np.nanmax(values):.2g} {unit}{_strongest(system, rows, first)}; look for a wrong sign of a stiffness, damping or force"

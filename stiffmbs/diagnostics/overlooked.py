@@ -22,9 +22,9 @@ from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.trajectory import Trajectory
 
-TOLERANCES = 3e5
+OVERLOOKED_TOLERANCES = 3e5
 """Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
-PART = 0.3
+OVERLOOKED_PART = 0.3
 """Part of what the larger of two accelerations, weighted with masses, makes in the time between, by which the change differs."""
 
 
@@ -86,12 +86,14 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     if len(steps) < 2 or not system.has_laws:
         return None
     off, size = _contradictions(rows), rows.acceleration**2 @ system.mass
-    pairs = np.flatnonzero(off**2 @ system.mass > PART**2 * np.fmax(size[1:], size[:-1]))  # few: the rest costs nothing
+    pairs = np.flatnonzero(
+        off**2 @ system.mass > OVERLOOKED_PART**2 * np.fmax(size[1:], size[:-1])
+    )  # few: the rest costs nothing
     pairs = pairs[within_steps(rows.t[pairs], rows.t[pairs + 1], steps)]
     number = np.searchsorted(steps, rows.t[pairs])
     step = steps[number] - steps[number - 1]
     tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u[pairs])
-    over_step = np.abs(off[pairs]) * step[:, None] / (TOLERANCES * tolerance)
+    over_step = np.abs(off[pairs]) * step[:, None] / (OVERLOOKED_TOLERANCES * tolerance)
     found = np.flatnonzero((over_step > 1).any(axis=1))
     if not len(found):
         return None

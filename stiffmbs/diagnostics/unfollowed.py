@@ -9,7 +9,7 @@ import numpy as np
 from ..solve.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 
-PART, LEAST = 1e-2, 1e-3
+UNFOLLOWED_PART, UNFOLLOWED_VELOCITY = 1e-2, 1e-3
 """Violation of a velocity equation, relative to its summands and at least in m/s or rad/s, that no tolerance explains."""
 MOST_OUTPUTS = 200
 """Outputs to look at: a mechanism that has locked does not follow its drive afterwards either."""
@@ -68,6 +68,6 @@ def _worst(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, output: int) -
     gaps, sizes = np.zeros(system.n_c), np.zeros(system.n_c)
     gaps[V.row] = np.abs(values[V.source])
     np.add.at(sizes, J.row, np.abs(values[J.source] * u[J.column]))
-    row = int(rows[np.argmax(gaps[rows] - np.maximum(PART * sizes[rows], LEAST))])
-    wrong = gaps[row] > max(PART * sizes[row], LEAST)
+    row = int(rows[np.argmax(gaps[rows] - np.maximum(UNFOLLOWED_PART * sizes[rows], UNFOLLOWED_VELOCITY))])
+    wrong = gaps[row] > max(UNFOLLOWED_PART * sizes[row], UNFOLLOWED_VELOCITY)
     return Unfollowed(output, row, float(gaps[row])) if wrong else None

@@ -13,12 +13,12 @@ from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.events.long_steps import FROM_MIDDLE, LongSteps, Motion
 from ..solve.settings import near_constraints
-from .overlooked import PART, Overlooked, acting
+from .overlooked import OVERLOOKED_PART, Overlooked, acting
 
-TOLERANCES = 1e4
+CONTRADICTED_TOLERANCES = 1e4
 """Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked.  Measured: up to
 1.2e3 in steps of stick and slip, with the slopes of all forces taken into account."""
-FINE = 20_000
+PARTS_OF_A_RUN = 20_000
 """Parts of a run's time in which Python functions are looked at: nothing else tells where these have features."""
 WORTH_A_NOTE = 0.1
 """Part of both bounds up to which nothing was overlooked, by accelerations at states that are not brought back to the constraints."""
@@ -57,13 +57,13 @@ def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray
     tolerances = settings.rtol, absolute_tolerances(found.dynamics.system, settings)[n_q:]
     ends, states = (found.begin[:count], found.end[:count]), (found.q[:count], found.u[:count])
     return found.dynamics.contradicting(
-        ends, FROM_MIDDLE, states, tolerances, (WORTH_A_NOTE * PART, WORTH_A_NOTE * TOLERANCES)
+        ends, FROM_MIDDLE, states, tolerances, (WORTH_A_NOTE * OVERLOOKED_PART, WORTH_A_NOTE * CONTRADICTED_TOLERANCES)
     )
 
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
     """Steps and parts of them, evenly spread in time: an odd number in each step, so that its middle is among them."""
-    spacing = settings.duration / FINE
+    spacing = settings.duration / PARTS_OF_A_RUN
     counts = 2 * ((found.end - found.begin)[steps] / (2.0 * spacing)).astype(int) + 1
     of_step = np.repeat(steps, counts)
     number = np.arange(len(of_step)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -77,13 +77,13 @@ def _judged(
     steps, rate = steps[:done], motion.rate[:done]
     off = rows.acceleration - rate
     size = np.fmax(rows.acceleration**2 @ system.mass, rate**2 @ system.mass)
-    places = np.flatnonzero(off**2 @ system.mass > PART**2 * size)
+    places = np.flatnonzero(off**2 @ system.mass > OVERLOOKED_PART**2 * size)
     if not len(places):
         return None
     length = (found.end - found.begin)[steps]
     tolerance = absolute_tolerances(system, settings)
     of_velocities = tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[places])
-    over_step = np.abs(off[places]) * length[places, None] / (TOLERANCES * of_velocities)
+    over_step = np.abs(off[places]) * length[places, None] / (CONTRADICTED_TOLERANCES * of_velocities)
     peaks = _peaks(places[(over_step > 1.0).any(axis=1)], steps, size)
     peaks = [k for k in peaks if off[k] ** 2 @ system.mass > _of_errors(found, rows, k, settings) ** 2 @ system.mass]
     if not peaks:

@@ -22,9 +22,9 @@ from .settled import GROWING, Settled
 MOST_FOR_STABILITY = 1500
 """Velocities up to which the stability of a steady motion is looked at (dense matrices)."""
 
-AHEAD = 1e-3
+MOTION_AHEAD = 1e-3
 """How far a motion goes, rad or parts of the mechanism's size, until it is looked at whether forces still balance."""
-STEADY, ALLOWED = 1e-6, 1e-8
+STEADY_IMBALANCE, PRESCRIBED_BESIDE = 1e-6, 1e-8
 """Imbalance there, relative to the largest force; and velocity, relative to the largest, that a joint may prescribe beside the motion's."""
 
 
@@ -141,7 +141,7 @@ def _refuse_joints(dynamics: Dynamics, t: float) -> None:
     state.evaluate("motion", t)
     missed = np.abs(state.vector("motion", "V"))
     worst = int(np.argmax(missed)) if len(missed) else 0
-    if len(missed) and missed[worst] > ALLOWED * max(1.0, np.max(np.abs(state.u), initial=0.0)):
+    if len(missed) and missed[worst] > PRESCRIBED_BESIDE * max(1.0, np.max(np.abs(state.u), initial=0.0)):
         joint, equation = system.equations[worst]
         raise SolverError(
             f"joint '{joint}' (equation {equation}) does not let the mechanism move so: found {missed[worst]:.3g} of "
@@ -155,7 +155,7 @@ def _refuse_unsteady(dynamics: Dynamics, t: float, motion: SteadyMotion) -> None
     rates = np.abs(motion.carried(dynamics)) * system.per_velocity(1 / system.size, 1.0)
     if not np.max(rates, initial=0.0):
         return
-    later = AHEAD / float(np.max(rates))
+    later = MOTION_AHEAD / float(np.max(rates))
     with state.unchanged():
         start = state.q.copy()
         half = system.of_body.moved(start, 0.5 * later * motion.carried(dynamics))
@@ -164,7 +164,7 @@ def _refuse_unsteady(dynamics: Dynamics, t: float, motion: SteadyMotion) -> None
         state.q[:] = system.of_body.moved(start, later * middle)
         dynamics.assemble(t + later)
         known = balance_at(dynamics, t + later, motion)
-        if known.imbalance > STEADY:
+        if known.imbalance > STEADY_IMBALANCE:
             worst = int(np.argmax(np.abs(known.left[: system.n_u])))
             raise SolverError(
                 f"the motion is not steady: forces balance at t = {t:g} s, but {later:.3g} s later "

@@ -16,9 +16,9 @@ STIFFNESS_ROUNDING = 2 * float(np.finfo(float).eps)
 """Part of the sum of all parts of a motion's stiffness that its w^2 may be off by."""
 BESIDE_IMBALANCE = 100.0
 """Times the w^2 that what is left of the forces could make."""
-LEAST = 1e-14
+LEAST_SHIFT = 1e-14
 """The least shift, relative to the largest w^2 that a body could have by itself."""
-MOST_FREE, MOST_RESTARTS, TOLERANCE = 6, 5, 1e-3
+MOST_FREE, MOST_RESTARTS, ACCURACY = 6, 5, 1e-3
 """Of Arnoldi's iteration: motions sought at the last shift, restarts, and relative accuracy."""
 OWN = 0.05
 """Part of a shift that a negative w^2 has at the least where that shift is the one nearest to it."""
@@ -107,7 +107,7 @@ def _near(
     largest = float(np.max(abs(stiffness) @ scale / (mass * scale), initial=0.0))
     values, vectors = [np.zeros(0, dtype=complex)], [np.zeros((n, 0))]
     start = np.cos(np.arange(1, n + 1, dtype=float) ** 2)
-    last = max(LEAST * largest, np.finfo(float).tiny)
+    last = max(LEAST_SHIFT * largest, np.finfo(float).tiny)
     for shift in last * 10.0 ** np.arange(max(np.log10(max(largest, last) / last), 0) + 1):
         whole = block_array(
             [[stiffness + shift * diags_array(mass), jacobian.T], [jacobian, csc_array((rows, rows))]], format="csc"
@@ -131,7 +131,7 @@ def _largest_of_inverse(
     solve = splu(whole).solve
     operator = LinearOperator((n, n), lambda x: solve(np.append(mass * x, np.zeros(rows)))[:n], dtype=float)
     try:
-        found: tuple[np.ndarray, np.ndarray] = eigs(operator, k=count, v0=start, tol=TOLERANCE, maxiter=MOST_RESTARTS)
+        found: tuple[np.ndarray, np.ndarray] = eigs(operator, k=count, v0=start, tol=ACCURACY, maxiter=MOST_RESTARTS)
     except ArpackNoConvergence as some:
         return some.eigenvalues, some.eigenvectors
     return found

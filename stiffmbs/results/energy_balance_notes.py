@@ -38,7 +38,8 @@ def balance_words(balance: Balance) -> str:
     if balance.keeps_energy:
         return f"changes by at most {balance.imbalance:.3g} J"
     words = (
-        f"{change:+.6g} J by the end, of which {work:+.6g} J is work of what has no potential; the balance is kept to "
+        f"changes by {change:+.6g} J until the end, of which {work:+.6g} J is work of what has no potential; "
+        "the balance is kept to "
     )
     kept = f"{balance.imbalance:.2g} J"
     if balance.resolved > balance.imbalance:

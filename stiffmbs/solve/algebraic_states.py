@@ -8,11 +8,11 @@ from .dynamics import Dynamics
 from .failures import FAILURES
 from .native.statuses import NO_STATE
 
-AHEAD = 1e-6
+RATE_INTERVAL = 1e-6
 """Time over which the rates of algebraic states are taken, s: they only begin a prediction, which the error test then judges."""
-BEYOND = (1e-9, 1e-7, 1e-5)
+BEYOND_LAST_STATE = (1e-9, 1e-7, 1e-5)
 """How far beyond the last state a value is looked for that does not exist, relative to the time, s."""
-FLAT = 1e-10
+ZERO_SLOPE = 1e-10
 """Derivative of an equation by its states, relative to scales and values, that counts as none."""
 
 
@@ -25,11 +25,11 @@ def rates_of_algebraic(
         return np.zeros(0)
     state = dynamics.state
     with state.unchanged():
-        there = dynamics.system.of_body.moved(q, AHEAD * u)
-        there[dynamics.system.n_pose :] += AHEAD * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
-        state.q[:], state.u[:] = there, u + AHEAD * acceleration
-        status, _ = dynamics.accelerate(t + AHEAD)
-        rates = (state.q[places] - q[places]) / AHEAD
+        there = dynamics.system.of_body.moved(q, RATE_INTERVAL * u)
+        there[dynamics.system.n_pose :] += RATE_INTERVAL * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
+        state.q[:], state.u[:] = there, u + RATE_INTERVAL * acceleration
+        status, _ = dynamics.accelerate(t + RATE_INTERVAL)
+        rates = (state.q[places] - q[places]) / RATE_INTERVAL
     return rates if status >= 0 and np.all(np.isfinite(rates)) else np.zeros(len(places))
 
 
@@ -63,7 +63,7 @@ def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -
     state.q[:], state.u[:] = q, u
     status, acceleration = dynamics.accelerate(t)
     if status >= 0:
-        for ahead in BEYOND:
+        for ahead in BEYOND_LAST_STATE:
             later = ahead * max(1.0, abs(t))
             with state.unchanged():
                 rates = dynamics.position_rates(state.q, state.u)
@@ -92,7 +92,7 @@ def no_value(dynamics: Dynamics, t: float) -> str:
         worst = int(undefined[0])
         return f"the formula that the state '{names[worst]}' keeps at zero has no finite value at {at[worst]}"
     values, vectors = np.linalg.eigh((slopes * sizes).T @ (slopes * sizes))
-    if not values[0] > FLAT**2 * max(values[-1], np.finfo(float).tiny):
+    if not values[0] > ZERO_SLOPE**2 * max(values[-1], np.finfo(float).tiny):
         worst = int(np.argmax(np.abs(vectors[:, 0])))
         return (
             f"the state '{names[worst]}' has no unique value: the derivative of its formula by the state is zero at {at[worst]}, "
@@ -100,7 +100,7 @@ def no_value(dynamics: Dynamics, t: float) -> str:
         )
     moves = np.abs(np.linalg.solve(slopes, left)) / sizes
     worst = int(np.argmax(moves))
-    if not moves[worst] > FLAT:
+    if not moves[worst] > ZERO_SLOPE:
         return ""
     return (
         f"the state '{names[worst]}' has no value: Newton's iteration finds no zero of its formula from {at[worst]}, "

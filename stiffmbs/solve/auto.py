@@ -36,7 +36,7 @@ HELD_BACK = 0.05
 steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
 WORTH_A_TRIAL = 6.0
 """What is left for explicit steps must cost so many trials of the implicit integrator before one is made."""
-BEHIND, FAIR_TRIAL = 1.1, 200
+COSTS_MORE, FAIR_TRIAL = 1.1, 200
 """The implicit integrator is left when so many steps of it have cost so much more than explicit ones on the same way."""
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
@@ -199,7 +199,7 @@ class _Shared:
             return True
         spent, explicit = effort.cost - self._before.cost, way * self._explicit_cost
         self._pace, self._before = _Pace(reached.t), effort
-        pays = spent < BEHIND * explicit
+        pays = spent < COSTS_MORE * explicit
         if not pays:
             self._trial = cost.of_implicit_start(self._unknowns) + spent - explicit  # as seen: the way is not lost
         return pays

@@ -144,13 +144,23 @@ def _through_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equat
 class Integrator:
     """IDA over the pieces of a run: from breakpoint to breakpoint, from event to event.
 
+    Parameters
+    ----------
+    dynamics : Dynamics
+    settings : RunSettings
+    control : ErrorControl, optional
+    memory : str
+        The name by which the dynamics keep the engine for the next integrator of that name.
+
     Attributes
     ----------
     reached : Reached or None
         Where it was last heard of.
     """
 
-    def __init__(self, dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None) -> None:
+    def __init__(
+        self, dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf"
+    ) -> None:
         control = control or CHOSEN[dynamics.system.of_body.dimensions]
         self.dynamics, self.settings, self.control = dynamics, settings, control
         self.reached: Reached | None = None
@@ -158,7 +168,7 @@ class Integrator:
         native, reason = available()
         if native:
             self.equations, self.engine = dynamics.kept(
-                "bdf", (settings, control), lambda: _native(dynamics, settings, control)
+                memory, (settings, control), lambda: _native(dynamics, settings, control)
             )
             self.engine.forget()
         else:

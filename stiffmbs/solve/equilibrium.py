@@ -28,14 +28,14 @@ from .steady_motion import SteadyMotion, at_rest
 MOST_MOVES = 2000
 TRANSLATION, ROTATION = 0.25, 0.5
 """Longest move of a body, relative to the mechanism's size, and rad (Adams: EQUILIBRIUM/TLIMIT, ALIMIT)."""
-SLOWEST, STIFFEST = 1e-3, 1e15
+LEAST_SHIFT, LARGEST_SHIFT = 1e-3, 1e15
 """Bounds of the root of s, rad/s: the least holds free directions where they are."""
-FALLS, RISES = 0.1, 4.0
-WANTED, CLOSE, TOO_FAR = 0.1, 0.05, 0.6
+SHIFT_FALLS, SHIFT_RISES = 0.1, 4.0
+WANTED_RATIO, LAST_MOVE, DIVERGING_MOVE = 0.1, 0.05, 0.6
 """Newton's moves in a step: each relative to the one before, which s is chosen for; relative to the whole step, which ends
 the step, and from which on it is taken back."""
 MOST_CORRECTIONS = 8
-SLOW = 0.5
+WORTH_ANOTHER_MOVE = 0.5
 """Part that has to be left after one of the last moves for another one."""
 
 
@@ -80,14 +80,14 @@ def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None =
     state = dynamics.state
     motion = motion or at_rest(dynamics.system.of_body.dimensions)
     shift, known, moves = 1.0, balance_at(dynamics, t, motion), 0
-    while moves < MOST_MOVES and shift < STIFFEST:
+    while moves < MOST_MOVES and shift < LARGEST_SHIFT:
         if known.balanced:
             known, more = _polished(dynamics, t, motion, known)
             return as_equilibrium(dynamics, t, motion, known, moves + more)
         before = state.q.copy()
         step = _step(dynamics, t, motion, shift, known)
         moves += step.moves
-        shift = max(SLOWEST, step.factor * shift)
+        shift = max(LEAST_SHIFT, step.factor * shift)
         if step.known is None:
             state.q[:] = before
             motion.put(dynamics, t)
@@ -121,7 +121,7 @@ def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, know
         longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
         if longest_of_all > 1.0:
             return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
-        if count > 1 and longest > TOO_FAR * longest_of_all:
+        if count > 1 and longest > DIVERGING_MOVE * longest_of_all:
             break
         state.q[:] = moved(system, state.q, move)
         if dynamics.assemble(t) < 0:
@@ -129,11 +129,11 @@ def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, know
         known, first = balance_at(dynamics, t, motion), first or longest
         if known.balanced:
             return _Step(known, 1.0, count)
-        if count > 1 and longest <= CLOSE * longest_of_all:
+        if count > 1 and longest <= LAST_MOVE * longest_of_all:
             ratio = (longest / first) ** (1 / (count - 1))
-            factor = np.sqrt(np.clip(max(ratio / WANTED, longest_of_all), FALLS**2, 1.0))
+            factor = np.sqrt(np.clip(max(ratio / WANTED_RATIO, longest_of_all), SHIFT_FALLS**2, 1.0))
             return _Step(known, float(factor), count)
-    return _Step(None, RISES, count)
+    return _Step(None, SHIFT_RISES, count)
 
 
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
@@ -159,12 +159,12 @@ def _polished(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance
     system, state = dynamics.system, dynamics.state
     for count in range(MOST_CORRECTIONS):
         before = state.q.copy()
-        move = newton_move(dynamics, SLOWEST, known, np.zeros(len(known.left)))
+        move = newton_move(dynamics, LEAST_SHIFT, known, np.zeros(len(known.left)))
         if not np.all(np.isfinite(move)):
             return known, count
         state.q[:] = moved(system, before, move)
         found = balance_at(dynamics, t, motion) if dynamics.assemble(t) >= 0 else None
-        if found is None or not np.max(np.abs(found.left)) < SLOW * np.max(np.abs(known.left)):
+        if found is None or not np.max(np.abs(found.left)) < WORTH_ANOTHER_MOVE * np.max(np.abs(known.left)):
             state.q[:] = before
             return known, count
         known = found

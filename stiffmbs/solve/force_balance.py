@@ -17,11 +17,11 @@ from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
 """Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
-SLOW = 1e-3
+SLOW_STATE = 1e-3
 """Rate of a state beside itself, 1/s, of which the same part counts as none as of forces."""
 PASSED_ON = 1e-8
 """Imbalance, relative to the largest force, up to which rounding counts that joints have passed on from other bodies."""
-FOLLOWED = 1e-9
+CONSTRAINED_PART = 1e-9
 """Part of the accelerations that constraints may ask for beside those of the motion, and count as none."""
 
 
@@ -109,7 +109,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
 def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian: csc_array) -> np.ndarray:
     """Accelerations without those that constraints ask for, as a drive does that accelerates at the start."""
     asked = jacobian @ acceleration
-    if np.all(np.abs(asked) <= FOLLOWED * (abs(jacobian) @ np.abs(acceleration))):
+    if np.all(np.abs(asked) <= CONSTRAINED_PART * (abs(jacobian) @ np.abs(acceleration))):
         return acceleration
     matrix = block_array([[diags_array(mass), jacobian.T], [jacobian, None]], format="csc")
     found: np.ndarray = splu(matrix).solve(np.concatenate([mass * acceleration, 0.0 * asked]))
@@ -134,7 +134,7 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
     sizes = system.per_coordinate(system.size, 1.0)
     sizes[own] = system.state_scales
-    allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)) + SLOW * sizes[own])
+    allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)) + SLOW_STATE * sizes[own])
     rounding = ROUNDING * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
     return Balance(
         np.append(known.left, rates), known.lam, known.largest, np.append(np.maximum(known.allowed, rounding), allowed),

@@ -25,7 +25,7 @@ LARGEST_TURN = 0.5
 """Part of its length by which the velocity found may miss the predicted one."""
 LARGEST_ROTATION = 2.0
 """Angle, rad, that a body turns in one step at the most: the pose found tells no whole turns."""
-SHORTEST = 1e-10
+SHORTEST_STEP = 1e-10
 """Part of the duration below which a step that still fails means that the mechanism locks."""
 MOST_MOVES = 12
 """Newton's moves of one step; a step that asks for more was too long."""
@@ -58,7 +58,7 @@ def solve(
     system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
     features = dynamics.input_features(grid.start, grid.end)
-    shortest = SHORTEST * (grid.end - grid.start)
+    shortest = SHORTEST_STEP * (grid.end - grid.start)
     motion: _Motion | IntegratedMotion
     if _by_velocities(dynamics):
         longest = float(np.min(features.longest, initial=np.inf))

@@ -10,7 +10,7 @@ import numpy as np
 from ..compile.system import System
 from ..errors import SolverError
 from .dynamics import Dynamics
-from .equilibrium import ROTATION, SLOWEST, TRANSLATION, Equilibrium, as_equilibrium, newton_move, unbalanced
+from .equilibrium import LEAST_SHIFT, ROTATION, TRANSLATION, Equilibrium, as_equilibrium, newton_move, unbalanced
 from .force_balance import Balance, balance_at, moved
 from .steady_motion import SteadyMotion
 
@@ -25,7 +25,7 @@ def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> E
     for count in range(MOST_MOVES):
         if known.balanced:
             return as_equilibrium(dynamics, t, motion, known, count)
-        move = newton_move(dynamics, SLOWEST, known, np.zeros(len(known.left)))
+        move = newton_move(dynamics, LEAST_SHIFT, known, np.zeros(len(known.left)))
         part = 1.0 / max(1.0, float(np.max(np.abs(move[: system.n_u]) / limits)))
         found = _along(dynamics, t, motion, known, part * move) if np.isfinite(part) else None
         if found is None:

@@ -9,9 +9,9 @@ import numpy as np
 from ..compile.system import System
 from .dynamics import Dynamics
 
-AHEAD = (0.0, 1e-12, 1e-9, 1e-6)
+BEYOND_LAST_STATE = (0.0, 1e-12, 1e-9, 1e-6)
 """How far beyond the last state a value is looked for that does not exist, relative to the time, s."""
-OPEN = 1e-5
+LOCKED_VIOLATION = 1e-5
 """Violation of a constraint, m or rad, that tells a mechanism that locks."""
 TERM_SETS = ("motion", "acceleration")
 
@@ -32,7 +32,7 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     str
         Empty where nothing acts.
     """
-    for ahead in AHEAD:
+    for ahead in BEYOND_LAST_STATE:
         later = ahead * max(1.0, abs(t))
         _move(dynamics, dynamics.system.of_body.moved(q, later * u), u)
         for term_set in TERM_SETS:
@@ -59,7 +59,7 @@ def _open(dynamics: Dynamics, t: float) -> str:
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     gaps = np.abs(state.vector("motion", "C")) * system.active
-    if not len(gaps) or gaps.max() < OPEN:
+    if not len(gaps) or gaps.max() < LOCKED_VIOLATION:
         return ""
     joint, equation = system.equations[int(np.argmax(gaps))]
     return f"; joint '{joint}' (equation {equation}) is open by {gaps.max():.3g}"

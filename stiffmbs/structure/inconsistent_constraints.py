@@ -15,7 +15,7 @@ INSTANTS = (0.0137, 0.0931, 0.2113, 0.3719, 0.6131, 0.8677, 0.9941)
 """Parts of the run at which scenes that depend on time are looked at again, and as often in between as they move."""
 NEARLY = 1e-3
 """Violation up to which equations that are independent by their disagreement alone would hold the same if they agreed."""
-CLEARLY = 0.2
+INDEPENDENT_ROW = 0.2
 """Part of a row of J that is at right angles to others from which on it is independent of them for sure."""
 DISAGREES = 1e-7
 """Part of the largest prescribed velocity by which two equations may differ."""
@@ -152,7 +152,7 @@ def _clearly_independent(pose: Pose, first: np.ndarray) -> np.ndarray:
         rest = J[row] - basis.T @ (basis @ J[row])
         rest -= basis.T @ (basis @ rest)
         length = float(np.linalg.norm(rest))
-        if length > CLEARLY * np.linalg.norm(J[row]) > 0:
+        if length > INDEPENDENT_ROW * np.linalg.norm(J[row]) > 0:
             basis, kept[row] = np.vstack([basis, rest / length]), True
     return kept
 
@@ -164,7 +164,7 @@ def _blamed(pose: Pose, gaps: dict[int, float]) -> list[Redundant]:
     row, J = next(iter(gaps)), pose.J.dense()
     others = np.delete(np.arange(len(J)), row)
     share = np.abs(np.linalg.lstsq(J[others].T, J[row])[0])
-    return [Redundant(row, tuple(others[share > CLEARLY * share.max()].tolist()))]
+    return [Redundant(row, tuple(others[share > INDEPENDENT_ROW * share.max()].tolist()))]
 
 
 def _joints(equations: LoopEquations, redundant: Redundant, driven: np.ndarray) -> tuple[str, ...]:

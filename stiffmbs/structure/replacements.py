@@ -18,7 +18,7 @@ from .loops import LoopJoint
 from .transmitted import COMPONENTS, transmitted
 from .uniqueness import changes_of
 
-CLEARLY = 1e-3
+INDEPENDENT_COMPONENT = 1e-3
 """Least singular value, relative to the largest reaction, of components that are independent."""
 MOST_JOINTS, MOST_CHANGED, MOST_TRIALS = 10, 4, 2000
 """Joints to choose from, the last ones; joints to change at once; choices looked at."""
@@ -112,7 +112,7 @@ def _independent(choice: Sequence[_Option]) -> bool:
     count = sum(option.count for option in choice)
     for parts in zip(*(option.let_go for option in choice), strict=True):
         values = np.linalg.svd(np.vstack(parts), compute_uv=False)
-        if count > len(values) or values[count - 1] < CLEARLY:
+        if count > len(values) or values[count - 1] < INDEPENDENT_COMPONENT:
             return False
     return True
 

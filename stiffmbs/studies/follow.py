@@ -90,7 +90,8 @@ def _followed(job: Job, every: float) -> Iterator[Solution]:
     told, pause, solved = time.monotonic(), every, 1
     with Ending() as ending:
         for k in range(1, len(instants)):
-            q[k], u[k] = stepper.advance(float(instants[k]))
+            stepper.advance(float(instants[k]))
+            q[k], u[k] = stepper.q, stepper.u
             solved = k + 1
             begun = time.monotonic()
             if begun - told >= pause and solved < len(instants):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -20,15 +21,14 @@ SAME_NUMBER = 8 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True)
 class _Linear:
-    """Numbers of a force in which an input stands: numbers[places] = offset + slope * value."""
+    """Numbers of a force in which an input stands: numbers[place] = offset + slope * value, for each (place, offset, slope)."""
 
     numbers: np.ndarray
-    places: np.ndarray
-    offset: np.ndarray
-    slope: np.ndarray
+    parts: Sequence[tuple[int, float, float]]
 
     def write(self, value: float) -> None:
-        self.numbers[self.places] = self.offset + self.slope * value
+        for place, offset, slope in self.parts:  # few: numpy costs more than they do
+            self.numbers[place] = offset + slope * value
 
 
 class InputNumbers:
@@ -79,7 +79,7 @@ class InputNumbers:
                 raise InputError(
                     f"input '{name}': found no such input, expected one of {', '.join(self.values) or 'none'}"
                 )
-            if not np.isfinite(value):
+            if not math.isfinite(value):
                 raise InputError(f"input '{name}': found {value}, expected a finite number")
         self.values.update(changed)
         if self._quick is None:
@@ -98,7 +98,7 @@ class InputNumbers:
             parts = self._linear_parts(name)
             if parts is None:
                 return None
-            places = {(id(part.numbers), int(place)) for part in parts for place in part.places}
+            places = {(id(part.numbers), place) for part in parts for place, _, _ in part.parts}
             if places & taken:
                 return None
             taken |= places
@@ -123,7 +123,8 @@ class InputNumbers:
                 if not np.allclose(numbers, offset + slope * value, rtol=SAME_NUMBER, atol=SAME_NUMBER * abs(value)):
                     return None
             places = np.flatnonzero(slope)
-            parts.append(_Linear(force.group.numbers, force.first + places, offset[places], slope[places]))
+            rows = ((force.first + places).tolist(), offset[places].tolist(), slope[places].tolist())
+            parts.append(_Linear(force.group.numbers, tuple(zip(*rows, strict=True))))
         return parts
 
     def _changes(self, name: str, value: float) -> dict[tuple[int, int], Change] | None:

@@ -76,8 +76,6 @@ class Simulation:
     ----------
     t : float
         The present time, s.
-    q, u : ndarrays
-        Coordinates and velocities of all bodies at present.
     """
 
     def __init__(self, solver: CaseSolver, inputs: Mapping[str, float], settings: RunSettings) -> None:
@@ -86,7 +84,6 @@ class Simulation:
         self._job: Job = prepare(scene, changed(settings, {"presolve": False})) if job.subsystems else job
         self._first = dict(inputs)
         self._inputs = InputNumbers(self._job, solver, self._first)
-        self._places = self._places_of_bodies()
         self.reset()
 
     def reset(self) -> None:
@@ -94,9 +91,20 @@ class Simulation:
         job = self._job
         self._inputs.set(self._first)
         job.dynamics.forget_pivots()
-        self.t, self.q, self.u = job.grid.start, job.start.q, job.start.u
+        self.t = job.grid.start
         self._stepper = stepper_of(job, job.start, self.t)
+        self._places = self._places_of_bodies()
         self._known: dict[str, float] | None = None
+
+    @property
+    def q(self) -> np.ndarray:
+        """Coordinates of all bodies at present."""
+        return self._stepper.q.copy()
+
+    @property
+    def u(self) -> np.ndarray:
+        """Velocities of all bodies at present."""
+        return self._stepper.u.copy()
 
     @property
     def inputs(self) -> dict[str, float]:
@@ -124,10 +132,11 @@ class Simulation:
         """
         if not 0 < dt < np.inf:
             raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
-        self.set_inputs(inputs or {})
+        if inputs:
+            self.set_inputs(inputs)
         end = self.t + dt
-        q, u = self._stepper.advance(end)
-        self.t, self.q, self.u, self._known = end, q, u, None
+        self._stepper.advance(end)
+        self.t, self._known = end, None
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
         """Values of inputs from now on; those of others stay.
@@ -138,7 +147,7 @@ class Simulation:
             When an input is unknown, or its value does not fit.
         """
         if inputs and self._inputs.set(inputs):
-            self._stepper.restart(self.t, self.q, self.u)
+            self._stepper.jump()
             self._known = None
 
     @property
@@ -156,9 +165,10 @@ class Simulation:
 
     def __getitem__(self, channel: str) -> float:
         """The present value of a channel."""
-        if channel in self._places:
-            of_positions, place = self._places[channel]
-            return float((self.q if of_positions else self.u)[place])
+        place = self._places.get(channel)
+        if place:
+            values, number = place
+            return values.item(number)
         known = self.channels
         if channel not in known:
             raise InputError(f"found no channel '{channel}', expected one such as {', '.join(list(known)[:12])}")
@@ -217,17 +227,17 @@ class Simulation:
                     {k.removeprefix(INPUT): float(archive[k]) for k in archive.files if k.startswith(INPUT)}
                 )
         self._stepper.restart(found.t, placed.q, placed.u)
-        self.t, self.q, self.u, self._known = found.t, placed.q, placed.u, None
+        self.t, self._known = found.t, None
 
-    def _places_of_bodies(self) -> dict[str, tuple[bool, int]]:
+    def _places_of_bodies(self) -> dict[str, tuple[np.ndarray, int]]:
         """In the plane channels of bodies are coordinates and velocities themselves."""
         system = self._job.dynamics.system
         if system.of_body.dimensions == 3:
             return {}
-        levels = ((True, system.of_body.positions), (False, system.of_body.velocities))
+        levels = ((self._stepper.q, system.of_body.positions), (self._stepper.u, system.of_body.velocities))
         return {
-            f"{body}.{label}": (of_positions, len(labels) * k + n)
-            for of_positions, labels in levels
+            f"{body}.{label}": (values, len(labels) * k + n)
+            for values, labels in levels
             for k, body in enumerate(system.bodies)
             for n, label in enumerate(labels)
         }

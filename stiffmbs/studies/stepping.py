@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -11,21 +12,28 @@ from ..errors import SolverError
 from ..jobs.run import Job
 from ..solve import SOLVERS
 from ..solve.bdf import Integrator
-from ..solve.events.restart import restarted
+from ..solve.events.restart import just_after, restarted
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine
 from ..solve.initial import InitialValues
 from ..solve.trajectory import Grid, Outcome
-
-NO_PAUSE = 10**9
-"""Steps after which IDA need not come back."""
+from .started_steps import StartedSteps, sound
 
 
 class Stepper(Protocol):
-    """Goes on from consistent values."""
+    """Goes on from consistent values.
 
-    def advance(self, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """q and u at a later time.
+    Attributes
+    ----------
+    q, u : ndarrays
+        The present state, overwritten by each step.
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+
+    def advance(self, t: float) -> None:
+        """Go on to a later time.
 
         Raises
         ------
@@ -33,8 +41,11 @@ class Stepper(Protocol):
             When it cannot be reached.
         """
 
+    def jump(self) -> None:
+        """Forget what is behind the present state, as inputs jump here."""
+
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Forget what was behind a state, as inputs jump there."""
+        """Go on from another state."""
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
@@ -62,33 +73,39 @@ class ImplicitSteps:
     """
 
     def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
-        self._dynamics, self._integrator, self._span = job.dynamics, integrator, job.settings.duration
+        self._job, self._dynamics, self._integrator = job, job.dynamics, integrator
         engine = integrator.engine
         assert isinstance(engine, NativeEngine)
         self._engine, self._end = engine, t
         self._look_through(t)
         self._begin(start, t)
+        self._present, self.q, self.u = t, start.q.copy(), start.u.copy()
+
+    @cached_property
+    def _started(self) -> StartedSteps:
+        return StartedSteps(self._job, self.q, self.u)
 
     def _look_through(self, t: float) -> None:
         """Have the inputs looked through once for all steps that follow."""
         if t >= self._end:
-            self._end = t + self._span
-            self._dynamics.input_features(t, self._end)
+            self._end = t + self._job.settings.duration
+            self._features = self._dynamics.input_features(t, self._end)
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        self._start: InitialValues | None = start
         self._t, self._jumped, self._ended = t, False, False
         self._engine.pause_after(1)
         self._steps: Iterator[Reached] = self._integrator.run(start, Grid(t, self._end, None))
 
-    def advance(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+    def advance(self, t: float) -> None:
         """See `Stepper`."""
         if self._jumped or self._ended:
             self._look_through(self._t)
-        if self._jumped and t <= self._end:
-            return self._exactly(t)
-        if self._jumped or self._ended:
-            self._begin(self._start or restarted(self._dynamics, self._t, *self._state), self._t)
+            if self._jumped and t <= self._end:
+                if t > just_after(self._t):
+                    self._started.advance(self._t, t, self._features)
+                self._t, self._present, self._jumped, self._ended = t, t, False, True
+                return
+            self._begin(restarted(self._dynamics, self._t, self.q, self.u), self._t)
         while self._t < t:
             reached = next(self._steps, None)
             if reached is None:  # the end of what was looked through
@@ -97,29 +114,18 @@ class ImplicitSteps:
                     restarted(self._dynamics, self._t, *self._integrator.split(self._engine.at(self._t))), self._t
                 )
             else:
-                self._t = self._sound(reached).t
-        return self._integrator.split(self._engine.at(t))
+                self._t = sound(self._integrator, reached).t
+        self.q[:], self.u[:] = self._integrator.split(self._engine.at(t))
+        self._present = t
 
-    def _exactly(self, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """Go to a time at which a step ends."""
-        assert self._start is not None
-        self._engine.pause_after(NO_PAUSE)
-        for reached in self._integrator.run(self._start, Grid(self._t, t, np.array([t]))):
-            last = self._sound(reached)
-        self._state = self._integrator.split(last.y)
-        self._t, self._jumped, self._ended = t, False, True
-        self._start = None  # found where it is asked for: inputs mostly jump first
-        return self._state
-
-    def _sound(self, reached: Reached) -> Reached:
-        self._integrator.reached = reached
-        if reached.failure:
-            raise SolverError(f"stopped at t = {reached.t:.9g} s: {reached.failure}")
-        return reached
+    def jump(self) -> None:
+        """See `Stepper`."""
+        self._t, self._jumped = self._present, True
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
-        self._start, self._t, self._jumped = restarted(self._dynamics, t, q, u), t, True
+        self._t, self._present, self._jumped = t, t, True
+        self.q[:], self.u[:] = q, u
 
 
 class ShortRuns:
@@ -136,8 +142,9 @@ class ShortRuns:
     def __init__(self, job: Job, start: InitialValues, t: float) -> None:
         self._job, self._start, self._t = job, start, t
         self._settings, self._end = job.settings, t
+        self.q, self.u = start.q.copy(), start.u.copy()
 
-    def advance(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+    def advance(self, t: float) -> None:
         """See `Stepper`."""
         if t > self._t:
             if t > self._end:  # inputs are looked through once for all steps that follow
@@ -151,8 +158,12 @@ class ShortRuns:
             if found.outcome is not Outcome.DONE:
                 raise SolverError(found.message)
             self.restart(t, found.q[-1], found.u[-1])
-        return self._start.q, self._start.u
+
+    def jump(self) -> None:
+        """See `Stepper`."""
+        self.restart(self._t, self.q, self.u)
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
         self._t, self._start = t, restarted(self._job.dynamics, t, q, u)
+        self.q[:], self.u[:] = self._start.q, self._start.u

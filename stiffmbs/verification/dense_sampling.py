@@ -17,7 +17,7 @@ from .solve_again import Again
 
 BLOWN_UP = 0.05
 """Part of its scale by which a channel must exceed what output instants show before the pose there is looked at."""
-AT_ONCE = 1e-9
+AT_OUTPUT = 1e-9
 """Part of an interval by which an instant must differ from an output instant."""
 PARTS_OF_IMPLICIT_STEPS, PARTS = 2, 4
 """Into how many parts the time between two instants is cut: a polynomial of order 5 or less goes through an implicit
@@ -80,7 +80,7 @@ def apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:
     """Those of the instants that no rounding makes the same as others."""
     k = np.clip(np.searchsorted(found, more), 1, len(found) - 1)
     nearest = np.minimum(np.abs(found[k] - more), np.abs(more - found[k - 1]))
-    return more[nearest > AT_ONCE * (found[-1] - found[0]) / len(found)]
+    return more[nearest > AT_OUTPUT * (found[-1] - found[0]) / len(found)]
 
 
 def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamples | None:

@@ -52,7 +52,7 @@ STRETCHES = 4
 SHORTER = 50
 """Steps in an interval whose balance is open, when its stretch is solved again; a quarter of an interval should do."""
 FEWEST_STEPS = 4
-TIGHTER, TIGHTEST = 1e-2, 1e-13
+STRETCH_TOLERANCE, TIGHTEST_STRETCH = 1e-2, 1e-13
 """Of the tolerance with which a stretch is solved without short steps; the tightest that rounding allows."""
 
 
@@ -223,7 +223,9 @@ def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, all
     off = float(np.linalg.norm((short - rows.u[last]) * roots))
     if off > much:
         return off
-    tight = _solved_again(job, rows, first, last, {"rtol": max(TIGHTER * job.settings.rtol, TIGHTEST)}, allowed)
+    tight = _solved_again(
+        job, rows, first, last, {"rtol": max(STRETCH_TOLERANCE * job.settings.rtol, TIGHTEST_STRETCH)}, allowed
+    )
     return off if tight is not None and np.linalg.norm((tight - short) * roots) > off / 2 else 0.0
 
 

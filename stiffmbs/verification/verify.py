@@ -42,7 +42,7 @@ from .solve_again import Again, solve_again
 from .step_diagnostics import by_luck, step_diagnostics
 from .stepped_over import Along, SteppedOver, looked_along
 
-MOST_EFFORT, PATIENCE = 10.0, 2.5e7
+MOST_EFFORT, EFFORT_ALLOWED = 10.0, 2.5e7
 """Evaluations for all that is solved again, in those of the first run; evaluations, times the numbers of a state, that nobody minds
 waiting for all the same (about a second)."""
 OTHER_OF_FIXED = 1e-10
@@ -97,7 +97,7 @@ def verified(job: Job, first: Solution, allowed: float) -> Solution:
 def _patience(job: Job) -> float:
     """Evaluations of the equations that nobody minds."""
     system = job.dynamics.system
-    return PATIENCE / (system.n_q + system.n_u + system.n_c)
+    return EFFORT_ALLOWED / (system.n_q + system.n_u + system.n_c)
 
 
 class _Verification:

@@ -297,7 +297,7 @@ def test_importing_the_package_needs_none_of_its_heavy_parts():
         pytest.param(
             ["stress", "--fuzz", "contacts", "--count", "1"], "pip install 'stiffmbs[bench]'", marks=pytest.mark.long
         ),
-        (["stress", "--fuzz"], "contacts (found no numba"),
+        pytest.param(["stress", "--fuzz"], "contacts (found no numba", marks=pytest.mark.long),
     ],
 )
 def test_yardsticks_tell_the_extra_that_they_need(command, words):

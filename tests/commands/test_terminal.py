@@ -16,7 +16,7 @@ IMPATIENT = """
 from stiffmbs.__main__ import start
 from stiffmbs.commands import progress
 
-progress.PATIENCE = progress.BETWEEN_UPDATES = 0.0
+progress.SHOWN_AFTER = progress.BETWEEN_UPDATES = 0.0
 start()
 """
 """The command, which shows runs as if they had gone on for long."""

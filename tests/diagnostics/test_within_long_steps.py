@@ -41,7 +41,7 @@ def told(solution):
 
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 def test_a_python_function_that_no_output_meets(how, monkeypatch):
-    monkeypatch.setattr(within_long_steps, "FINE", 1000)
+    monkeypatch.setattr(within_long_steps, "PARTS_OF_A_RUN", 1000)
     found = stiffmbs.run(ball(5e-3), duration=1.0, points=2, rtol=1e-6, **how)
     (note,) = told(found)
     assert "passed over 'push' at t = " in note and "taken again" in note

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.compile.compile_model import compile_model
-from stiffmbs.compile.law_zones import edges_of
+from stiffmbs.compile.law_zones import zones_of
 from stiffmbs.stress.case import Outcome
 from stiffmbs.stress.families.events import within_one_step
 from stiffmbs.stress.fuzzers import contacts
@@ -34,9 +34,9 @@ forces: {{f: {{type: force, i: b, force: ["{law}", 0]}}}}
 
 
 def edges(table):
-    first, found, period = edges_of(compile_model(pushed(table)))
-    assert first.tolist() == [0, len(found)]
-    return found, period[0]
+    zones = zones_of(compile_model(pushed(table)))
+    assert zones.first.tolist() == [0, len(zones.edges)] and len(zones.overlap) == len(zones.edges)
+    return zones.edges, zones.period[0]
 
 
 def test_a_smooth_table_has_few_zones_and_a_bump_one_of_its_own():
@@ -49,8 +49,31 @@ def test_a_smooth_table_has_few_zones_and_a_bump_one_of_its_own():
 
 def test_a_reciprocal_has_no_edge_where_its_usual_arguments_turn_round():
     """1/(1 + x^2) and 1/cos(x) have their extremum at 1: whether it passes an edge there is left to rounding."""
-    _, found, _ = edges_of(compile_model(pushed("{table: [[0, 0], [1, 1]]}", "1/(1 + b.x^2)")))
+    found = zones_of(compile_model(pushed("{table: [[0, 0], [1, 1]]}", "1/(1 + b.x^2)"))).edges
     assert np.abs(np.abs(found) - 1).min() > 0.4
+
+
+DAMPER = "{akima: true, table: [[-2, -1380], [-1, -780], [-0.4, -420], [-0.2, -300], [-0.1, -150], [0, 0], [0.1, 250], [0.2, 500], [0.4, 700], [2, 2300]]}"
+STOP = "{lines: true, table: [[-1, 0], [0, 0], [0.01, 1e6]]}"
+
+
+def overlap_at_zero(table, law="p(b.x)"):
+    zones = zones_of(compile_model(pushed(table, law)))
+    return zones.overlap[np.flatnonzero(zones.edges == 0)[0]]
+
+
+def test_zones_overlap_where_the_law_goes_on_smoothly():
+    """At 0.1 mm/s a damper is straight over its knot, to a thousandth; a stop is another law from its first nanometres on."""
+    assert 1e-4 < overlap_at_zero(DAMPER) < 0.1
+    assert 0 < overlap_at_zero(STOP) <= 1e-8
+    assert overlap_at_zero("{table: [[-1, -1], [0, 0], [1, 1], [2, 0]], lines: true}") == pytest.approx(1)
+
+
+def test_a_damper_that_hardly_moves_stops_no_step_at_the_knots_of_its_table():
+    """A body swings ever slower in a soft damper and a stiff spring: no step ends at a knot of the damper's table."""
+    scene = pushed(DAMPER, "-1e4*b.x - p(b.vx)/1e3", 1e-4)
+    solution = stiffmbs.run(scene, duration=10.0, points=2, rtol=1e-4, solver="projected")
+    assert solution.solver["events"] == 0
 
 
 def test_a_periodic_table_repeats_its_zones():

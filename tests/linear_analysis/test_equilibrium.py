@@ -103,7 +103,7 @@ joints:
     assert 2.5 < found.channels["cart.x"] < 3.5
 
 
-def test_what_falls_for_ever_has_no_equilibrium():
+def test_what_falls_for_ever_has_no_equilibrium(few_moves):
     with pytest.raises(SolverError, match=r"no equilibrium was found: the largest imbalance is left in stone.fy"):
         equilibrium(stiffmbs.read_scene("gravity: [0, -9.81]\nbodies: {stone: {mass: 2, inertia: 1}}"))
 
@@ -133,7 +133,7 @@ def test_the_command_prints_poses_and_json():
     assert told["moved"]["bar"] == pytest.approx([0.3 * np.sqrt(2), np.pi / 2])
 
 
-def test_the_command_tells_that_there_is_none(tmp_path):
+def test_the_command_tells_that_there_is_none(few_moves, tmp_path):
     scene = tmp_path / "stone.yaml"
     scene.write_text("gravity: [0, -9.81]\nbodies: {stone: {mass: 2, inertia: 1}}")
     told = CliRunner().invoke(main, ["equilibrium", str(scene), "--json"])

@@ -13,6 +13,9 @@ from ..spatial_mechanisms import Bricard, Governor, SliderCrank, rod
 BDF = {"rtol": 1e-11}
 EXPLICIT = {"solver": "projected", "scheme": "dop853", "rtol": 1e-10}
 SOLVERS = pytest.mark.parametrize("settings", [BDF, EXPLICIT], ids=["bdf", "dop853"])
+SOLVERS_OF_LONG_RUNS = pytest.mark.parametrize(
+    "settings", [BDF, pytest.param(EXPLICIT, marks=pytest.mark.long)], ids=["bdf", "dop853"]
+)
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +62,7 @@ def bricard_reference():
     return lambda t: np.array([mechanism.corners(angles)[2] for angles in mechanism.motion(t)[:2].T])
 
 
-@SOLVERS
+@SOLVERS_OF_LONG_RUNS
 def test_bricard(solved, bricard_reference, settings):
     """Ten seconds: energy to 1e-7 J, and the path by the one coordinate."""
     solution = solved("bricard", **settings)
@@ -106,7 +109,7 @@ def chain_links(count, L=0.1, mass=0.1, width=0.02):
 @pytest.fixture(scope="module")
 def four_rods():
     """Times, and the poses of four rods then by their four hinge angles."""
-    links, times = chain_links(4), np.linspace(0, 1, 21)
+    links, times = chain_links(4), np.linspace(0, 0.6, 13)
     q, _ = motion(links, times, [0, 0, 0, 0], [5, 0, 0, 0])
     return times, [poses(links, angles) for angles in q.T]
 
@@ -115,7 +118,7 @@ def four_rods():
 def test_a_chain_of_hinges_in_space(solved, four_rods, settings):
     """Four rods against four hinge angles."""
     times, at = four_rods
-    solution = solved("spatial_chain", ("N", "4"), duration=1.0, points=21, **settings)
+    solution = solved("spatial_chain", ("N", "4"), duration=0.6, points=13, **settings)
     np.testing.assert_allclose(solution.time, times, atol=1e-14)
     for k in range(4):
         np.testing.assert_allclose(vector(solution, f"link{k + 1}"), [pose[k].center for pose in at], atol=1e-8)
@@ -154,13 +157,13 @@ def test_stiff_flyball_governor(solved):
 @pytest.fixture(scope="module")
 def crank_reference():
     """Angle and speed of the spatial slider-crank over every twentieth output time."""
-    return SliderCrank().motion(np.linspace(0, 5, 51))
+    return SliderCrank().motion(np.linspace(0, 2, 21))
 
 
 @SOLVERS
 def test_spatial_slider_crank(solved, crank_reference, settings):
-    """Five seconds: the loop in closed form for the crank's angle, and that angle by its one equation of motion."""
-    solution = solved("spatial_slider_crank", **settings)
+    """Two seconds: the loop in closed form for the crank's angle, and that angle by its one equation of motion."""
+    solution = solved("spatial_slider_crank", duration=2.0, points=401, **settings)
     mechanism = SliderCrank()
     crank = axes(solution, "crank")
     angle = np.unwrap(np.arctan2(crank[:, 2, 1], crank[:, 2, 2]))[::20]

@@ -7,6 +7,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.compile.machine.layout import BLOCK_LU, PAIRED_COLUMNS
+from stiffmbs.compile.machine.routines import Routine
 from stiffmbs.solve.ida.block_lu import COORDINATE, MULTIPLIER, BlockLU
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.paired_columns import PairedColumns
@@ -99,7 +100,7 @@ def test_blocks_serve_where_pivots_are_good():
         dense = np.where(pattern, rng.uniform(-0.1, 0.1, pattern.shape), 0.0) + np.eye(30)
         x = solver.solved(dense, np.ones(30))
         np.testing.assert_allclose(dense @ x, np.ones(30), rtol=1e-13)
-    assert solver.counted("refused") == 0
+    assert solver.counted("refused") == 0 and solver.counted("setup_pivots") == 0  # and nothing is compiled for pivots
 
 
 def test_blocks_that_share_nothing():
@@ -114,6 +115,24 @@ def test_a_block_without_a_regular_pivot_is_left_to_pivots():
     b = np.array([1.0, 2.0, 3.0, 4.0])
     np.testing.assert_allclose(solver.solved(dense, b), np.linalg.solve(dense, b), rtol=1e-14)
     assert solver.counted("refused") == 1
+
+
+def interrupted():
+    raise KeyboardInterrupt("found while compiling")
+
+
+def test_what_keeps_pivots_from_being_compiled_is_told_and_they_are_asked_for_again(monkeypatch):
+    dense, b = np.array([[0.0, 1.0], [1.0, 0.0]]), np.array([1.0, 2.0])
+    solver = Solver(BlockLU, np.ones((2, 2), dtype=bool), sizes=(1,))
+    solver.factors["a"][:] = dense[solver.rows, solver.columns]
+    with monkeypatch.context() as patch:
+        patch.setattr(Routine, "address", property(lambda routine: interrupted()))
+        assert solver.matrix.setup.call(solver.solver.ctypes.data, 0) < 0
+    with pytest.raises(KeyboardInterrupt, match="found while compiling"):
+        solver.memory.needed.raise_fault()
+    solver.memory.needed.raise_fault()  # it is raised once
+    np.testing.assert_allclose(solver.solved(dense, b), [2.0, 1.0], rtol=1e-14)
+    solver.memory.needed.raise_fault()
 
 
 @pytest.mark.parametrize("factor", [1.9, 30.0, 1e4])

@@ -199,7 +199,7 @@ def test_other_layouts_of_linear_solvers_are_noticed(monkeypatch):
     found = libraries.ida_libraries()
     operations.replaceable.cache_clear()
     assert operations.replaceable(found)
-    monkeypatch.setattr(operations, "LONGEST", 1)
+    monkeypatch.setattr(operations, "MOST_WORDS", 1)
     operations.replaceable.cache_clear()
     assert not operations.replaceable(found)
     monkeypatch.undo()

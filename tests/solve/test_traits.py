@@ -96,3 +96,9 @@ def test_a_solver_is_known_by_its_traits_alone(cart, monkeypatch):
     assert found.presolve == ()
     assert any("mine with steps of 0.001 s and bdf at rtol" in told for told in found.verification)
     assert any("rtol = 1e-06 has no effect: mine reads step" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("scheme", TRAITS)
+def test_a_scheme_given_as_the_solver_is_told_how_it_is_written(scheme):
+    with pytest.raises(stiffmbs.InputError, match=f"expected solver: projected, scheme: {scheme}"):
+        RunSettings(solver=scheme)

@@ -250,7 +250,7 @@ def test_what_takes_too_long_is_given_up_and_said(monkeypatch):
     from stiffmbs.verification import verify
 
     monkeypatch.setattr(verify, "MOST_EFFORT", 0)
-    monkeypatch.setattr(verify, "PATIENCE", 0)
+    monkeypatch.setattr(verify, "EFFORT_ALLOWED", 0)
     found = stiffmbs.verify(example("cart_pendulum"))
     assert len(found.time) == 1001
     assert any("no effort was left" in told or "given up" in told for told in found.verification)

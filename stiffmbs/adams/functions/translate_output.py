@@ -8,19 +8,20 @@ from collections.abc import Callable, Iterator
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
 from ..statements.constraints import GeneralConstraint, Numbered
+from ..statements.curves import PointOnCurve
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
-from .translate import Translation, identifier
+from .identifier import identifier
+from .reactions import COMPONENTS, component_of
+from .translate import Translation
 from .trees import call, measured, name_of, number, over, power, times, total
 
 ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")
 ANGLES = ("PSI", "THETA", "PHI")
-FORCES = ("FM", "FX", "FY", "FZ", "TM", "TX", "TY", "TZ")
-"""In the order of the components that functions such as JOINT number from 1."""
 ELEMENTS = {
     **{name: name for name in (
-        "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR",
+        "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR", "PTCV",
     )},
     "VTORQ": "VTORQUE", "SPDP": "SPRINGDAMPER", "BUSH": "BUSHING",
 }  # fmt: skip
@@ -51,7 +52,7 @@ class OutputTranslation(Translation):
             return self._orientation(arguments, function)
         if name in ELEMENTS:
             return self._of_element(name, arguments, function)
-        if name in FORCES:
+        if name in COMPONENTS:
             i, j, axes = (*(identifier(arguments, k, function) for k in range(len(arguments))), 0, 0)[:3]
             return over(self.between(name, i, j, axes, function), self._force_unit(name))
         if name in ROUNDING_FUNCTIONS:
@@ -89,14 +90,12 @@ class OutputTranslation(Translation):
             return number(0.0)
         if found is None:
             raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
-        if not 1 <= component <= len(FORCES):
-            raise function.fault(f"found the component {component} of {name}, expected 1 to {len(FORCES)}")
+        which = component_of(name, component, function)
         if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
             raise function.fault(f"found the force of {found.label} on its marker J, which it does not have")
         if on_j and isinstance(found, SingleForce) and found.action_only:
             return number(0.0)
-        name = FORCES[component - 1]
-        return over(self._component(name, [(found, bool(on_j))], axes, function), self._force_unit(name))
+        return over(self._component(which, [(found, bool(on_j))], axes, function), self._force_unit(which))
 
     def _force_unit(self, component: str) -> float:
         return self.units.of(force=1, length=1 if component[0] == "T" else 0)
@@ -129,7 +128,7 @@ class OutputTranslation(Translation):
         if isinstance(found, GeneralConstraint):
             first, *others = (*markers_of(found, self.mechanism), None)
             return first, tuple(others)
-        if isinstance(found, VectorForce):
+        if isinstance(found, VectorForce | PointOnCurve):
             return found.i, (found.floating,)
         if isinstance(found, Numbered) and found.keyword != "REQUEST":
             return getattr(found, "i", None), (getattr(found, "j", None),)
@@ -152,7 +151,7 @@ class OutputTranslation(Translation):
     @staticmethod
     def _term(component: str, found: Numbered, element: str, on_j: bool, way: str) -> ast.expr:
         """What one element does to marker I or J; a floating marker is always where I is."""
-        floats = isinstance(found, VectorForce) and on_j
+        floats = isinstance(found, VectorForce | PointOnCurve) and on_j
         owner = name_of(element + (".j" if on_j and not floats else ""))
         value = call(component.lower(), owner, *([name_of(way)] if way else []))
         return times(value, -1.0) if floats and component[1] != "M" else value

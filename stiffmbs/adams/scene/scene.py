@@ -15,7 +15,11 @@ from ..statements.fault import of_each
 from .bodies import bodies, ground_markers
 from .bodies import notes as body_notes
 from .contacts import contacts
+from .curves import curves
+from .curves import notes as curve_notes
 from .forces import Forces
+from .friction import frictions
+from .friction import notes as friction_notes
 from .gears import gears
 from .initial_conditions import at_start, set_in_motion
 from .initial_conditions import notes as start_notes
@@ -25,6 +29,8 @@ from .motions import motions
 from .racks import notes as rack_notes
 from .relations import relations
 from .requests import Requests
+from .sensors import conditions
+from .sensors import notes as sensor_notes
 
 RUN = {"duration": 5, "output": 0.01}
 """How a dataset is run, which says nothing about it itself."""
@@ -46,10 +52,12 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         ("joints", partial(held, mechanism)),
         ("joints", partial(relations, mechanism)),
         ("joints", partial(gears, mechanism)),
+        ("joints", partial(curves, mechanism)),
         ("joints", partial(motions, mechanism, translation)),
         ("states", partial(states, translation)),
         ("forces", Forces(mechanism, translation).all),
         ("forces", partial(contacts, mechanism, translation)),
+        ("forces", partial(frictions, mechanism, translation)),
     ]
     made = of_each(enumerate(makers), lambda numbered: {str(numbered[0]): numbered[1][1]()})
     sections: dict[str, dict[str, Any]] = {"joints": {}, "states": {}, "forces": {}}
@@ -59,6 +67,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
         "gravity": vector(dataset.gravity),
+        "inputs": translation.inputs,
         "variables": mechanism.variables,
         "markers": {},
         "bodies": {},
@@ -66,11 +75,15 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "at_start": at_start(mechanism),
         "requests": requests.all(),
         "run": dict(RUN),
+        "stages": [{"until": conditions(dataset)}] if dataset.sensors else [],
         "notes": [
             *dataset.notes,
             *mechanism.notes(),
             *body_notes(mechanism),
             *rack_notes(mechanism),
+            *friction_notes(mechanism),
+            *curve_notes(mechanism),
+            *sensor_notes(dataset),
             *start_notes(dataset),
             *requests.notes,
         ],

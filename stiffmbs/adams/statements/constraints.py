@@ -16,6 +16,11 @@ JOINT_KINDS = (
     "RACKPIN",
 )  # fmt: skip
 PRIMITIVES = ("ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
+OF_FRICTION = (
+    "MUSTATIC", "MUDYNAMIC", "DELTA_V", "MAXDEFORMATION", "INNER_RADIUS", "OUTER_RADIUS", "HEIGHT", "WIDTH", "PRELOAD_RADIAL",
+    "PRELOAD_AXIAL", "PRELOAD_X", "PRELOAD_Y",
+)  # fmt: skip
+"""Arguments of a JOINT for friction in old versions of Adams, whose law is not published; FRICTION has taken their place."""
 COMPONENTS = ("X", "Y", "Z", "B1", "B2", "B3")
 ROTATIONAL, TRANSLATIONAL = "ROTATIONAL", "TRANSLATIONAL"
 Start = tuple[str, float | None, float | None]
@@ -126,7 +131,13 @@ class Gear(Numbered):
 
 def read_joint(statement: Statement, units: Units) -> Joint:
     """A joint between two markers."""
-    found = Arguments(statement, "JOINT", (*JOINT_KINDS, "I", "J", "PITCH", "PD", "IC", "ICROT", "ICTRAN"))
+    names = (*JOINT_KINDS, "I", "J", "PITCH", "PD", "IC", "ICROT", "ICTRAN", *OF_FRICTION)
+    found = Arguments(statement, "JOINT", names)
+    for name in OF_FRICTION:
+        if name in found:
+            raise found.fault(
+                f"found {name}, friction of old versions, expected a FRICTION statement", found.line(name)
+            )
     kind = found.one_of(*JOINT_KINDS)
     if kind is None:
         raise found.fault(f"found no kind of joint, expected one of {', '.join(JOINT_KINDS)}")

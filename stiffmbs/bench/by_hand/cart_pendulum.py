@@ -91,11 +91,11 @@ def si2(stiffness: float = STIFFNESS) -> Equations:
 
 
 @fast
-def minimal(t, y, k):
-    """Rates of the cart's place x, the bar's angle from hanging, and their velocities."""
+def pushed(t, y, k, push):
+    """Rates of the cart's place x, the bar's angle from hanging, and their velocities, with a force on the cart."""
     x, theta, v, w = y
     s, c = sin(theta), cos(theta)
-    force = m * a * w * w * s - k * x
+    force = m * a * w * w * s - k * x + push
     inertia = J + m * a * a
     determinant = (M + m) * inertia - (m * a * c) ** 2
     return np.array(
@@ -106,6 +106,12 @@ def minimal(t, y, k):
             (-(M + m) * m * g * a * s - m * a * c * force) / determinant,
         ]
     )
+
+
+@fast
+def minimal(t, y, k):
+    """The same without a force."""
+    return pushed(t, y, k, 0.0)
 
 
 def minimal_start() -> np.ndarray:

@@ -16,7 +16,7 @@ from ...describe.formula.functions import EACH, IN_FORMULAS, Breakpoints
 from ...describe.formula.nodes import TIME, reading_order
 from ...errors import InputError
 from .of_time import Input
-from .zeros import AT_ONCE, ZERO, TooMany, zeros
+from .zeros import FIRST_STRETCHES, ZERO, TooMany, zeros
 
 LEAST_DISTANCE = 1e-12
 """Part of the times themselves by which two breakpoints differ at the least."""
@@ -83,7 +83,7 @@ def _breakpoints(call: ast.Call, breakpoints: Breakpoints) -> Iterator[ast.expr]
 
 def _range(given: Input, part: ast.expr, start: float, end: float) -> tuple[float, float]:
     """Bounds of a part of an input."""
-    edges = np.linspace(start, end, AT_ONCE + 1)
+    edges = np.linspace(start, end, FIRST_STRETCHES + 1)
     with np.errstate(all="ignore"):
         low, high = given.within(edges[:-1], edges[1:], part=part).value
     return float(np.nanmin(low, initial=np.inf)), float(np.nanmax(high, initial=-np.inf))

@@ -23,15 +23,15 @@ from .enclosed_functions import FUNCTIONS
 from .enclosure import Enclosure
 from .of_time import Input
 
-AT_ONCE, MOST_DIVISIONS = 32, 500
+PARTS_OF_A_STRETCH, MOST_DIVISIONS = 32, 500
 """Parts into which a stretch is divided at once, and divisions after which the search is given up: solvers then find the end."""
-SHORTEST = 1e-13
+SHORTEST_DIVIDED = 1e-13
 """Length of a stretch, relative to the times themselves, that is not divided any further."""
-NEAR, NEARER = 1e-6, 1e-10
+FARTHER_SIDE, NEARER_SIDE = 1e-6, 1e-10
 """Distances, relative to the times themselves, at which values on both sides are compared."""
 GROWS = 3.0
 """Factor by which values must grow from the one distance to the other: that of a pole of order 1/8."""
-LARGEST, DISTANCES = 1e8, np.geomspace(0.1, NEAR, 16)
+LARGEST, DISTANCES = 1e8, np.geomspace(0.1, FARTHER_SIDE, 16)
 """Growth towards a pole that solvers can follow, and distances at which it is looked for, relative to the times themselves."""
 DOMAINS = {name: function.domain for name, function in IN_FORMULAS.items() if function.domain != EVERYWHERE}
 """Arguments for which a function has a value."""
@@ -152,7 +152,7 @@ def _of_node(
         size = max(abs(low), abs(high), end - start)
         pole = _is_pole(value, low, high, size)
         if pole or _has_no_value_beyond(value, high, size):
-            near = _pole_distance(value, low, size) if pole else NEARER * size
+            near = _pole_distance(value, low, size) if pole else NEARER_SIDE * size
             yield InputEnd(low, near, name, ast.unparse(node), pole)
             return
 
@@ -165,11 +165,11 @@ def _without_bound(formula: Formula, node: ast.expr, start: float, end: float) -
         size = max(abs(first), abs(last), end - start)
         if last < passed:
             continue
-        if last - first <= SHORTEST * size:
+        if last - first <= SHORTEST_DIVIDED * size:
             yield first, last
-            passed = last + NEAR * size
+            passed = last + FARTHER_SIDE * size
             continue
-        edges = np.linspace(first, last, AT_ONCE + 1)
+        edges = np.linspace(first, last, PARTS_OF_A_STRETCH + 1)
         with np.errstate(all="ignore"):
             bounded = _is_bounded(formula, node, edges[:-1], edges[1:])
         divisions += 1
@@ -206,14 +206,14 @@ def _range(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) 
 def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
     """Whether values grow on one side or the other, the nearer the instant."""
     for at, way in ((low, -1.0), (high, 1.0)):
-        far, near = value(at + way * NEAR * size), value(at + way * NEARER * size)
+        far, near = value(at + way * FARTHER_SIDE * size), value(at + way * NEARER_SIDE * size)
         if far is not None and near is not None and abs(near) > GROWS * abs(far) > 0.0:
             return True
     return False
 
 
 def _has_no_value_beyond(value: Values, high: float, size: float) -> bool:
-    return all(value(high + distance * size) is None for distance in (NEARER, 10 * NEARER))
+    return all(value(high + distance * size) is None for distance in (NEARER_SIDE, 10 * NEARER_SIDE))
 
 
 def _pole_distance(value: Values, t: float, size: float) -> float:
@@ -226,4 +226,4 @@ def _pole_distance(value: Values, t: float, size: float) -> float:
         largest = LARGEST * max(1.0, abs(found)) if largest is None else largest
         if abs(found) > largest:
             return float(distance)
-    return NEAR * size
+    return FARTHER_SIDE * size

@@ -14,7 +14,7 @@ LEAST_PART = 1e-4
 """That change counts at least as so much of the input's change in the whole run."""
 ALWAYS_ALLOWED = 1e-10
 """Error of the cubic, relative to the input's values, that is always allowed."""
-SHORTEST = 1e-11
+SHORTEST_PIECE = 1e-11
 """Length of a piece, relative to the times themselves, that is cut no further."""
 MOST_PIECES, MANY_PIECES = 2**13, 512
 """Pieces of one input that are cut further: from there on only those that need it most are; and so many that it is
@@ -75,7 +75,7 @@ class InputPieces:
 
     def __init__(self, given: Input, edges: np.ndarray) -> None:
         self._given, self._edges = given, edges
-        self._shortest = SHORTEST * max(abs(edges[0]), abs(edges[-1]))
+        self._shortest = SHORTEST_PIECE * max(abs(edges[0]), abs(edges[-1]))
         self._least, self._greatest = np.inf, -np.inf
         self._rounding = 0.0
         self.change, self.size, self.estimated = 0.0, 0.0, False

@@ -8,13 +8,13 @@ import numpy as np
 
 from .enclosure import Enclosure
 
-AT_ONCE = 64
+FIRST_STRETCHES = 64
 """Stretches that the search begins with."""
-SHORTEST = 1e-12
+SHORTEST_STRETCH = 1e-12
 """Length of a stretch, relative to the times themselves, in which no more than one passage is looked for."""
 MOST_STRETCHES = 1_000_000
 """Stretches at which the search is given up."""
-MANY = 256
+MANY_STRETCHES = 256
 """Stretches from which on those are dropped in which the formula stands at a level but for rounding."""
 SAMPLE_ROUNDING, RANGE_ROUNDING = 1e-14, 3e-16
 """Of a formula where samples tell it, and where its ranges do, relative to its values."""
@@ -62,8 +62,8 @@ def zeros(values: Values, ranges: Ranges, start: float, end: float, levels: np.n
 
 def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray) -> Iterator[np.ndarray]:
     """Beginnings and ends of stretches of one slope, or as short as time can be told apart, that may hold a passage."""
-    shortest = SHORTEST * max(abs(start), abs(end))
-    edges = np.linspace(start, end, AT_ONCE + 1)
+    shortest = SHORTEST_STRETCH * max(abs(start), abs(end))
+    edges = np.linspace(start, end, FIRST_STRETCHES + 1)
     low, high = edges[:-1], edges[1:]
     size = 0.0
     while len(low):
@@ -75,7 +75,7 @@ def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels:
         settled = around & (one_way | (high - low <= shortest))
         yield np.array([low[settled], high[settled]])
         open_ones = around & ~settled
-        if np.count_nonzero(open_ones) > MANY:
+        if np.count_nonzero(open_ones) > MANY_STRETCHES:
             open_ones[open_ones] = ~_stands(values, low[open_ones], high[open_ones], levels, size)
         low, middle, high = low[open_ones], middle[open_ones], high[open_ones]
         if len(low) > MOST_STRETCHES:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from threading import RLock
 from typing import Any
 
 from . import cache as store
@@ -17,6 +18,8 @@ from .description import Description
 
 LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
+_ONE_AT_A_TIME = RLock()
+"""Threads may need the same routine at once: one compiles it, the others find it."""
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
@@ -118,13 +121,14 @@ def _joined(files: list[Path]) -> str:
 
 
 def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
-    code = _unpacked(entry, store.read(entry))
-    found = _linked(code, entry, source.signatures) if code else None
-    if found is None:
-        LOGGER.info("compiling %s", source.of)
-        code = _object_code(source, _symbol(entry, ""))
-        store.write(entry, _header(entry, code) + code)
-        found = _linked(code, entry, source.signatures)
+    with _ONE_AT_A_TIME:
+        code = _unpacked(entry, store.read(entry))
+        found = _linked(code, entry, source.signatures) if code else None
+        if found is None:
+            LOGGER.info("compiling %s", source.of)
+            code = _object_code(source, _symbol(entry, ""))
+            store.write(entry, _header(entry, code) + code)
+            found = _linked(code, entry, source.signatures)
     assert found is not None, entry
     return found
 

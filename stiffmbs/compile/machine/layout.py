@@ -104,6 +104,7 @@ PAIRED_COLUMNS = Layout({
 
 BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
+    "compile_pivots": INT_CELL, "setup_pivots": INT_CELL, "solve_pivots": INT_CELL,
     "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL, "refined": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
@@ -112,7 +113,8 @@ BLOCK_LU = Layout({
     "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
 """The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
-of columns in pairs that takes over where those cannot be trusted.  `ready` says whether the counts are of this run: whether the factors at
+of columns in pairs that takes over where those cannot be trusted, `compile_pivots` that of the C function that puts the addresses of
+its routines into the next two cells.  `ready` says whether the counts are of this run: whether the factors at
 hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, trials that were failed, and
 whether solutions are refined."""
 
@@ -225,6 +227,20 @@ MOST_STEPS, HISTORY_WIDTH = 2048, 3
 SAMPLES = 16
 """Rows of the samples: the time and what is reported."""
 
+RESTART = Layout({
+    "dynamics": INTS, "ida": INT, "error_norm": INTS, "q": FLOATS, "u": FLOATS, "rate": FLOATS, "leader": INTS,
+    "n_q": INT, "q_of": INTS, "q_at": INTS, "n_u": INT, "u_of": INTS, "u_at": INTS,
+    "creep": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_creep": FLOAT_CELL,
+    "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "velocity_weight": FLOATS,
+    "at_residual": INT, "at_matrix": INT, "mass": FLOATS, "sums": FLOATS,
+    "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS,
+    "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
+    "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT,
+})  # fmt: skip
+"""What IDA is started anew with behind a jump of inputs (`stiffmbs.solve.ida.native.restart`): the state from one call to the next;
+independent coordinates and velocities, and where they stand among the unknowns; the entries that relaxations and the tolerance of
+Newton's iteration follow from; functions of SUNDIALS.  Cells are set once."""
+
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
     "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
@@ -294,9 +310,9 @@ which the test must let them grow else."""
 
 
 EVENT_SEARCH = Layout({
-    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "period": FLOATS,
+    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
-    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "found": INTS,
+    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
     "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,

@@ -22,7 +22,7 @@ from .size import DEEPEST, MOST_PARTS, FormulaError, balanced, check_size
 UNIT = "unit"
 _NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
 """A number that runs into a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
-LONGEST = 50 * MOST_PARTS
+LONGEST_TEXT = 50 * MOST_PARTS
 """Characters of a formula, which bound the time that it takes to see how many parts it has."""
 LARGEST_LITERAL = 1e300
 
@@ -52,8 +52,8 @@ def parse(text: str) -> ast.expr:
     FormulaError
         When the text is no formula or holds anything but arithmetic, names, ``name.name`` and calls by name.
     """
-    if len(text) > LONGEST:
-        raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST}")
+    if len(text) > LONGEST_TEXT:
+        raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST_TEXT}")
     try:
         tree = ast.parse(_python_spelling(text), mode="eval").body
         if len(text) > DEEPEST:  # shorter ones are within the bounds

@@ -88,6 +88,7 @@ class Impact(Force):
 
     @classmethod
     def potential(cls, e: Symbolic) -> Any:
+        """k (-g)^(e+1)/(e+1) for each place where the solids overlap."""
         from sympy import Piecewise
 
         power = e.exponent + 1

@@ -16,7 +16,7 @@ from .contact_point import ContactPoint
 
 DEFLECTIONS = ("deflection_x", "deflection_y")
 """The states of a tyre with relaxation lengths, m."""
-LEAST = 0.01
+LEAST_RELAXATION_LENGTH = 0.01
 """m, the least relaxation length: where a wheel lifts off they would be zero."""
 RENEWED = 2
 """Where a wheel slides at a standstill its patch is renewed each 1/2 relaxation length, so that slips there end at 1/2; by
@@ -46,7 +46,7 @@ def lagged(e: Symbolic, contact: ContactPoint, sliding: Any, lengths: tuple[Any,
     """
     from sympy import Float, sqrt
 
-    least = Float(str(LEAST))
+    least = Float(str(LEAST_RELAXATION_LENGTH))
     along, across = (e.named(least + above_zero(e.named(length - least))) for length in lengths)
     x, y = e.own
     forward = magnitude(contact.vx)

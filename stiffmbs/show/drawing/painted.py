@@ -22,7 +22,7 @@ FOREMOST = 0.004
 """Of the size: how far lines lie before faces at the same place."""
 NEGLIGIBLE = 1e-9
 """Of the weight of all bodies: a force below it is rounding."""
-LONGEST = 0.22
+LONGEST_ARROW = 0.22
 """The longest force arrow over the size."""
 HEAD = 1.25
 """The longest head of an arrow over the unit of symbols."""
@@ -150,7 +150,7 @@ def _loads(drawing: Drawing, poses: Poses, k: int, view: View, longest: float) -
         if name not in poses.forces:
             continue
         force = poses.forces[name][k]
-        length = float(np.linalg.norm(force)) / longest * LONGEST * drawing.size
+        length = float(np.linalg.norm(force)) / longest * LONGEST_ARROW * drawing.size
         if not np.isfinite(length) or length < 0.01 * drawing.size:
             continue
         origin, axes = poses.pose(anchor.body, k)

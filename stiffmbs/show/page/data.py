@@ -14,7 +14,7 @@ import numpy as np
 from ...results.solution import Solution
 from ..drawing.as_json import drawing_json
 from ..drawing.following import followed_body
-from ..drawing.painted import LONGEST, largest_force
+from ..drawing.painted import LONGEST_ARROW, largest_force
 from ..drawing.poses import Poses
 from ..drawing.scene_graph import Anchor, Drawing
 
@@ -81,7 +81,7 @@ def page_data(
     first = next(iter(runs.values()))
     head: dict[str, Any] = {
         "drawing": drawing_json(drawing),
-        "longest": {"force": largest_force(drawing, first), "length": LONGEST * drawing.size},
+        "longest": {"force": largest_force(drawing, first), "length": LONGEST_ARROW * drawing.size},
         "runs": [{"name": name, **_motion(poses, packed, most)} for name, poses in runs.items()],
         "follow": followed_body(drawing, first),
         "traces": [{"body": anchor.body, "point": anchor.point.tolist()} for anchor in traces],

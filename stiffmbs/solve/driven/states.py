@@ -10,7 +10,7 @@ from ...errors import SolverError
 from ..algebraic_states import rates_by_states
 from ..dynamics import Dynamics
 
-TOLERANCE = 1e-10
+STATE_TOLERANCE = 1e-10
 """Relative tolerance, and absolute one in scales of the states."""
 MOST_MOVES = 12
 
@@ -52,7 +52,7 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
     with dynamics.state.unchanged():
         found = solve_ivp(
             along.rates, (before.t, t), states[changing], method="Radau", jac=along.jacobian,
-            rtol=TOLERANCE, atol=TOLERANCE * system.state_scales[changing], t_eval=[t],
+            rtol=STATE_TOLERANCE, atol=STATE_TOLERANCE * system.state_scales[changing], t_eval=[t],
         )  # fmt: skip
     if not found.success:
         raise SolverError(f"stopped after t = {before.t:.9g} s: the states could not be integrated: {found.message}")

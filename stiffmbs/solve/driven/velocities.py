@@ -12,7 +12,7 @@ from ..dynamics import Dynamics
 from ..initial import InitialValues
 from ..native.statuses import NOT_FINITE
 
-TOLERANCE = 1e-11
+PLACE_TOLERANCE = 1e-11
 """Relative tolerance of positions, and absolute one, m and rad."""
 MOST_MOVES = 12
 
@@ -53,7 +53,7 @@ class IntegratedMotion:
         from scipy.integrate import solve_ivp
 
         found: Any = solve_ivp(
-            self._rates, (self.t, end), self.q, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE, t_eval=[end],
+            self._rates, (self.t, end), self.q, method="DOP853", rtol=PLACE_TOLERANCE, atol=PLACE_TOLERANCE, t_eval=[end],
             first_step=min(end - self.t, self._longest) / 8, max_step=self._longest,
         )  # fmt: skip
         if not found.success:

@@ -28,15 +28,29 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
     state, system = dynamics.state, dynamics.system
     if not system.n_c:
         return
-    lightness = dynamics.kept("relaxation", None, lambda: 1 / _heaviest(system))
     state.evaluate("motion", t)
-    factor = min(max(settings.rtol / 1e-8, TIGHTEST), LOOSEST)
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
     C_q, J = state.values["motion"][positions.source], state.values["motion"][velocities.source]
+    weight = creep_of_velocities(dynamics, settings)
     of_positions = np.bincount(positions.row, C_q * C_q, minlength=system.n_c)
-    of_velocities = np.bincount(velocities.row, J * J * lightness[velocities.column], minlength=system.n_c)
-    along = min(1.0, (SHORT / len(system.bodies)) ** 2)
-    state.relax(POSITION_CREEP * factor * of_positions, VELOCITY_CREEP * factor * along * of_velocities)
+    of_velocities = np.bincount(velocities.row, J * J * weight[velocities.column], minlength=system.n_c)
+    state.relax(creep_of_positions(settings) * of_positions, of_velocities)
+
+
+def creep_of_positions(settings: RunSettings) -> float:
+    """E_mu for an entry 1 in a row of C_q."""
+    return POSITION_CREEP * _factor(settings)
+
+
+def creep_of_velocities(dynamics: Dynamics, settings: RunSettings) -> np.ndarray:
+    """E_lam for an entry 1 in each column of J, shape (n_u,)."""
+    lightness = dynamics.kept("relaxation", None, lambda: 1 / _heaviest(dynamics.system))
+    along = min(1.0, (SHORT / len(dynamics.system.bodies)) ** 2)
+    return VELOCITY_CREEP * _factor(settings) * along * lightness
+
+
+def _factor(settings: RunSettings) -> float:
+    return min(max(settings.rtol / 1e-8, TIGHTEST), LOOSEST)
 
 
 def _heaviest(system: System) -> np.ndarray:

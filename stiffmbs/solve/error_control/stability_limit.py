@@ -21,7 +21,7 @@ from ...compile.equations import Equations
 from ...describe.settings import RunSettings
 from .tolerances import independent_tolerances
 
-ENOUGH, STEPS_APART, DEGREE = 16, 4, 3
+STATES_LOOKED_AT, STEPS_APART, DEGREE = 16, 4, 3
 """States that are looked at, steps from one to the next, and the polynomial that they are compared with: motion that steps of
 order 3 to 5 do resolve is some thousands of tolerances away from it."""
 NEGLIGIBLE = 150.0
@@ -48,7 +48,7 @@ NO_LOSS = 1.5
 """The same, predicted, where a faint vibration is damped away: longer steps come after that."""
 MARGIN, ERROR_CONSTANT = 0.1, 2 / 9
 """Error of a step that an integrator aims at, relative to the tolerance; that of order 2, over the third derivative times the cube of the step."""
-TIGHTEST = 1e-7
+TIGHTEST_HELD = 1e-7
 """Relative tolerance below which the order is not held for long: who asks for less wants to see the vibration, and order 2 would
 cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
 HELD, HIGHEST = 2, 5
@@ -71,7 +71,7 @@ class StabilityLimitDetection:
 
     def __init__(self, equations: Equations, settings: RunSettings) -> None:
         self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
-        self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST
+        self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST_HELD
         self._equations, self._settings = equations, settings
         self.forget()
 
@@ -114,7 +114,7 @@ class StabilityLimitDetection:
         steps : int
             Of the whole run.
         """
-        if len(samples) < ENOUGH:
+        if len(samples) < STATES_LOOKED_AT:
             return False
         t, (since, before) = float(samples[-1, 0]), self._mark
         pace, self._mark = (t - since) / (steps - before), (t, steps)

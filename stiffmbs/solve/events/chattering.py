@@ -10,9 +10,9 @@ import numpy as np
 
 from ...errors import SolverError
 from ..dynamics import Dynamics
-from .discontinuity import FAR, jumping, sliding
+from .discontinuity import LARGER_MOVE, jumping, sliding
 
-WINDOW, MANY = 250, 1000
+WINDOW, TRUSTED_EVENTS = 250, 1000
 """Events over which their rate is measured, and events from which on its growth is trusted."""
 TOO_MANY, AT_LEAST = 1e6, 1e4
 """Events still to come at which a run is given up: ten minutes or more, and events without growth at which growth is reckoned with."""
@@ -21,7 +21,7 @@ LEAST_POWER, LARGEST_POWER = 0.8, 2.0
 comes to rest have larger ones, and end by themselves."""
 STEPS_SEEN, STEPS_AHEAD = 500_000, 2e8
 """Steps over which a run's pace is measured, and steps still to come at which it is given up."""
-TOLERANCES, FARTHEST = 1e3, 1e-2
+STAYS_WITHIN, STAYS_WITHIN_AT_MOST = 1e3, 1e-2
 """Distance from a jump, relative to the relative tolerance and at the most, at which a state is taken to stay there: steps that
 have seen both of its sides hover about it."""
 
@@ -40,7 +40,7 @@ class Chattering:
 
     def __init__(self, dynamics: Dynamics, end: float, rtol: float) -> None:
         self._dynamics, self._end = dynamics, end
-        self._reach = min(max(FAR, TOLERANCES * rtol), FARTHEST)
+        self._reach = min(max(LARGER_MOVE, STAYS_WITHIN * rtol), STAYS_WITHIN_AT_MOST)
         self._any = dynamics.system.n_event_functions > 0
         self._events: deque[float] = deque(maxlen=2 * WINDOW + 1)
         self._count = 0
@@ -112,7 +112,7 @@ class Chattering:
         With a rate f ~ N of events N their number grows as exp(f t/N).
         """
         steady = (self._end - self._events[-1]) / max(last, 1e-300) * WINDOW
-        if steady < AT_LEAST or self._count < MANY or last <= 0.0:
+        if steady < AT_LEAST or self._count < TRUSTED_EVENTS or last <= 0.0:
             return steady
         power = math.log(before / last) / math.log((self._count - 0.5 * WINDOW) / (self._count - 1.5 * WINDOW))
         growing = LEAST_POWER < power < LARGEST_POWER

@@ -9,14 +9,14 @@ import numpy as np
 
 from ..dynamics import Dynamics
 
-FAR, NEAR = 1e-6, 1e-9
+LARGER_MOVE, SMALLER_MOVE = 1e-6, 1e-9
 """Sizes of moves, relative to the state and at least of 1 m, rad, m/s, rad/s, that take the state to both sides."""
-JUMPS, LEAST = 0.1, 1e-9
+JUMPS, LEAST_JUMP = 0.1, 1e-9
 """A force jumps where the smaller move leaves that part of the larger one's change of accelerations, and that many
 m/s^2 or rad/s^2."""
 BISECTIONS = 30
 """Halvings of a move in search of the zero of an event function: from 0.1 to the rounding of the smaller move."""
-AHEAD = 1e-4
+RATE_INTERVAL = 1e-4
 """Time, s, over which the rate of an event function is taken."""
 
 
@@ -48,12 +48,12 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
             return crossed
         far, near = (
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (_sides(dynamics, t, q, u, size) for size in (FAR, NEAR))
+            for a, b in (_sides(dynamics, t, q, u, size) for size in (LARGER_MOVE, SMALLER_MOVE))
         )
-    return crossed if near > max(JUMPS * far, LEAST) else crossed[:0]
+    return crossed if near > max(JUMPS * far, LEAST_JUMP) else crossed[:0]
 
 
-def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = FAR) -> np.ndarray:
+def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = LARGER_MOVE) -> np.ndarray:
     """The event functions that the motion is driven to from both sides, by a force that jumps there.
 
     There is then no solution in the ordinary sense but a sliding mode (Filippov, Differential Equations with
@@ -62,7 +62,7 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
     Parameters
     ----------
     reach : float
-        Size of the move, as `FAR`, within which a jump is looked for.
+        Size of the move, as `LARGER_MOVE`, within which a jump is looked for.
     """
     with dynamics.state.unchanged():
         crossed = _crossed(dynamics, t, q, u, reach)
@@ -84,13 +84,13 @@ def _slides(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
     """Whether the rates on both sides of an event function's zero differ as much however near the sides are to it."""
     q, u = _moved(q, u, _zero_within(dynamics, t, q, u, reach, event_function))
     change = []
-    for size in (FAR, NEAR):
+    for size in (LARGER_MOVE, SMALLER_MOVE):
         sides = _sides(dynamics, t, q, u, size)
         if not _driven_back(sides, np.array([event_function]))[0]:
             return False
         change.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
     far, near = change
-    return bool(near > max(JUMPS * far, LEAST))
+    return bool(near > max(JUMPS * far, LEAST_JUMP))
 
 
 def _zero_within(
@@ -108,7 +108,7 @@ def _zero_within(
     return 0.5 * (low + high)
 
 
-def _crossed(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = NEAR) -> np.ndarray:
+def _crossed(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = SMALLER_MOVE) -> np.ndarray:
     """The event functions that differ in sign between the two sides of a move."""
     one, other = (_values(dynamics, t, *_moved(q, u, way * reach)) for way in (1.0, -1.0))
     return np.flatnonzero(one * other < 0.0)
@@ -137,9 +137,9 @@ def _side(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> _Side:
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
         acceleration = np.full(len(u), np.nan)  # compares as no jump
-    moved = dynamics.system.of_body.moved(q, AHEAD * u)
-    ahead = _values(dynamics, t + AHEAD, moved, u + AHEAD * acceleration)
-    return _Side(values, acceleration, (ahead - values) / AHEAD)
+    moved = dynamics.system.of_body.moved(q, RATE_INTERVAL * u)
+    ahead = _values(dynamics, t + RATE_INTERVAL, moved, u + RATE_INTERVAL * acceleration)
+    return _Side(values, acceleration, (ahead - values) / RATE_INTERVAL)
 
 
 def _values(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:

@@ -10,14 +10,14 @@ from ..dynamics import Dynamics
 from ..suspect import suspect
 from ..trajectory import Rows
 
-LIGHT = 299_792_458.0
+SPEED_OF_LIGHT = 299_792_458.0
 """Speed of light, m/s."""
-BEYOND = 1e4
+UNBOUNDED_MOTION = 1e4
 """Sizes of the mechanism, or rad, that a motion may come to where it grows faster than under any force over time."""
 DECADES, FASTER = (1e-4, 1e-2, 1.0), 2.5
 """Parts of the largest motion; the time from the second to the third may be so many times that from the first to the
 second: 10 under a constant force, 3.2 where a force grows as time squared, 1 for exponential growth."""
-MANY = 100_000
+FOLLOWED_STEPS = 100_000
 """Steps for which a motion is followed wherever it goes."""
 INSTANTS = 2000
 """Of those stored, at which growth is looked at."""
@@ -41,21 +41,21 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
     Raises
     ------
     SolverError
-        Where a body is faster than light, or the motion grows like an exponential beyond `BEYOND`; names the body and the
+        Where a body is faster than light, or the motion grows like an exponential beyond `UNBOUNDED_MOTION`; names the body and the
         element that pulls hardest.
     """
-    if steps < MANY:
+    if steps < FOLLOWED_STEPS:
         return
     system = dynamics.system
     speed, body = fastest(system, u)
-    if speed > LIGHT:
+    if speed > SPEED_OF_LIGHT:
         raise SolverError(
             _sentence(dynamics, t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
         )
     times, places, _ = rows.stored
     few = slice(None, None, 1 + len(times) // INSTANTS)
     far = np.max(np.abs(np.vstack([places[few], q]) - places[0]) * reaches(system), axis=1, initial=0.0)
-    if far[-1] > BEYOND * system.size and exponential(np.append(times[few], t), np.maximum.accumulate(far)):
+    if far[-1] > UNBOUNDED_MOTION * system.size and exponential(np.append(times[few], t), np.maximum.accumulate(far)):
         what = f"body '{body}' has moved by {far[-1]:.3g} m, and ever faster, in a mechanism of {system.size:.3g} m"
         raise SolverError(_sentence(dynamics, t, q, u, what))
 

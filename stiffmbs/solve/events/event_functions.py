@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.law_zones import edges_of
+from ...compile.law_zones import zones_of
 from ...compile.machine.layout import EVENT_SEARCH, fill
 from ...compile.state import State
 
@@ -47,15 +47,15 @@ class EventSearch:
         self._cells = self.table.view(EVENT_SEARCH.cells)[0]
         if not n:
             return  # nothing to search for: none of its arrays is read
-        first_edge, edges, period = edges_of(system)
+        zones = zones_of(system)
         place = np.arange(NODES) * np.pi / (NODES - 1)
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
-        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "zone_low", "zone_high", "apart")  # fmt: skip
+        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
         self._arrays = {
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
-            "first_edge": first_edge, "edges": edges, "period": period, **{name: np.zeros(n) for name in work}, "found": self.found,
+            "first_edge": zones.first, "edges": zones.edges, "overlap": zones.overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
             "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip

@@ -9,7 +9,7 @@ from ...compile.inputs.ends import InputEnd
 from ..dynamics import Dynamics
 from ..trajectory import Grid, Outcome, Trajectory
 
-CLOSE = 1e-3
+NEAR_INPUT_END = 1e-3
 """Part of the run before the end of an input within which a solver that stops by itself stops for that input."""
 
 
@@ -30,7 +30,7 @@ def solve_up_to_the_inputs_end(dynamics: Dynamics, grid: Grid, solve: Callable[[
         return solve(grid)
     found = solve(_up_to(grid, end))
     own_end = found.outcome is Outcome.INTERRUPTED or (
-        found.outcome is Outcome.STOPPED and end.t - _reached(found) > CLOSE * (grid.end - grid.start)
+        found.outcome is Outcome.STOPPED and end.t - _reached(found) > NEAR_INPUT_END * (grid.end - grid.start)
     )
     return found if own_end else replace(found, outcome=Outcome.STOPPED, message=end.sentence())
 

@@ -14,7 +14,7 @@ from ...describe.settings import RunSettings
 from ...errors import SolverError
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..events.chattering import jump_sentence
-from ..events.discontinuity import FAR, sliding
+from ..events.discontinuity import LARGER_MOVE, sliding
 from ..events.limits import refuse_beyond_limits
 from ..events.narrow_inputs import narrower_than_steps
 from ..initial import InitialValues
@@ -27,7 +27,7 @@ EULER_CROMER = Routine(
     "stiffmbs.solve.native.euler_cromer", "euler_cromer", "int64(float64, float64, int64, int64, float64, int64*)"
 )
 FIXED_STEPS = Routine("stiffmbs.solve.native.runge_kutta", "fixed_steps", "int64(float64, float64, int64, int64*)")
-LOOKS, FARTHEST = 50, 0.1
+LOOKS, LARGEST_CHATTER = 50, 0.1
 """How often a run looks whether a force jumps back and forth, and the largest change of a velocity in a step that is taken for that."""
 STEP_ROUNDING = 1e-9
 """Part of a step by which an output time may miss a whole number of steps."""
@@ -119,7 +119,7 @@ def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
     q, u = stepper.q.copy(), stepper.u.copy()
     dynamics.state.q[:], dynamics.state.u[:] = q, u
     change = 2.0 * step * float(np.max(np.abs(dynamics.accelerate(t)[1]), initial=0.0))
-    found = sliding(dynamics, t, q, u, min(max(change, FAR), FARTHEST))
+    found = sliding(dynamics, t, q, u, min(max(change, LARGER_MOVE), LARGEST_CHATTER))
     stepper.q[:], stepper.u[:] = q, u
     return f"at t = {t:.6g} s and before, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
 

@@ -17,6 +17,7 @@ from ..linear.blocks import QUAD, Blocks, filled
 from ..linear.elimination_order import EliminationOrder, nodes_in_order
 from .fixed_order import FixedOrder, Memory
 from .paired_columns import PairedColumns
+from .when_needed import WhenNeeded
 
 _MODULE = "stiffmbs.solve.linear.native.block_lu"
 SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
@@ -93,4 +94,8 @@ class BlockLU(FixedOrder):
             "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(scratch),
             **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
         }  # fmt: skip
-        return Memory(packed_with_memory(BLOCK_LU, arrays), arrays, with_pivots.factors)
+        content = packed_with_memory(BLOCK_LU, arrays)
+        cells = content.view(BLOCK_LU.cells)[0]
+        needed = WhenNeeded(cells, {"setup_pivots": PairedColumns.setup, "solve_pivots": PairedColumns.solve})
+        cells["compile_pivots"] = needed.address
+        return Memory(content, arrays, with_pivots.factors, needed)

@@ -132,6 +132,15 @@ class Connection:
             self.ask("IDARootInit", self.n_event_functions, SWITCHES.address)
             self.ask("IDASetNoInactiveRootWarn")
 
+    def address(self, function: str) -> int:
+        """That of one of SUNDIALS' functions, for compiled code."""
+        return self._session.libraries.address(function)
+
+    @property
+    def on_one_thread(self) -> bool:
+        """Whether the linear solver never starts threads of its own."""
+        return not self._session.libraries.may_start_threads
+
     def ask(self, function: str, *arguments: Any) -> None:
         """Call one of IDA's functions.
 
@@ -197,7 +206,7 @@ class Connection:
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and keep the history of the call; returns IDA's last flag."""
-        with self._session.libraries.on_one_thread():
+        with self._session.call():
             flag = loop.call(*arguments, self.table)
         self.history.add(int(self.cells["recorded"]))
         return flag

@@ -21,11 +21,16 @@ class ErrorNorm:
     ----------
     n : int
         Number of unknowns.
+
+    Attributes
+    ----------
+    table : ndarray of int
+        For compiled code (`stiffmbs.compile.machine.layout.ERROR_NORM`).
     """
 
     def __init__(self, n: int) -> None:
-        self._table = np.zeros(len(ERROR_NORM), dtype=np.int64)
-        self._cells = self._table.view(ERROR_NORM.cells)[0]
+        self.table = np.zeros(len(ERROR_NORM), dtype=np.int64)
+        self._cells = self.table.view(ERROR_NORM.cells)[0]
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
@@ -55,7 +60,7 @@ class ErrorNorm:
             "set_growth": "IDASetEtaFixedStepBounds",
         }  # fmt: skip
         fill(
-            self._table,
+            self.table,
             ERROR_NORM,
             {
                 "memory": memory, **{name: libraries.address(function) for name, function in functions.items()},
@@ -66,7 +71,7 @@ class ErrorNorm:
             },
         )  # fmt: skip
         try:
-            take_norm(session, y_vector, NORM.address, self._table)
+            take_norm(session, y_vector, NORM.address, self.table)
         except Unavailable:
             return
 

@@ -16,6 +16,7 @@ from .libraries import Libraries, ida_libraries
 from .matrices import Assembled
 from .operations import take_place
 from .session import Session
+from .when_needed import WhenNeeded
 
 _MODULE = "stiffmbs.solve.native.fixed_order"
 SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
@@ -32,11 +33,14 @@ class Memory:
         The table that takes the place of the content of a solver of SUNDIALS.
     arrays, factors : dict
         What the tables of the solver and of its factors refer to.
+    needed : WhenNeeded or None
+        Routines that the solver may ask for.
     """
 
     content: np.ndarray
     arrays: dict[str, Any]
     factors: dict[str, Any]
+    needed: WhenNeeded | None = None
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,8 @@ class FixedOrder:
         solver = session.keep(s.SUNLinSol_Band(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
         memory = self.memory(s.address("N_VGetArrayPointer"))
         functions = {"SUNLinSolSetup_Band": self.setup.address, "SUNLinSolSolve_Band": self.solve.address}
+        if memory.needed:
+            session.may_need(memory.needed)
         take_place(session, solver, self.n, functions, memory.content)
         return Assembled(
             matrix, solver, memory.factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64), (memory,), memory.content.view(self.layout.cells)[0]

@@ -24,7 +24,7 @@ from .step_log import StepLog
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
-LONGEST_CALL, STEP = 0.1, 1e-7
+LONGEST_CALL, STEP_TIME = 0.1, 1e-7
 """Time, s, after which a call returns, for progress and interruption; of a step for each unknown, by a rough measure (a clock
 would make results hang on the machine's mood, as Newton's iteration is eased between calls)."""
 
@@ -72,6 +72,8 @@ class NativeIda:
     n_event_functions : int
         Switches of the system; `advance` returns where one of them changes its sign.
     matrix : Matrix
+    connection : Connection
+        To IDA, for compiled code.
 
     Raises
     ------
@@ -106,13 +108,13 @@ class NativeIda:
         self.matrix = matrix
         session = Session(self.matrix.libraries())
         self._finalizer = weakref.finalize(self, session.close)
-        self._ida = ida = Connection(
+        self.connection = self._ida = ida = Connection(
             equations, state, self.matrix, np.arange(n) if reported is None else reported, session
         )
         self.y, self.yp, self.n_event_functions = ida.y, ida.yp, ida.n_event_functions
         self._statistics = Statistics(session.libraries, ida.memory)
         self._flag, self._begun = 0, False
-        self._pace = int(np.clip(LONGEST_CALL / (STEP * n), 1, MOST_STEPS))
+        self._pace = int(np.clip(LONGEST_CALL / (STEP_TIME * n), 1, MOST_STEPS))
         self._look = self._usual_pace = self._pace
         self._trace = np.empty((0, 2 + 2 * n))
         ida.set_tolerances(rtol, atol)

@@ -68,6 +68,11 @@ class Libraries:
         """The library that works with OpenMP."""
         return next((lib for lib in self.loaded if hasattr(lib, "omp_set_num_threads")), None)
 
+    @property
+    def may_start_threads(self) -> bool:
+        """Whether one of the libraries works with OpenMP."""
+        return self._with_threads is not None
+
     @contextmanager
     def on_one_thread(self) -> Iterator[None]:
         """Keep OpenMP, which SuperLU_MT uses, from starting threads of its own that only wait for one another.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
 from ...compile.state import State
 from ...describe.settings import RunSettings
+from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
 from ..error_control.newton import NUMBERS_END, Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
@@ -19,6 +21,9 @@ from .engine import Reached
 from .ida import NativeIda
 from .matrices import Matrix, Sparse
 from .status import Status
+
+if TYPE_CHECKING:
+    from .restarts import Restarts
 
 ROWS_OF_STEPS = 1000
 """Room for rows in one call that reports every step."""
@@ -58,7 +63,7 @@ class NativeEngine:
             renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
-        self._rtol = settings.rtol
+        self._rtol, self._settings, self._control = settings.rtol, settings, control
         self._order = StabilityLimitDetection(equations, settings)
         self.forget()
 
@@ -148,6 +153,15 @@ class NativeEngine:
             for k in np.flatnonzero(at[name] == unknown).tolist():
                 return f"; the largest error was in {system.name_of(k, labels)}"
         return ""
+
+    def restarts(self, dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> Restarts | None:
+        """Compiled starts of this integrator from the state in q and u; None where they do not serve."""
+        from .restarts import Restarts
+
+        connection = self._ida.connection
+        if not Restarts.serve(dynamics.system, connection):
+            return None
+        return Restarts(dynamics, (q, u), self._equations, connection, self._settings, self._control)
 
     def at(self, t: float) -> np.ndarray:
         """All unknowns at a time within the last step."""

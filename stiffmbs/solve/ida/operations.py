@@ -13,7 +13,7 @@ from ..native.statuses import CONTENT, NORM_TABLE, OPERATIONS
 from .libraries import Libraries, Unavailable
 from .session import Session
 
-LONGEST = 16
+MOST_WORDS = 16
 """Words of a solver, or of its table of operations, that are looked through."""
 
 
@@ -40,11 +40,11 @@ def take_place(session: Session, solver: int, size: int, functions: Mapping[str,
         When the solver does not look as expected.
     """
     replaced = {session.libraries.address(name): address for name, address in functions.items()}
-    own = list(takewhile(lambda word: word != session.context.value, _words(solver, LONGEST)))
-    table = next((t for t in own[1:] if t and set(replaced) <= set(_words(t, LONGEST))), None)
+    own = list(takewhile(lambda word: word != session.context.value, _words(solver, MOST_WORDS)))
+    table = next((t for t in own[1:] if t and set(replaced) <= set(_words(t, MOST_WORDS))), None)
     if table is None or session.libraries.index.from_address(own[CONTENT]).value != size:
         raise Unavailable("the SUNDIALS libraries lay out linear solvers in another way")
-    for k, address in enumerate(_words(table, LONGEST)):
+    for k, address in enumerate(_words(table, MOST_WORDS)):
         if address in replaced:
             _write(table, k, replaced[address])
     _write(solver, CONTENT, content.ctypes.data)

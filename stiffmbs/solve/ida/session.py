@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import numpy as np
 
 from .libraries import Libraries
+from .when_needed import WhenNeeded
 
 
 class Session:
@@ -23,6 +24,7 @@ class Session:
     def __init__(self, libraries: Libraries) -> None:
         self.libraries = libraries
         self._frees = ExitStack()
+        self._needed: list[WhenNeeded] = []
         self.context = ctypes.c_void_p()
         libraries.SUNContext_Create(0, ctypes.byref(self.context))
         self._frees.callback(libraries.SUNContext_Free, ctypes.byref(self.context))
@@ -44,6 +46,18 @@ class Session:
     def before_freed(self, undo: Callable[[], Any]) -> None:
         """Have something undone before the objects made so far are freed."""
         self._frees.callback(undo)
+
+    def may_need(self, routines: WhenNeeded) -> None:
+        """Note routines that a linear solver may ask for."""
+        self._needed.append(routines)
+
+    @contextmanager
+    def call(self) -> Iterator[None]:
+        """Around a call of compiled code: libraries on one thread; raises afterwards what kept a routine from being compiled."""
+        with self.libraries.on_one_thread():
+            yield
+        for routines in self._needed:
+            routines.raise_fault()
 
     def vector(self, values: np.ndarray) -> int:
         """An N_Vector whose values are those of an array, which must live as long."""

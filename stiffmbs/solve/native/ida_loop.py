@@ -93,7 +93,7 @@ def _see_inputs(c, stop):
 
 
 @compiled
-def _stepped(c, ida, toward, stop):
+def stepped(c, ida, toward, stop):
     """One step; returns IDA's flag and notes the step's end, order and size in the history."""
     before = c.internal
     begun = c.returned
@@ -221,7 +221,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     for _ in range(min(most, MOST_STEPS)):
         if flag != OK:
             break
-        flag = _stepped(c, ida, times[c.served] if c.served < count else stop, stop)
+        flag = stepped(c, ida, times[c.served] if c.served < count else stop, stop)
         if flag >= 0:
             outcome = _served(c, times, count, y_out, yp_out)
             flag = outcome if outcome < 0 else flag
@@ -236,7 +236,7 @@ def steps(most, stop, t_out, y_out, ida):
     c.traced = 0
     flag = int32(OK)
     while flag == OK and c.served < min(most, MOST_STEPS):
-        flag = _stepped(c, ida, stop, stop)
+        flag = stepped(c, ida, stop, stop)
         if flag >= 0:
             k = c.served
             t_out[k] = c.returned

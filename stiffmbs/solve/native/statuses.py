@@ -22,6 +22,8 @@ PAUSED, AT_END, AT_EVENT, UNSTABLE = 0, 1, 2, 3
 
 OK, RECOVERABLE, FAILED = 0, 1, -1
 """What a callback of SUNDIALS returns: after a recoverable failure IDA tries a smaller step."""
+NOT_COMPILED = 3
+"""Last flag of a linear solver that asked for routines in vain (`stiffmbs.solve.ida.when_needed`)."""
 ONE_STEP, STOP_RETURN, ROOT_RETURN = 2, 1, 2
 """IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
 CONTENT, OPERATIONS = 0, 1

@@ -14,7 +14,7 @@ from stiffmbs.compile.quaternions import rotated
 from stiffmbs.show.drawing.as_json import drawing_json, poses_json
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.draw import state_drawn
-from stiffmbs.show.drawing.painted import LONGEST, largest_force, painted, stretched
+from stiffmbs.show.drawing.painted import LONGEST_ARROW, largest_force, painted, stretched
 from stiffmbs.show.drawing.palette import LOAD, MARKS
 from stiffmbs.show.drawing.poses import Poses, described_poses, poses_of
 from stiffmbs.show.drawing.view import from_angles, view_named
@@ -103,7 +103,7 @@ def test_arrows_are_to_scale():
     drawing, poses = state_drawn(model)
     ((start, end),) = arrows(drawing, poses)
     assert start == pytest.approx([0.2, 0])
-    assert end - start == pytest.approx([0, LONGEST * drawing.size * 2 * 9.81 / 20])
+    assert end - start == pytest.approx([0, LONGEST_ARROW * drawing.size * 2 * 9.81 / 20])
 
 
 def test_forces_that_are_rounding_are_not_drawn():

@@ -31,6 +31,7 @@ class BoxPlaneImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
+        """One at each corner."""
         halves = [e.named(size * axis / 2) for size, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
         middle, n = e.i.point - e.j.point, e.j.z
         found = []

@@ -33,6 +33,7 @@ class CylinderPlaneImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
+        """One at the lowest point of each end's rim: half the axis, and a radius along the steepest way down."""
         from sympy import sqrt
 
         n, axis = e.j.z, e.i.z

@@ -30,6 +30,10 @@ class EllipsoidPlaneImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
+        """One at the lowest point, at which the surface's normal is that of the plane.
+
+        With the semi-axes as the columns of A, it lies A A^T n / |A^T n| below the middle, and |A^T n| is how far the plane may come.
+        """
         from sympy import sqrt
 
         n = e.j.z

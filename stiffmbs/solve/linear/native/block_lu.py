@@ -19,11 +19,9 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, float
 from stiffmbs.compile.machine.native.factors import FULL
 from stiffmbs.compile.machine.native.memory import FLOAT, holds
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, set_quad, spread, sum_of
-from stiffmbs.solve.native.calls import call_address, int32
+from stiffmbs.solve.native.calls import call_address, call_int, int32
 from stiffmbs.solve.native.paired_columns import paired_view
-from stiffmbs.solve.native.paired_columns import setup as setup_with_pivots
-from stiffmbs.solve.native.paired_columns import solve as solve_with_pivots
-from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK
+from stiffmbs.solve.native.statuses import CONTENT, FAILED, NOT_COMPILED, OK
 
 LU = list(BLOCK_LU).index("lu")
 LARGEST_RESIDUAL, REFINABLE = 1e-9, 1e-7
@@ -297,6 +295,14 @@ def _forget(s):
     paired_view(ints(s.with_pivots[CONTENT])).ready = 0
 
 
+@compiled
+def _has_pivots(s):
+    """Whether the routines with pivots are at hand; few runs need them, so they are compiled when first asked for."""
+    if s.solve_pivots == 0:
+        call_int(s.compile_pivots, ())
+    return s.solve_pivots != 0
+
+
 def setup(solver, matrix):
     """SUNLinSolSetup: factors without pivots where they can be trusted, else with pivots."""
     table = ints(solver[CONTENT])
@@ -319,7 +325,10 @@ def setup(solver, matrix):
         s.refused += 1
         s.waits = WAITS_FOR
     s.pivoted = 1
-    outcome = setup_with_pivots(s.with_pivots, matrix)
+    if not _has_pivots(s):
+        s.last_flag = NOT_COMPILED
+        return int32(FAILED)
+    outcome = call_int(s.setup_pivots, (s.with_pivots, matrix))
     s.last_flag = paired_view(ints(s.with_pivots[CONTENT])).last_flag
     return int32(outcome)
 
@@ -328,7 +337,7 @@ def solve(solver, matrix, x, b, tolerance):
     """SUNLinSolSolve: x = A^-1 b."""
     s = block_view(ints(solver[CONTENT]))
     if s.pivoted:
-        return int32(solve_with_pivots(s.with_pivots, matrix, x, b, tolerance))
+        return int32(call_int(s.solve_pivots, (s.with_pivots, matrix, x, b, tolerance)))
     into, of = floats(call_address(s.array_of, x)), floats(call_address(s.array_of, b))
     _solved(s, of)
     for j in range(s.n):

@@ -7,7 +7,8 @@ Thompson, Comput. Math. Appl. 39 (2000) 43-49, for the need; Park and Barton, AC
 
 An edge of an event function is zero: the step ends where the event function passes it.  The edges of an argument part its law into zones;
 to go from one zone into the next is nothing that a step's error control does not see, but a zone that the step has passed
-through, or has visited between its ends, has been overlooked.
+through, or has visited between its ends, has been overlooked.  A zone is visited where its law departs from what it was before
+the edge, further than the zones overlap.
 """
 
 from __future__ import annotations
@@ -25,10 +26,11 @@ LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
 FITS, NOISE = 0.02, 1e-9
 """Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
 state that rounding takes of values and rates."""
+REPEATED = 8.0
+"""Times that a function may miss the cubic of what its rate differs by, taken over another time: in a step of some nanoseconds
+rates are rounding, and no part is short enough for them to fit."""
 SHALLOW = 1e-5
 """Part of that noise which no event function is taken to go beyond zero by: rounding alone changes the sign of a contact that is just closed."""
-BARELY = 1e-6
-"""Part of a zone that an argument must go into it for the zone to be visited: less is rounding of a law's argument, and no feature."""
 WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
@@ -87,6 +89,24 @@ def _edge(w, k, number):
 
 
 @compiled
+def _overlap(w, k, number):
+    """How far the zones `number` and `number` + 1 of function k, one beside the other, overlap."""
+    first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
+    return w.overlap[first + (number % count if w.period[k] > 0.0 else min(max(number, 0), count - 1))]
+
+
+@compiled
+def _beyond(w, k, value, one, other, least):
+    """Whether a function at a value is in a zone that is neither of two, further than it overlaps with these and than `least`."""
+    here, low, high = zone(w, k, value), min(one, other), max(one, other)
+    if here > high:
+        return value - _edge(w, k, high) > max(least, _overlap(w, k, high))
+    if here < low:
+        return _edge(w, k, low - 1) - value > max(least, _overlap(w, k, low - 1))
+    return False
+
+
+@compiled
 def noted(target, values, count):
     """Keep the values of all event functions."""
     for k in range(count):
@@ -142,7 +162,7 @@ def _reaches(w, k, start, start_rate, end, end_rate, missed):
     )
     if k < w.n_event_functions:
         return zone(w, k, low) != one or zone(w, k, high) != one
-    return zone(w, k, low) < min(one, other) or zone(w, k, high) > max(one, other)
+    return _beyond(w, k, low, one, other, 0.0) or _beyond(w, k, high, one, other, 0.0)
 
 
 @compiled
@@ -281,9 +301,18 @@ def _mismatch(w, part, noise):
         if not _reaches(w, k, start, start_rate, end, end_rate, max(first, second)):
             continue
         seen = max(start, end, w.m[k], w.m2[k]) - min(start, end, w.m[k], w.m2[k])
-        missed = max(first, second) / (FITS * seen + noise)
+        missed = max(first, second) / (FITS * seen + noise + w.noise[k])
         worst = max(worst, missed) if isfinite(missed) else MOST_MISSED
     return worst
+
+
+@compiled
+def _note_noise(w, s, begun, h, end, part):
+    """Note by how much rounding alone may make functions miss their cubics: what rates over another time differ by."""
+    apart = 2.0 * DIFFERENCE * part
+    nearby = _values(w, s, begun, h, end - apart)
+    for k in range(w.n):
+        w.noise[k] = REPEATED * part * abs((w.b[k] - nearby[k]) / apart - w.b_rate[k])
 
 
 @compiled
@@ -314,13 +343,7 @@ def _visits(w, k, value, low, high):
         return here != one and abs(value) > w.depth
     if abs(one - other) > 1:
         return here != one
-    if here > max(one, other):
-        passed = max(one, other)
-        return value - _edge(w, k, passed) > max(w.depth, BARELY * (_edge(w, k, passed + 1) - _edge(w, k, passed)))
-    if here < min(one, other):
-        passed = min(one, other) - 1
-        return _edge(w, k, passed) - value > max(w.depth, BARELY * (_edge(w, k, passed) - _edge(w, k, passed - 1)))
-    return False
+    return _beyond(w, k, value, one, other, w.depth)
 
 
 @compiled
@@ -421,7 +444,12 @@ def first_event(w, s, begun, h):
         noted(w.m, _values(w, s, begun, h, low + LOOKED_AT * part), w.n)
         noted(w.m2, _values(w, s, begun, h, low + ALSO_AT * part), w.n)
         parts += 1
+        for k in range(w.n):
+            w.noise[k] = 0.0
         missed = _mismatch(w, part, noise)
+        if missed > 1.0:
+            _note_noise(w, s, begun, h, end, part)
+            missed = _mismatch(w, part, noise)
         if missed > 1.0 and part > LEAST_PART and parts < MOST_PARTS:
             part *= 0.5
             continue

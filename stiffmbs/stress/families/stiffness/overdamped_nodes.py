@@ -109,11 +109,11 @@ def _as_a_spring(solution: Solution) -> float:
 
 CASES = (
     *(
-        _case(f"node of {mass:.0e} kg", node(mass), rtol, quick=mass in (1e-6, 1e-9) and rtol in (1e-4, 1e-6, 1e-8))
+        _case(f"node of {mass:.0e} kg", node(mass), rtol, quick=mass in (1e-6, 1e-9) and rtol in (1e-4, 1e-6))
         for mass in (1e-6, 1e-7, 1e-8, 1e-9, 1e-10) for rtol in (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
     ),
     *(_case(f"node of {mass:.0e} kg in space", node(mass, 3), quick=mass == 1e-8) for mass in (1e-6, 1e-8, 1e-10)),
-    *(_case(f"two nodes of {mass:.0e} kg and ten times that", two_nodes(mass), quick=mass == 1e-9) for mass in (1e-6, 1e-9)),
+    *(_case(f"two nodes of {mass:.0e} kg and ten times that", two_nodes(mass), quick=False) for mass in (1e-6, 1e-9)),
     *(_case(f"node of {mass:.0e} kg, quadratic drag", node(mass, quadratic=True, drag=1.0), quick=mass == 1e-9) for mass in (1e-6, 1e-9)),
     *(_case(f"node of 1e-08 kg, drag {drag:g}", node(1e-8, drag=drag), quick=drag == 0.1) for drag in (1e-3, 0.1)),
     *(

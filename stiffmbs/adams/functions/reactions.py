@@ -1,0 +1,63 @@
+"""What joints do to their markers as formulas that forces may use: JOINT(id, jflag, comp, rm), and JPRIM of the same.
+
+A scene's formulas know a reaction on marker I in ground axes.  Its component along an axis of another marker is the sum of its
+components times those of the axis, which are distances from that marker to its tip.
+"""
+
+from __future__ import annotations
+
+import ast
+
+from ..scene.mechanism import Mechanism, Place
+from ..statements.constraints import Joint
+from .function import Function
+from .trees import call, difference, measured, number, power, product, total
+
+REACTIONS = ("JOINT", "JPRIM")
+COMPONENTS = ("FM", "FX", "FY", "FZ", "TM", "TX", "TY", "TZ")
+"""As functions of forces number them from 1."""
+BY_ITS_PLACE = ("RACKPIN",)
+"""Joints that the scene makes of formulas, whose reactions no other formula can use."""
+
+
+def reaction(joint: Joint, component: str, on_j: bool, axes: Place | None, mechanism: Mechanism) -> ast.expr:
+    """A component of what a joint does to its marker I or J, N or N m, along ground's axes or those of a marker."""
+    vector = _vector(joint, component[0].lower(), on_j, mechanism)
+    if component[1] == "M":
+        return call("sqrt", total([power(part, 2) for part in vector]))
+    along = component[1].lower()
+    if axes is None or (axes.body == "ground" and not axes.name):
+        return vector["xyz".index(along)]
+    tip = mechanism.tip(axes, along)
+    ways = (measured(f"d{axis}", tip, axes.reference, "") for axis in "xyz")
+    return total([product(part, way) for part, way in zip(vector, ways, strict=True)])
+
+
+def _vector(joint: Joint, letter: str, on_j: bool, mechanism: Mechanism) -> list[ast.expr]:
+    """Force (f) on marker I or J, or torque (t) about it, in ground axes."""
+    on_i = [call(f"{letter}{axis}", ast.Name(joint.name)) for axis in "xyz"]
+    if not on_j:
+        return on_i
+    if letter == "f":
+        return [ast.UnaryOp(ast.USub(), part) for part in on_i]
+    i, j = (mechanism.place(ident, joint).reference for ident in (joint.i, joint.j))
+    force = [call(f"f{axis}", ast.Name(joint.name)) for axis in "xyz"]
+    arm = [measured(f"d{axis}", i, j, "") for axis in "xyz"]
+    moments = [
+        difference(product(arm[(k + 1) % 3], force[(k + 2) % 3]), product(arm[(k + 2) % 3], force[(k + 1) % 3]))
+        for k in range(3)
+    ]
+    return [difference(number(0.0), total([part, moment])) for part, moment in zip(on_i, moments, strict=True)]
+
+
+def component_of(name: str, number_of_it: int, function: Function) -> str:
+    """The component that a function of forces asks for by its number.
+
+    Raises
+    ------
+    DatasetFault
+        When there is none of that number.
+    """
+    if not 1 <= number_of_it <= len(COMPONENTS):
+        raise function.fault(f"found the component {number_of_it} of {name}, expected 1 to {len(COMPONENTS)}")
+    return COMPONENTS[number_of_it - 1]

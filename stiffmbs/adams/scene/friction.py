@@ -1,0 +1,189 @@
+"""Friction of joints as forces and torques by formulas.  MSC Adams/Solver, FRICTION statement.
+
+What presses a joint's surfaces is read off its reaction, and the coefficient goes over the speed of the surface as Adams' STEP:
+from zero to the static one at the stiction velocity, on to the dynamic one at a multiple of that.  Nothing sticks for good: Adams'
+creep of up to MAX_STICTION_DEFORMATION has no counterpart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..functions.expression import parse
+from ..functions.function import Function
+from ..functions.translate import Translation
+from ..statements.constraints import TRANSLATIONAL, Joint
+from ..statements.fault import of_each
+from ..statements.friction import JointFriction
+from .coordinates import initial_displacement
+from .mechanism import Mechanism
+
+TORQUE = "_torque"
+SLOW = 1e-6
+"""Part of the stiction velocity that keeps the direction of sliding from being undefined at rest."""
+TINY = 1e-18
+"""N^2 or N^2 m^2, in SI, under the root of a load that may vanish."""
+
+
+def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+    """The forces and torques of all frictions by name; none where commands have deactivated the joint."""
+    return of_each(
+        _acting(mechanism),
+        lambda friction: _Rubbing(friction, _joint(friction, mechanism), mechanism, translation).made(),
+    )
+
+
+def notes(mechanism: Mechanism) -> Iterator[str]:
+    """What Adams' friction has in addition, in one sentence."""
+    labels = ", ".join(friction.label for friction in _acting(mechanism))
+    if labels:
+        yield (
+            f"{labels}: below STICTION_TRANSITION_VELOCITY the joint creeps, where Adams holds it within "
+            "MAX_STICTION_DEFORMATION"
+        )
+
+
+def _acting(mechanism: Mechanism) -> list[JointFriction]:
+    dataset = mechanism.dataset
+    return [friction for friction in dataset.frictions.values() if ("JOINT", friction.joint) not in dataset.inactive]
+
+
+def _joint(friction: JointFriction, mechanism: Mechanism) -> Joint:
+    joint = mechanism.dataset.joints.get(friction.joint)
+    if joint is None:
+        raise friction.fault(f"found JOINT = {friction.joint}, expected the number of a JOINT")
+    if joint.kind not in _KINDS:
+        raise friction.fault(f"found friction of {joint.label}, {joint.kind}, expected a joint of {', '.join(_KINDS)}")
+    return joint
+
+
+_KINDS = ("REVOLUTE", "TRANSLATIONAL", "CYLINDRICAL", "SPHERICAL")
+
+
+class _Rubbing:
+    """The law of one joint, in the language of the dataset."""
+
+    def __init__(self, friction: JointFriction, joint: Joint, mechanism: Mechanism, translation: Translation) -> None:
+        self._f, self._joint, self._mechanism, self._translation = friction, joint, mechanism, translation
+        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+        self._places = i, j
+        self._ends = {"i": i.reference, "j": j.body, "frame": j.reference}
+
+    def made(self) -> dict[str, Any]:
+        """The elements of the scene."""
+        makers = {
+            "REVOLUTE": self._pin,
+            "TRANSLATIONAL": self._guide,
+            "CYLINDRICAL": self._sleeve,
+            "SPHERICAL": self._ball,
+        }
+        return makers[self._joint.kind]()
+
+    def _pin(self) -> dict[str, Any]:
+        f = self._f
+        load = self._sum(
+            ("REACTION_FORCE", f"{f.pin!r}*{self._across('F')} + {f.collar!r}*ABS({self._part('F', 'Z')})"),
+            ("BENDING_MOMENT", f"{f.pin / f.bending_arm!r}*{self._across('T')}"),
+        )
+        speed = f"{f.pin!r}*{self._turning('Z')}"
+        law = f"-({self._coefficient(speed)})*({load}) - {self._preload(f.torque)}*({self._direction(speed)})"
+        return self._torque([None, None, law], self._f.name)
+
+    def _guide(self) -> dict[str, Any]:
+        f, speed = self._f, self._sliding("Z")
+        load = self._sum(
+            ("REACTION_FORCE", self._across("F")),
+            ("BENDING_MOMENT", f"{self._across('T')}/{self._overlap()}"),
+            ("TORSIONAL_MOMENT", f"ABS({self._part('T', 'Z')})/{f.torsion_arm!r}"),
+        )
+        law = f"-({self._coefficient(speed)})*({load}) - {self._preload(f.force)}*({self._direction(speed)})"
+        return self._force([None, None, law], f.name)
+
+    def _sleeve(self) -> dict[str, Any]:
+        f, along, about = self._f, self._sliding("Z"), f"({self._f.pin!r}*{self._turning('Z')})"
+        speed = self._speed(along, about)
+        load = self._sum(
+            ("REACTION_FORCE", self._across("F")), ("BENDING_MOMENT", f"{self._across('T')}/{self._overlap()}")
+        )
+        mu, way = self._coefficient(speed), self._direction(speed)
+        force = f"-(({mu})*({load}) + {self._preload(f.force)}*({way}))*{along}/{speed}"
+        torque = f"-({f.pin!r}*({mu})*({load}) + {self._preload(f.torque)}*({way}))*{about}/{speed}"
+        return self._force([None, None, force], f.name) | self._torque([None, None, torque], f.name + TORQUE)
+
+    def _ball(self) -> dict[str, Any]:
+        f = self._f
+        parts = [f"({f.ball!r}*{self._turning(axis)})" for axis in "XYZ"]
+        speed = self._speed(*parts)
+        load = self._sum(("REACTION_FORCE", f"{f.ball!r}*{self._whole('F')}"))
+        size = f"(({self._coefficient(speed)})*({load}) + {self._preload(f.torque)}*({self._direction(speed)}))/{speed}"
+        return self._torque([f"-{part}*{size}" for part in parts], f.name)
+
+    def _sum(self, *loads: tuple[str, str]) -> str:
+        return " + ".join(text for name, text in loads if name in self._f.inputs) or "0"
+
+    def _preload(self, size: float) -> str:
+        return repr(size if "PRELOAD" in self._f.inputs else 0.0)
+
+    def _coefficient(self, speed: str) -> str:
+        """mu over a speed with its sign."""
+        f = self._f
+        slow, fast, less = f.stiction_velocity, f.sliding_velocity, f.static - f.dynamic
+        held = f"STEP({speed}, {-slow!r}, {-f.static!r}, {slow!r}, {f.static!r})"
+        if not less:
+            return held
+        fallen = (f"STEP({sign}({speed}), {slow!r}, 0, {fast!r}, {less!r})" for sign in ("", "-"))
+        return f"{held} - {next(fallen)} + {next(fallen)}"
+
+    def _direction(self, speed: str) -> str:
+        slow = self._f.stiction_velocity
+        return f"STEP({speed}, {-slow!r}, -1, {slow!r}, 1)"
+
+    def _speed(self, *parts: str) -> str:
+        squares = " + ".join(f"{part}**2" for part in parts)
+        return f"SQRT({squares} + {(SLOW * self._f.stiction_velocity) ** 2!r})"
+
+    def _overlap(self) -> str:
+        f = self._f
+        if not f.growth:
+            return repr(f.overlap)
+        length = self._mechanism.dataset.units.length
+        first = initial_displacement(TRANSLATIONAL, *self._places) / length
+        way = f"(DZ({self._joint.i},{self._joint.j},{self._joint.j}) - ({first!r}))"
+        return f"({f.overlap!r} {'+' if f.growth > 0 else '-'} {way})"
+
+    def _turning(self, axis: str) -> str:
+        i, j = self._joint.i, self._joint.j
+        return f"W{axis}({i},{j},{j})"
+
+    def _sliding(self, axis: str) -> str:
+        i, j = self._joint.i, self._joint.j
+        return f"V{axis}({i},{j},{j},{j})"
+
+    def _part(self, letter: str, axis: str) -> str:
+        component = 4 * (letter == "T") + "MXYZ".index(axis) + 1
+        return f"JOINT({self._joint.ident},0,{component},{self._joint.j})"
+
+    def _whole(self, letter: str) -> str:
+        return self._root(letter, "XYZ")
+
+    def _across(self, letter: str) -> str:
+        """The load across the axis z of marker J."""
+        return self._root(letter, "XY")
+
+    def _root(self, letter: str, axes: str) -> str:
+        units = self._mechanism.dataset.units
+        tiny = TINY / units.of(force=1, length=1 if letter == "T" else 0) ** 2
+        return f"SQRT({' + '.join(f'{self._part(letter, axis)}**2' for axis in axes)} + {tiny!r})"
+
+    def _force(self, laws: list[str | None], name: str) -> dict[str, Any]:
+        return {name: {"type": "force", **self._ends, "force": [self._formula(law, 0) for law in laws]}}
+
+    def _torque(self, laws: list[str | None], name: str) -> dict[str, Any]:
+        return {name: {"type": "torque", **self._ends, "torque": [self._formula(law, 1) for law in laws]}}
+
+    def _formula(self, law: str | None, arm: int) -> str | int:
+        if law is None:
+            return 0
+        function = Function(law, parse(law), self._f.line, self._f.label)
+        return self._translation.formula(function, self._translation.units.of(force=1, length=arm))

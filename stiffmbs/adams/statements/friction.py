@@ -1,0 +1,143 @@
+"""Friction of joints.  MSC Adams/Solver, FRICTION statement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .arguments import Arguments
+from .constraints import Numbered
+from .text import Statement
+from .units import Units
+
+INPUTS = ("PRELOAD", "REACTION_FORCE", "BENDING_MOMENT", "TORSIONAL_MOMENT")
+OVERLAP = {"CONSTANT": 0, "INCREASE": 1, "DECREASE": -1}
+
+
+@dataclass(frozen=True)
+class JointFriction(Numbered):
+    """Friction of one joint, in the dataset's units.
+
+    Attributes
+    ----------
+    joint : int
+    static, dynamic : float
+        Coefficients.
+    stiction_velocity, sliding_velocity : float
+        Speeds of the surface up to which the coefficient is the static one, and from which on it is the dynamic one.
+    inputs : frozenset of str
+        Which of `INPUTS` press.
+    pin, ball, collar, bending_arm, torsion_arm, overlap : float
+        PIN_RADIUS, BALL_RADIUS, FRICTION_ARM, BENDING_REACTION_ARM, REACTION_ARM, INITIAL_OVERLAP.
+    growth : int
+        How the overlap changes with the displacement: 0 for constant, 1 for as much, -1 for minus as much.
+    force, torque : float
+        Friction without any load.
+    """
+
+    joint: int
+    static: float
+    dynamic: float
+    stiction_velocity: float
+    sliding_velocity: float
+    inputs: frozenset[str]
+    pin: float
+    ball: float
+    collar: float
+    bending_arm: float
+    torsion_arm: float
+    overlap: float
+    growth: int
+    force: float
+    torque: float
+
+
+_ABOVE_ZERO = {
+    "STICTION_TRANSITION_VELOCITY": 0.1, "TRANSITION_VELOCITY_COEFFICIENT": 1.5, "PIN_RADIUS": 1.0, "BALL_RADIUS": 1.0,
+    "FRICTION_ARM": 1.0, "BENDING_REACTION_ARM": 1.0, "REACTION_ARM": 1.0, "INITIAL_OVERLAP": 1000.0,
+}  # fmt: skip
+"""Numbers above zero, and what Adams takes where they are missing."""
+FROM_ZERO = ("MU_STATIC", "MU_DYNAMIC", "FRICTION_FORCE_PRELOAD", "FRICTION_TORQUE_PRELOAD")
+LEFT_OUT = ("MAX_STICTION_DEFORMATION", "INACTIVE")
+_NOT_READ = (
+    "MAX_FRICTION_FORCE",
+    "MAX_FRICTION_TORQUE",
+    "YOKE",
+    "BRISTLE_STIFFNESS",
+    "BRISTLE_DAMPING",
+    "VISCOUS_DAMPING",
+)
+ARGUMENTS = (
+    *FROM_ZERO,
+    *_ABOVE_ZERO,
+    "JOINT",
+    "FORMULATION",
+    "OVERLAP_DELTA",
+    "EFFECT",
+    "INPUTS",
+    *LEFT_OUT,
+    *_NOT_READ,
+)
+
+
+def read_friction(statement: Statement, units: Units) -> JointFriction:
+    """Friction of a joint, by the formulation with stiction that Adams calls the original one."""
+    found = Arguments(statement, "FRICTION", ARGUMENTS)
+    for name in _NOT_READ:
+        if name in found:
+            raise found.fault(f"found {name}, expected friction without it", found.line(name))
+    _one_word(found, "FORMULATION", ("ORIGINAL",))
+    effect = _one_word(found, "EFFECT", ("ALL", "SLIDING"))
+    numbers = {name: _number(found, name, usual) for name, usual in _ABOVE_ZERO.items()}
+    static, dynamic, force, torque = (_from_zero(found, name) for name in FROM_ZERO)
+    if numbers["TRANSITION_VELOCITY_COEFFICIENT"] <= 1:
+        raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT up to 1, expected a larger number")
+    slow = numbers["STICTION_TRANSITION_VELOCITY"]
+    return JointFriction(
+        found.ident(), statement.line, statement.alias, "FRICTION", found.required("JOINT"),
+        dynamic if effect == "SLIDING" else static, dynamic, slow, slow * numbers["TRANSITION_VELOCITY_COEFFICIENT"],
+        _inputs(found), numbers["PIN_RADIUS"], numbers["BALL_RADIUS"], numbers["FRICTION_ARM"],
+        numbers["BENDING_REACTION_ARM"], numbers["REACTION_ARM"], numbers["INITIAL_OVERLAP"],
+        OVERLAP[_one_word(found, "OVERLAP_DELTA", tuple(OVERLAP))], force, torque,
+    )  # fmt: skip
+
+
+def _number(found: Arguments, name: str, usual: float) -> float:
+    value = found.number(name)
+    if value is not None and not value > 0:
+        raise found.fault(f"found {name} = {found.text(name)}, expected a number above zero", found.line(name))
+    return usual if value is None else value
+
+
+def _from_zero(found: Arguments, name: str) -> float:
+    value = found.number(name)
+    if value is None and name.startswith("MU"):
+        raise found.fault(f"found no {name}, expected a coefficient of friction")
+    if value is not None and value < 0:
+        raise found.fault(f"found {name} = {found.text(name)}, expected no number below zero", found.line(name))
+    return value or 0.0
+
+
+def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
+    """One of some words, or its beginning; the first where the argument is missing."""
+    text = (found.text(name) or words[0]).strip(" ()").upper()
+    for word in words:
+        if text and word.startswith(text):
+            return word
+    raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", found.line(name))
+
+
+def _inputs(found: Arguments) -> frozenset[str]:
+    text = (found.text("INPUTS") or "ALL").strip().strip("()").upper()
+    asked: set[str] = set()
+    for word in (word.strip() for word in text.replace(",", ":").split(":")):
+        if word == "ALL":
+            asked |= {*INPUTS}
+        elif word != "NONE":
+            named = [name for name in INPUTS if word and name.startswith(word)]
+            if not named:
+                raise found.fault(
+                    f"found INPUTS = {found.text('INPUTS')}, expected ALL, NONE or {', '.join(INPUTS)} between colons",
+                    found.line("INPUTS"),
+                )
+            asked.add(named[0])
+    return frozenset(asked)

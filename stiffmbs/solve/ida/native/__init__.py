@@ -1,0 +1,1 @@
+"""Compiled starts of IDA."""
