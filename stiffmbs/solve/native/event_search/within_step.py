@@ -35,9 +35,8 @@ WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
 LEAST_PART, MOST_PARTS = 1e-4, 5000
-DIFFERENCE = 1e-4
-"""Part of a step, or of a part of one, over which rates are taken.  Over 1e-6 of a step of 4e-7 s they were rounding: no cubic fitted, and one
-event of a car took 0.4 s in 5000 parts."""
+DIFFERENCE = 1e-6
+"""Part of a step, or of a part of one, over which rates are taken."""
 REFINED, REFINEMENTS = 0.02, 5
 """Part of a part of a step over which a parabola is laid at an extremum, and how often, each over a tenth of the one before."""
 BISECTIONS, BEHIND = 50, 1e-9
