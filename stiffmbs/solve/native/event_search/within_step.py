@@ -212,7 +212,9 @@ def _note_zones(w):
         number = zone(w, k, value)
         endless = w.period[k] > 0.0
         w.zone_low[k] = _edge(w, k, number - 1) if endless or number > 0 else -float("inf")
-        w.zone_high[k] = _edge(w, k, number) if endless or number < w.first_edge[k + 1] - w.first_edge[k] else float("inf")
+        w.zone_high[k] = (
+            _edge(w, k, number) if endless or number < w.first_edge[k + 1] - w.first_edge[k] else float("inf")
+        )
 
 
 @compiled
