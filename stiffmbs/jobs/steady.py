@@ -12,12 +12,12 @@ from ..describe.settings import SteadyMotion as Described
 from ..errors import InputError, SolverError
 from ..linear_analysis.steady_motion import eigenvalues_beside
 from ..solve.dynamics import Dynamics
-from ..solve.equilibrium import Equilibrium, find_equilibrium
-from ..solve.force_balance import balance_at, forces_by_velocity
-from ..solve.found_speeds import with_found_spins
+from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
+from ..solve.equilibria.force_balance import balance_at, forces_by_velocity
+from ..solve.equilibria.found_speeds import with_found_spins
+from ..solve.equilibria.nearest_equilibrium import nearest_equilibrium
+from ..solve.equilibria.steady_motion import SteadyMotion
 from ..solve.initial import InitialValues
-from ..solve.nearest_equilibrium import nearest_equilibrium
-from ..solve.steady_motion import SteadyMotion
 from .settled import GROWING, Settled
 
 MOST_FOR_STABILITY = 1500

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.sparse import csc_array
 
-from .dynamics import Dynamics
+from ..dynamics import Dynamics
 from .steady_motion import SteadyMotion
 
 NO_EFFECT = 1e-12

@@ -20,8 +20,8 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array, hstack
 from scipy.sparse.linalg import splu
 
-from ..errors import SolverError
-from .dynamics import Dynamics
+from ...errors import SolverError
+from ..dynamics import Dynamics
 from .force_balance import Balance, balance_at, moved, way
 from .steady_motion import SteadyMotion, at_rest
 

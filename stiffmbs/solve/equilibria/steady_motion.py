@@ -14,9 +14,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.sparse import block_diag, csc_array
 
-from ..compile.quaternions import CONJUGATE, rotated
-from ..compile.system import System
-from .dynamics import Dynamics
+from ...compile.quaternions import CONJUGATE, rotated
+from ...compile.system import System
+from ..dynamics import Dynamics
 
 NO_EFFECT = 1e-9
 """Part of a spin's effect on rolling constraints, relative to the largest, that counts as none."""

@@ -8,11 +8,11 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array, vstack
 from scipy.sparse.linalg import splu
 
-from ..compile.system import System
-from ..compile.terms import TERM_AXES
-from ..errors import SolverError
-from .algebraic_states import failure
-from .dynamics import Dynamics
+from ...compile.system import System
+from ...compile.terms import TERM_AXES
+from ...errors import SolverError
+from ..algebraic_states import failure
+from ..dynamics import Dynamics
 from .found_speeds import FoundSpeeds, found_speeds
 from .steady_motion import SteadyMotion
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.system import System
-from ..errors import SolverError
-from .dynamics import Dynamics
+from ...compile.system import System
+from ...errors import SolverError
+from ..dynamics import Dynamics
 from .equilibrium import (
     LEAST_SHIFT,
     ROTATION,
