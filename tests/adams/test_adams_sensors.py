@@ -168,3 +168,13 @@ def test_a_sensor_that_is_true_at_once_is_told(run_with):
 def test_what_is_wrong_with_a_sensor_is_said(sensor, message):
     with pytest.raises(InputError, match=message):
         read_adams(PENDULUM.format(sensor=f"SENSOR/1, {sensor}"))
+
+
+def test_a_kinematic_simulation_ends_at_a_sensor(run_with):
+    found = run_with(
+        "MOTION/1, ROTATIONAL, JOINT=1, FUNCTION=-1.5*TIME**2\nSENSOR/1, FUNCTION=DZ(21,11), VALUE=-500, LE, RETURN",
+        "SIM/KIN, END=1, STEPS=10\nDEACT/SENSOR, ID=1\nDEACT/MOTION, ID=1\nSIM/DYN, DURATION=0.2, STEPS=2\n",
+    )
+    t = np.sqrt(np.pi / 6 / 1.5)
+    np.testing.assert_allclose(found.time[[6, 7, 9]], [t, t, t + 0.2], atol=1e-7)
+    assert found["PART_2.wy"][7] == pytest.approx(3 * t, abs=1e-6) and not np.any(found["MOTION_1.ty"][7:])
