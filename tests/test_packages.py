@@ -1,6 +1,7 @@
 """The structure of the package: imports go one way, in the order of a run, and folders stay small."""
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -75,6 +76,11 @@ def test_no_module_imports_itself_through_others():
         found = _imports(module, _when_loaded(ast.parse(path.read_text())))
         needed[module] = {name for name in found if name in MODULES}
     tuple(TopologicalSorter(needed).static_order())
+
+
+def test_the_readme_lists_the_packages_in_their_order():
+    rows = re.findall(r"^\| `stiffmbs/(\w+)` \|", (ROOT.parent / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert tuple(rows) == ORDER
 
 
 @pytest.mark.parametrize(

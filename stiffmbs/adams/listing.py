@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ..describe.files.text_file import checked, file_text, source_name
 from ..errors import InputError
+from .listed_arguments import arguments_of, unread_functions
 from .load import ENCODING, command_file
 from .statements.changes import alters
 from .statements.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .statements.dataset import all_statements, faults_of
 from .statements.fault import DatasetFault
 from .statements.keywords import LEFT_OUT, REFUSED, keyword
+from .statements.left_out import LEFT_OUT_ARGUMENTS
 from .statements.text import Statement, commands
 
 READ, OMITTED, NOT_READ = "read", "left out", "refused"
@@ -33,6 +38,10 @@ class ListedStatement:
         ``read``, ``left out`` or ``refused``.
     reason : str
         Why it is left out or refused.
+    argument : str
+        Which of its arguments, or which function in them, this is about; empty for the whole statement.
+    arguments : tuple of str
+        Those of the whole statement that are read, by their full names.
     """
 
     file: str
@@ -40,11 +49,15 @@ class ListedStatement:
     statement: str
     fate: str
     reason: str = ""
+    argument: str = ""
+    arguments: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return f"{self.file}, line {self.line}, {self.statement}: {self.fate}" + (self.reason and f", {self.reason}")
+        what = f"{self.statement}, {self.argument}" if self.argument else self.statement
+        told = f" ({' '.join(self.arguments)})" if self.arguments else self.reason and f", {self.reason}"
+        return f"{self.file}, line {self.line}, {what}: {self.fate}{told}"
 
-    def as_dict(self) -> dict[str, str | int]:
+    def as_dict(self) -> dict[str, Any]:
         """An entry of ``statements`` of ``stiffmbs check --json``."""
         return asdict(self)
 
@@ -52,7 +65,8 @@ class ListedStatement:
 def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
     """Every statement of a dataset's file and every command of the file beside it, in their order.
 
-    A statement that is read alone may still not fit the others: that is told when the scene is made.
+    Arguments that are left out, and functions that are refused, have entries of their own behind that of their statement.  A
+    statement that is read alone may still not fit the others: that is told when the scene is made.
 
     Raises
     ------
@@ -62,25 +76,40 @@ def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
     text = checked(file_text(path, ENCODING), source_name(path))
     faults = {fault.line: fault.reason for fault in faults_of(text)}
     _, found, _ = all_statements(text)
-    listed = [_statement(one, source_name(path), faults) for one in found]
+    listed = [entry for one in found for entry in _statement(one, source_name(path), faults)]
     beside = command_file(path)
     if beside is not None:
         listed += _commands(file_text(beside, ENCODING), beside.name)
     return tuple(listed)
 
 
-def _statement(statement: Statement, file: str, faults: dict[int, str]) -> ListedStatement:
+def _statement(statement: Statement, file: str, faults: dict[int, str]) -> Iterator[ListedStatement]:
     name = keyword(statement.word)
     label = f"{name or statement.word}/{statement.ident}".rstrip("/")
+    one = partial(ListedStatement, file, statement.line, label)
     if name is None:
-        return ListedStatement(file, statement.line, label, NOT_READ, "found a statement that is not known")
-    if name in REFUSED:
-        return ListedStatement(file, statement.line, label, NOT_READ, REFUSED[name])
-    if name in LEFT_OUT:
-        return ListedStatement(file, statement.line, label, OMITTED, LEFT_OUT[name])
-    if statement.line in faults:
-        return ListedStatement(file, statement.line, label, NOT_READ, faults[statement.line])
-    return ListedStatement(file, statement.line, label, READ)
+        yield one(NOT_READ, "found a statement that is not known")
+    elif name in REFUSED:
+        yield one(NOT_READ, REFUSED[name])
+    elif name in LEFT_OUT:
+        yield one(OMITTED, LEFT_OUT[name])
+    elif faults_here := [faults[line] for line in sorted(faults) if line in _lines(statement)]:
+        yield one(NOT_READ, faults_here[0])
+    else:
+        found = arguments_of(statement, name)
+        omitted = LEFT_OUT_ARGUMENTS.get(name, {})
+        yield one(READ, arguments=tuple(argument for argument in found if argument not in omitted))
+        for argument, (line, values) in found.items():
+            if argument in omitted:
+                yield ListedStatement(file, line, label, OMITTED, omitted[argument], argument)
+            for function in unread_functions(name, values):
+                yield ListedStatement(
+                    file, line, label, NOT_READ, f"a function that {argument} cannot use here", function
+                )
+
+
+def _lines(statement: Statement) -> set[int]:
+    return {statement.line, *(piece.line for piece in statement.pieces)}
 
 
 def _commands(text: str, file: str) -> list[ListedStatement]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from ..describe.files.stages import merge_patch
+from .scene.sensors import conditions
 from .statements.commands import Segment
 from .statements.constraints import Motion
 from .statements.dataset import Dataset
@@ -14,7 +15,7 @@ from .statements.units import Units
 
 Described: TypeAlias = tuple[Dataset, dict[str, Any]]
 """A dataset and its scene."""
-NOT_OF_A_STAGE = ("run", "notes", "start")
+NOT_OF_A_STAGE = ("run", "notes", "start", "stages")
 POSES = ("position", "orientation", "velocity", "omega", "open")
 """Of a body: where the first run starts, and the frame of its state."""
 BY_INITIAL_POSE = ("COUPLER", "GEAR", "SCREW", "RACKPIN")
@@ -50,17 +51,21 @@ def followed(
     settled = first.kind == STATICS and not first.takes_time
     over_time = segments[1:] if settled and len(segments) > 1 else segments
     unchanged = all(s.changes == segments[0].changes and s.settings == over_time[0].settings for s in over_time)
-    whole = one_run([s.simulation for s in over_time], units) if unchanged else None
+    watched = bool(dataset.sensors) or any(
+        key[0] == "SENSOR" for s in segments for key in (*s.changes.inactive, *s.changes.altered)
+    )
+    whole = one_run([s.simulation for s in over_time], units) if unchanged and not watched else None
     if whole is not None:
         start = {"start": "equilibrium"} if settled else {}
         notes = [f"duration and output are those of {source}"]
         return {"run": whole | _in_si(over_time[0], units), **start, "notes": notes}
-    return _staged(segments, described, read, source)
+    return _staged(segments, described, read, source, watched)
 
 
 def _staged(
-    segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str
+    segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str, watched: bool
 ) -> dict[str, Any]:
+    """Stages one by one; where sensors may end some (`watched`), those up to a time end there wherever they start."""
     stages: list[dict[str, Any]] = []
     notes = [f"{source} asks for {len(segments)} simulation{'s' if len(segments) > 1 else ''}, one after the other"]
     units = described[0].units
@@ -73,9 +78,15 @@ def _staged(
             stage |= _changed(known, now, segment)
             notes += [f"from simulation {k} on {told}" for told in segment.changes.told_since(before.changes, source)]
             known = now
-        run = simulation.settings(time, units) | _in_si(segment, units)
-        stages.append(stage | ({"run": run} if run else {}))
-        time += simulation.length(time) if simulation.takes_time else 0.0
+        if watched and simulation.end is not None:
+            stage["end"] = simulation.end * units.time
+            run = simulation.settings_up_to_its_end(units)
+        else:
+            run = simulation.settings(time, units)
+            time += simulation.length(time) if simulation.takes_time else 0.0
+        run |= _in_si(segment, units)
+        until = {} if simulation.kind == STATICS else conditions(known[0])
+        stages.append(stage | ({"until": until} if until else {}) | ({"run": run} if run else {}))
         before = segment
     if any(segment.simulation.kind == STATICS for segment in segments[1:]):
         notes.append("all velocities are zero after a static simulation")

@@ -105,8 +105,11 @@ class Scene(ModelData):
         """How long all of it runs, s."""
         if not self.stages:
             return self.run.duration
-        pairs = zip(self.stages, self.stage_scenes, strict=True)
-        return sum(scene.run.duration for stage, scene in pairs if stage.over_time)
+        time = 0.0
+        for stage, scene in zip(self.stages, self.stage_scenes, strict=True):
+            if stage.over_time:
+                time = time + scene.run.duration if stage.end is None else max(time, stage.end)
+        return time
 
     @property
     def written(self) -> WrittenScene | None:

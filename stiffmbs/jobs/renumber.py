@@ -18,6 +18,7 @@ from ..describe.marker import GROUND
 from ..describe.model_data import ModelData
 from ..describe.scene import Scene
 from ..describe.table import Table
+from ..presolve.presolve import may_be_apart
 from .run import Job, start_of_job
 
 HELD = ("dimensions", "gravity", "markers", "bodies", "joints")
@@ -63,9 +64,9 @@ def write_numbers(job: Job, data: ModelData) -> bool:
 
 def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     """The forces of another model with other numbers than those of a job; None where it must be prepared anew."""
-    if job.subsystems or not _same_structure(job.data, data):
-        return None
     system = job.dynamics.system
+    if job.subsystems or may_be_apart(system) or not _same_structure(job.data, data):
+        return None
     written = []
     for name, element in (*_changed(job.data, data), *_changed_by_states(job.data, data)):
         change = _change(system, name, element, data)

@@ -243,7 +243,7 @@ def run(
     """
     data = data_of(model)
     if isinstance(data, Scene) and data.stages:
-        from .stages import run_stages
+        from .staged.stages import run_stages
 
         return run_stages(data, settings, watch, start_from, inputs, **changes)
     if inputs:

@@ -7,6 +7,7 @@ whole.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +24,8 @@ from .subsystems import A_STATE, behind_bodies, mechanisms, part_of
 
 MOST_APART = 8
 """Mechanisms that are solved apart: each has a start and steps of its own, which many tiny ones would not be worth."""
+
+Alike = Callable[[Sequence[np.ndarray]], Sequence[Sequence[int]]]
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,12 @@ class Part:
         into_u[:, n_u * self.bodies[:, None] + np.arange(n_u)] = rates
 
 
-def parts_of(model: ModelData, whole: System, way: np.ndarray | None, apart: bool = True) -> tuple[Part, ...]:
+def may_be_apart(system: System) -> bool:
+    """Whether some numbers might have a system's mechanisms solved apart, and others together."""
+    return 1 < len(mechanisms(system)) <= MOST_APART
+
+
+def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Alike | None = None) -> tuple[Part, ...]:
     """The mechanisms to solve in place of a compiled model; empty where that is the model itself.
 
     Parameters
@@ -91,14 +99,20 @@ def parts_of(model: ModelData, whole: System, way: np.ndarray | None, apart: boo
         With its redundant equations marked.
     way : ndarray, shape (n_u,), or None
         The velocities at the start times the duration of the run; None where quaternions are to follow all spins.
-    apart : bool
-        Whether independent mechanisms may be solved apart.
+    alike : callable, optional
+        Which of several mechanisms, given by the numbers of their bodies in the whole, are to be solved together; without it
+        all are.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
     merged = merge(model, held)
     spun = None if way is None else spinning(merged or model, _turns(merged, whole, way))
     system = _compiled(spun or merged, whole) if spun or merged else whole  # type: ignore[arg-type]
-    found = mechanisms(system) if apart else []
+    found = mechanisms(system) if alike else []
+    if alike and 1 < len(found) <= MOST_APART:
+        carried = [_carried(bodies, system, whole, merged) for bodies in found]
+        found = sorted(
+            (np.sort(np.concatenate([found[k] for k in each])) for each in alike(carried)), key=lambda bodies: bodies[0]
+        )
     if not 1 < len(found) <= MOST_APART:
         if system is whole:
             return ()
@@ -121,6 +135,14 @@ def _compiled(model: MergedBodies | SpinningBodies, whole: System) -> System:
     system = compile_model(model)
     on = dict(zip(whole.equations, whole.active, strict=True))
     return replace(system, active=np.array([on[equation] for equation in system.equations], dtype=bool))
+
+
+def _carried(bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None) -> np.ndarray:
+    """The numbers of the bodies of the whole that some bodies of the system to solve carry."""
+    if merged is None:
+        return bodies
+    names = {system.bodies[k] for k in bodies}
+    return np.array([k for k, name in enumerate(whole.bodies) if merged.members[name][0] in names])
 
 
 def _part(

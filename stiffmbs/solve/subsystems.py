@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ..describe.settings import RunSettings
 from ..presolve.linear_equations import independent_coordinates
 from ..presolve.presolve import Part, parts_of
 from . import traits_of
+from .alike_mechanisms import alike
 from .auto import begins_implicit
 from .dynamics import Dynamics
 from .events.restart import restarted
@@ -83,7 +85,8 @@ def presolved(
     traits = traits_of(settings)
     implicit = traits.implicit and (not traits.switches or _begins_implicit(dynamics, start, grid, settings))
     way = (grid.end - grid.start) * start.u if implicit else None
-    parts = parts_of(model, dynamics.system, way, apart=grid.times is not None)
+    together = partial(alike, dynamics, start, (grid.start, grid.end), implicit)
+    parts = parts_of(model, dynamics.system, way, together if grid.times is not None else None)
     subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
     if traits.implicit:
         for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:

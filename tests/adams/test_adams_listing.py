@@ -9,6 +9,7 @@ import stiffmbs
 from stiffmbs.adams.functions.adams_functions import ADAMS_FUNCTIONS
 from stiffmbs.adams.functions.translate import PLAIN
 from stiffmbs.adams.statements.keywords import LEFT_OUT, READERS, REFUSED
+from stiffmbs.adams.statements.left_out import LEFT_OUT_ARGUMENTS
 from stiffmbs.commands.main import main
 
 MODEL = """listing
@@ -48,6 +49,46 @@ def test_a_sound_dataset_is_listed_in_json(tmp_path):
     assert [(one["line"], one["statement"], one["fate"]) for one in statements] == [
         (2, "PART/1", "read"), (3, "PART/2", "read"), (4, "MARKER/21", "read"),
     ]  # fmt: skip
+
+
+ARGUMENTS = """arguments
+PART/1, GROUND
+PART/2, MASS=1, CM=21, IP=1,1,1, MAT=steel
+MARKER/10, PART=1
+MARKER/21, PART=2
+SFORCE/1, ROT, I=21, J=10
+, FUNCTION=SIN(TIME) +
+, MOD(3, 1)*SENVAL(1)
+REQUEST/1, F2=SFORCE(1,0,1,0)\\, F3=MOD(TIME, 1)\\, COM='ab'
+END
+"""
+
+
+def test_arguments_and_functions_have_lines_of_their_own(tmp_path):
+    (tmp_path / "model.adm").write_text(ARGUMENTS)
+    listed = stiffmbs.listed_statements(tmp_path / "model.adm")
+    lines = [str(one).partition("model.adm, ")[2] for one in listed]
+    assert lines == [
+        "line 2, PART/1: read (GROUND)",
+        "line 3, PART/2: read (MASS CM IP)",
+        "line 3, PART/2, MATERIAL: left out, masses are given",
+        "line 4, MARKER/10: read (PART)",
+        "line 5, MARKER/21: read (PART)",
+        "line 6, SFORCE/1: read (ROTATIONAL I J FUNCTION)",
+        "line 7, SFORCE/1, MOD: refused, a function that FUNCTION cannot use here",
+        "line 7, SFORCE/1, SENVAL: refused, a function that FUNCTION cannot use here",
+        "line 9, REQUEST/1: read (F2 F3)",
+        "line 9, REQUEST/1, COMMENT: left out, text",
+    ]
+    told = CliRunner().invoke(main, ["check", str(tmp_path / "model.adm")])
+    assert "SFORCE/1: found the function" in told.output and told.exit_code == 2
+
+
+def test_the_reference_page_tells_of_arguments_that_are_left_out():
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "adams_statements.md").read_text()
+    rows = {line.split("|")[1].strip(): line.split("|")[3] for line in page.splitlines() if line.count("|") == 4}
+    for name, arguments in LEFT_OUT_ARGUMENTS.items():
+        assert set(arguments) <= set(rows[name].replace(",", " ").replace(";", " ").split()), name
 
 
 def test_the_reference_page_has_all_statements_and_functions():

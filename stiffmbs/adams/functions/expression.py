@@ -96,7 +96,7 @@ class _WithoutPowersOfNumbers(ast.NodeTransformer):
         self.generic_visit(node)
         if not isinstance(node.op, ast.Pow):
             return node
-        base, exponent = _constant(node.left), _constant(node.right)
+        base, exponent = constant(node.left), constant(node.right)
         if base is None or exponent is None:
             return node
         try:
@@ -110,16 +110,16 @@ class _WithoutPowersOfNumbers(ast.NodeTransformer):
         return number(value)
 
 
-def _constant(node: ast.expr) -> float | None:
+def constant(node: ast.expr) -> float | None:
     """The value of a number, or of arithmetic of numbers, in floating point; None for anything else, and where it has none."""
     match node:
         case ast.Constant(int() | float() as value):
             return float(value)
         case ast.UnaryOp(op, operand):
-            inner = _constant(operand)
+            inner = constant(operand)
             return None if inner is None else UNARY[type(op)](inner)
         case ast.BinOp(left, op, right) if not isinstance(op, ast.Pow):
-            a, b = _constant(left), _constant(right)
+            a, b = constant(left), constant(right)
             try:
                 return None if a is None or b is None else BINARY[type(op)](a, b)
             except ArithmeticError:

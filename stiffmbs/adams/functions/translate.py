@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cached_property
-from typing import Any
 
 from ...describe.files.quoted import quoted
-from ...describe.spatial.number_format import plain
 from ...describe.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
 from .adams_functions import ADAMS_FUNCTIONS
 from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED
 from .function import Function
+from .identifier import identifier
+from .inputs import PLANTS, input_values, variable_of_plant
 from .reactions import BY_ITS_PLACE, REACTIONS, component_of, reaction
+from .splines import CURVES, spline_value
 from .states import depending_on_themselves, differential, rate_name, value_name, value_of_system
 from .trees import measured, name_of, number, over, power, product, times, total
 
@@ -36,14 +37,8 @@ PLAIN = {
     IF: "branch",
 }  # fmt: skip
 """Functions that the scene has too."""
-CURVES: dict[str, dict[str, Any]] = {
-    "AKISPL": {"akima": True},
-    "CUBSPL": {"ends": "not-a-knot"},
-    "LINE": {"lines": True},
-}
-"""Functions of splines, and how the scene's table goes through the points."""
 COUPLED = (
-    "MOTION", "GCON", "COUPLER", "GEAR", "SFORCE", "VFORCE", "VTORQ", "VTORQUE", "GFORCE", "SPDP", "BUSH", "BEAM", "FIELD",
+    "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "SFORCE", "VFORCE", "VTORQ", "VTORQUE", "GFORCE", "SPDP", "BUSH", "BEAM", "FIELD",
     "FX", "FY", "FZ", "FM", "TX", "TY", "TZ", "TM",
 )  # fmt: skip
 """Functions of forces that requests alone may use."""
@@ -66,6 +61,11 @@ class Translation:
     def implicit_variables(self) -> frozenset[int]:
         """The VARIABLES that depend on themselves: algebraic states of the scene."""
         return depending_on_themselves(self.mechanism.dataset.variables)
+
+    @cached_property
+    def inputs(self) -> dict[str, float]:
+        """The VARIABLES that another program may give, with their values."""
+        return input_values(self.mechanism.dataset)
 
     def formula(self, function: Function, unit: float = 1.0) -> str:
         """The formula of an expression, times a unit.
@@ -117,7 +117,7 @@ class Translation:
             raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
         if ident in self.implicit_variables:
             return name_of(value_name(variable))
-        if variable.name not in self.mechanism.variables:
+        if variable.name not in self.mechanism.variables and variable.name not in self.inputs:
             self.mechanism.variables[variable.name] = self.formula(variable.function)
         return name_of(variable.name)
 
@@ -137,7 +137,10 @@ class Translation:
                     f"found {len(arguments)} arguments of {name} in '{quoted(function.text)}', expected another number"
                 ) from None
         if name in (*CURVES, "INTERP"):
-            return self.curve(name, arguments, function, translate)
+            return spline_value(name, arguments, function, translate, self.mechanism)
+        if name in PLANTS:
+            plant, at = (identifier(arguments, k, function) for k in range(2))
+            return self.variable(variable_of_plant(self.mechanism.dataset, name, plant, at, function), function)
         if name == "ARYVAL":
             return self.array_value(arguments, function)
         if name == "DIF":
@@ -234,29 +237,6 @@ class Translation:
         force = reaction(joint, which, bool(on_j), frame, self.mechanism)
         return over(force, self.units.of(force=1, length=1 if which[0] == "T" else 0))
 
-    def curve(
-        self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
-    ) -> ast.expr:
-        """A spline's value: AKISPL(x, z, id, order), CUBSPL of the same, INTERP(x, z, method, id, order)."""
-        x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
-        if name == "INTERP":
-            name = {1: "LINE", 3: "CUBSPL"}.get(identifier(rest, 0, function), "")
-            rest = rest[1:]
-        ident, order = identifier(rest, 0, function), identifier(rest, 1, function) if len(rest) > 1 else 0
-        spline = self.mechanism.dataset.splines.get(ident)
-        if spline is None:
-            raise function.fault(
-                f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE"
-            )
-        if order or not name:
-            raise function.fault(
-                f"found '{quoted(function.text)}', expected a spline's value, cubic or by straight lines"
-            )
-        table = f"{name}_{ident}"
-        points = [[plain(a), plain(b)] for a, b in zip(spline.x, spline.y, strict=True)]
-        self.mechanism.tables[table] = {"table": points, **CURVES[name]}
-        return ast.Call(ast.Name(table), [translate(x)], [])
-
     def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         """A number out of an ARRAY."""
         ident, at = (identifier(arguments, k, function) for k in range(2))
@@ -267,20 +247,3 @@ class Translation:
         if array is None or not 1 <= at <= len(array.numbers):
             raise function.fault(f"found ARYVAL({ident}, {at}), expected an ARRAY and the place of one of its numbers")
         return ast.Constant(array.numbers[at - 1])
-
-
-def identifier(arguments: Sequence[ast.expr], at: int, function: Function) -> int:
-    """An argument that is the number of a statement."""
-    match arguments[at] if at < len(arguments) else None:
-        case ast.Constant(int() as value):
-            return value
-        case ast.Name(name) if name == OMITTED:
-            return 0
-        case None:
-            raise function.fault(
-                f"found {len(arguments)} numbers of statements in '{quoted(function.text)}', expected more"
-            )
-        case node:
-            raise function.fault(
-                f"found '{ast.unparse(node)}' in '{quoted(function.text)}', expected the number of a statement"
-            )

@@ -8,18 +8,20 @@ from collections.abc import Callable, Iterator
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
 from ..statements.constraints import GeneralConstraint, Numbered
+from ..statements.curves import PointOnCurve
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
+from .identifier import identifier
 from .reactions import COMPONENTS, component_of
-from .translate import Translation, identifier
+from .translate import Translation
 from .trees import call, measured, name_of, number, over, power, times, total
 
 ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")
 ANGLES = ("PSI", "THETA", "PHI")
 ELEMENTS = {
     **{name: name for name in (
-        "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR",
+        "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR", "PTCV",
     )},
     "VTORQ": "VTORQUE", "SPDP": "SPRINGDAMPER", "BUSH": "BUSHING",
 }  # fmt: skip
@@ -126,7 +128,7 @@ class OutputTranslation(Translation):
         if isinstance(found, GeneralConstraint):
             first, *others = (*markers_of(found, self.mechanism), None)
             return first, tuple(others)
-        if isinstance(found, VectorForce):
+        if isinstance(found, VectorForce | PointOnCurve):
             return found.i, (found.floating,)
         if isinstance(found, Numbered) and found.keyword != "REQUEST":
             return getattr(found, "i", None), (getattr(found, "j", None),)
@@ -149,7 +151,7 @@ class OutputTranslation(Translation):
     @staticmethod
     def _term(component: str, found: Numbered, element: str, on_j: bool, way: str) -> ast.expr:
         """What one element does to marker I or J; a floating marker is always where I is."""
-        floats = isinstance(found, VectorForce) and on_j
+        floats = isinstance(found, VectorForce | PointOnCurve) and on_j
         owner = name_of(element + (".j" if on_j and not floats else ""))
         value = call(component.lower(), owner, *([name_of(way)] if way else []))
         return times(value, -1.0) if floats and component[1] != "M" else value

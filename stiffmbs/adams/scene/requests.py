@@ -38,16 +38,21 @@ class Requests:
         self.notes: list[str] = []
 
     def all(self) -> dict[str, Any]:
-        """By name: a request's components by theirs, a variable by its name where formulas use it, else by its formula."""
+        """By name: a request's components by theirs, a variable by its name where formulas use it, else by its formula; what a sensor watches by its own."""
         found: dict[str, Any] = {}
         for request in self._mechanism.dataset.requests.values():
             components = self._between_markers(request) if request.sort else self._functions(request)
             if components:
                 found[request.name] = components
+        inputs = self._translation.inputs
         for variable in self._mechanism.dataset.variables.values():
+            if variable.name in inputs:
+                continue
             formula = self._formula(variable.function, variable.label)
             if formula is not None:
                 found[variable.name] = formula
+        for sensor in self._mechanism.dataset.sensors:
+            found[sensor.name] = self._translation.formula(sensor.function)
         named = self._mechanism.variables
         return {name: name if name in named else formula for name, formula in found.items()}
 

@@ -15,6 +15,8 @@ from ..statements.fault import of_each
 from .bodies import bodies, ground_markers
 from .bodies import notes as body_notes
 from .contacts import contacts
+from .curves import curves
+from .curves import notes as curve_notes
 from .forces import Forces
 from .friction import frictions
 from .friction import notes as friction_notes
@@ -27,6 +29,8 @@ from .motions import motions
 from .racks import notes as rack_notes
 from .relations import relations
 from .requests import Requests
+from .sensors import conditions
+from .sensors import notes as sensor_notes
 
 RUN = {"duration": 5, "output": 0.01}
 """How a dataset is run, which says nothing about it itself."""
@@ -48,6 +52,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         ("joints", partial(held, mechanism)),
         ("joints", partial(relations, mechanism)),
         ("joints", partial(gears, mechanism)),
+        ("joints", partial(curves, mechanism)),
         ("joints", partial(motions, mechanism, translation)),
         ("states", partial(states, translation)),
         ("forces", Forces(mechanism, translation).all),
@@ -62,6 +67,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
         "gravity": vector(dataset.gravity),
+        "inputs": translation.inputs,
         "variables": mechanism.variables,
         "markers": {},
         "bodies": {},
@@ -69,12 +75,15 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "at_start": at_start(mechanism),
         "requests": requests.all(),
         "run": dict(RUN),
+        "stages": [{"until": conditions(dataset)}] if dataset.sensors else [],
         "notes": [
             *dataset.notes,
             *mechanism.notes(),
             *body_notes(mechanism),
             *rack_notes(mechanism),
             *friction_notes(mechanism),
+            *curve_notes(mechanism),
+            *sensor_notes(dataset),
             *start_notes(dataset),
             *requests.notes,
         ],

@@ -52,6 +52,7 @@ class Arguments:
         for line, pieces in statement.changes:
             self.label += f" (changed in line {line} of the command file)"
             self._found |= self._read(pieces)
+        statement.read_as({name: (found.line, found.values) for name, found in self._found.items()})
 
     def _read(self, pieces: Sequence[Subsystem]) -> dict[str, Argument]:
         """The arguments of some pieces by their full names."""

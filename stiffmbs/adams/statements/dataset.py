@@ -18,6 +18,7 @@ from .forces import SingleForce, VectorForce, read_gravity
 from .friction import JointFriction
 from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
 from .outputs import Array, Request, Spline, Variable
+from .sensor import Sensor
 from .text import Statement, statements, untitled
 from .units import Units, read_units
 
@@ -111,6 +112,11 @@ class Dataset:
         return self.statements.get("REQUEST", {})
 
     @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Those that end a simulation."""
+        return tuple(sensor for sensor in self._all(Sensor) if sensor.then)
+
+    @property
     def variables(self) -> Mapping[int, Variable]:
         return self.statements.get("VARIABLE", {})
 
@@ -182,7 +188,7 @@ def _data(
         if name not in READERS:
             continue
         try:
-            one = read_marker(statement, units, part) if name == "MARKER" else READERS[name](statement, units)
+            one = read_statement(name, statement, units, part)
             part = one if isinstance(one, Part) else part
             if one.ident in data.setdefault(name, {}):
                 first = data[name][one.ident].line
@@ -191,6 +197,20 @@ def _data(
         except DatasetFault as fault:
             faults.append(fault)
     return data, faults
+
+
+def read_statement(name: str, statement: Statement, units: Units, before: Part | None = None) -> Any:
+    """The data of a statement by its full name; `before` is the part that stands before it, which carries a marker.
+
+    Raises
+    ------
+    DatasetFault
+    """
+    if name == "MARKER":
+        return read_marker(statement, units, before)
+    if name in SINGLE:
+        return read_units(statement) if name == "UNITS" else read_gravity(statement, units)
+    return READERS[name](statement, units)
 
 
 def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statement]:

@@ -141,7 +141,8 @@ def read_beam(statement: Statement, units: Units) -> Beam:
     found = Arguments(statement, "BEAM", (*names, "FORMULATION"))
     if (found.text("FORMULATION") or "LINEAR").upper() != "LINEAR":
         raise found.fault(
-            f"found FORMULATION = {found.text('FORMULATION')}, expected LINEAR", found.line("FORMULATION")
+            f"found FORMULATION = {found.text('FORMULATION')}, expected LINEAR: beams here are linear about their straight shape",
+            found.line("FORMULATION"),
         )
     for name in (*(name for name, _ in _SECTION), "EMODULUS", "GMODULUS"):
         if not (found.number(name) or 0.0) > 0:

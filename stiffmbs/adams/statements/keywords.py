@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from . import bodies, constraints, contact, elastic, forces, friction, outputs, systems
+from . import bodies, constraints, contact, curves, elastic, forces, friction, outputs, plant, sensor, systems
 from .text import Statement
 from .units import Units
 
@@ -34,6 +34,10 @@ READERS: dict[str, Reader] = {
     "ARRAY": outputs.read_array,
     "CONTACT": contact.read_contact,
     "FRICTION": friction.read_friction,
+    "SENSOR": sensor.read_sensor,
+    **{name: partial(plant.read_plant, keyword=name) for name in ("PINPUT", "POUTPUT")},
+    "CURVE": curves.read_curve,
+    "PTCV": curves.read_point_on_curve,
     "DIFF": systems.read_differential,
     "LSE": systems.read_linear_system,
     "TFSISO": systems.read_transfer_function,
@@ -57,11 +61,8 @@ LEFT_OUT = {
     "KINEMATICS": "analysis settings",
     "LSOLVER": "analysis settings",
     "PREFERENCES": "analysis settings",
-    "PINPUT": "analysis settings",
-    "POUTPUT": "analysis settings",
     "PSTATE": "analysis settings",
     "STRING": "data that nothing here uses",
-    "CURVE": "data that nothing here uses",
     "SURFACE": "data that nothing here uses",
     "TITLE": "text",
 }
@@ -72,7 +73,6 @@ FLEXIBLE, ROUTINE, CURVED = (
     "curves and surfaces in space are not read",
 )
 REFUSED = {
-    "SENSOR": "it ends or changes a run, which is not followed here",
     "FLEX_BODY": FLEXIBLE,
     "FE_PART": FLEXIBLE,
     "FE_NODE": FLEXIBLE,
@@ -81,8 +81,7 @@ REFUSED = {
     "MFORCE": FLEXIBLE,
     "MODAL": FLEXIBLE,
     "EXTERNAL_SYSTEM": FLEXIBLE,
-    "PTCV": CURVED,
-    "CVCV": CURVED,
+    "CVCV": "two curves that touch are not followed; a point on a curve is, PTCV",
     "PTSF": CURVED,
     "CVSF": CURVED,
     "SFSF": CURVED,

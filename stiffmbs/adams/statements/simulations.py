@@ -70,6 +70,12 @@ class Simulation:
         solver = {"solver": "kinematic"} if self.kind == "KINEMATICS" else {}
         return {"duration": length * units.time, **self._output(length, self.between_outputs(length), units), **solver}
 
+    def settings_up_to_its_end(self, units: Units) -> dict[str, Any]:
+        """Output and solver of its run, wherever that starts."""
+        steps = {"points": round(self.steps) + 1} if self.steps else {}
+        output = {"output": self.interval * units.time} if self.interval else steps
+        return output | ({"solver": "kinematic"} if self.kind == "KINEMATICS" else {})
+
     def _output(self, length: float, interval: float | None, units: Units) -> dict[str, Any]:
         if interval is None:
             return {}

@@ -8,7 +8,7 @@ statement into pieces; ``\\`` ends a function.  MSC Adams/Solver, "Using stateme
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from ...describe.files.text_file import lines
@@ -66,6 +66,9 @@ class Statement:
     line: int
     alias: str = ""
     changes: tuple[tuple[int, tuple[Subsystem, ...]], ...] = ()
+
+    def read_as(self, arguments: Mapping[str, tuple[int, tuple[str, ...]]]) -> None:
+        """Told the full names of its arguments, each with its line and values, when they are read; for those who list them."""
 
 
 def statements(text: str) -> tuple[str, tuple[Statement, ...], bool]:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ...errors import InputError
 from ..fields import Described
+from ..units import si
+from .until import Until
 from .written_scene import WrittenScene
 
 OWN_SETTINGS = ("duration", "output", "points", "start")
@@ -30,16 +32,30 @@ class Stage(Described):
         merged, null takes an entry away, anything else takes the place of what was there.
     run : mapping
         Settings of this stage beside those of the scene.
+    end : float, optional
+        When it ends, s, whenever it starts; in place of a duration.
+    until : mapping of str to Until
+        Conditions that end it earlier, by name.
     """
 
     analysis: Literal["dynamic", "static"] = Field("dynamic", description="over time, or the equilibrium at its start")
     change: dict[str, Any] = Field(default_factory=dict, description="what is other than before; null takes away")
     run: dict[str, Any] = Field(default_factory=dict, description="settings of this stage")
+    end: si.Time | None = Field(None, description="when it ends, s, in place of a duration")
+    until: dict[str, Until] = Field(default_factory=dict, description="conditions that end it earlier, by name")
 
     @property
     def over_time(self) -> bool:
         """Whether it takes any time."""
-        return self.analysis == "dynamic" or "duration" in self.run
+        return self.analysis == "dynamic" or "duration" in self.run or self.end is not None
+
+    @model_validator(mode="after")
+    def _one_end(self) -> Self:
+        if self.end is not None and "duration" in self.run:
+            raise ValueError("found end and a duration, expected one of them")
+        if self.until and self.analysis == "static":
+            raise ValueError("found until with an equilibrium, expected it with analysis: dynamic")
+        return self
 
 
 def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[WrittenScene]:
@@ -50,7 +66,7 @@ def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[Written
     InputError
         When a setting is changed from outside that each stage has for itself.
     """
-    for path, _ in scene.changes:
+    for path, _ in scene.changes if len(stages) > 1 else ():
         if path.partition(".")[0] == "run" and path.partition(".")[2] in OWN_SETTINGS:
             raise InputError(
                 f"--set {path}: found a scene with stages, which have durations and outputs of their own, expected no change of it"

@@ -54,8 +54,27 @@ REQUEST/1, F2=YAW(21,10)\\, F3=ARYVAL(4,1)\\, F4=JOINT(1,0,2,0)
 ACCGRAV/KGRAV=-9.80665
 END
 """
+WATCHED = """\
+watched
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+PART/1, GROUND
+MARKER/11, PART=1
+PART/2, MASS=2, CM=21, IP=0.1,0.1,0.1, VZ=0.3
+MARKER/21, PART=2
+JOINT/1, TRANSLATIONAL, I=21, J=11
+FRICTION/1, JOINT=1, MU_STATIC=0.3, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=0.01, INPUTS=(PRELOAD:REACTION_FORCE)
+, FRICTION_FORCE_PRELOAD=0.1, EFFECT=ALL
+VARIABLE/1, FUNCTION=5
+PINPUT/1, VARIABLES=1
+SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=21, J=11, FUNCTION=VARVAL(1)-0.1*JOINT(1,0,2,0)
+SENSOR/1, FUNCTION=DZ(21,11), VALUE=0.002, ERROR=1E-4, GE, RETURN, CODGEN
+REQUEST/1, F2=JOINT(1,0,1,0)\\, F3=PINVAL(1,1)
+ACCGRAV/JGRAV=-9.80665
+END
+"""
 COMMANDS = (
     "",
+    "SIM/DYN, END=0.02, STEPS=4\nDEACTIVATE/SENSOR, ID=1\nDEACTIVATE/JOINT, ID=1\nSIM/DYN, END=0.02, STEPS=4\n",
     "model\nSIM/DYN, END=0.01, STEPS=4\nSTOP\n",
     "FILE/MODEL=model\nINTEGRATOR/GSTIFF, ERROR=1E-4, HMAX=0.005\nSIM/DYN, END=0.01, DTOUT=0.002\n"
     "DEACTIVATE/MOTION, ID=1\nACCGRAV/KGRAV=-5\nSIM/DYN, DURATION=0.01, STEPS=5\nSPRINGDAMPER/1, K=80\nSIM/STAT\n",
@@ -67,7 +86,7 @@ COMMANDS = (
 def trial(seed: int) -> Verdict:
     """One dataset and its commands made from the seed, and what came of them."""
     random = Random(seed)
-    files = [random.choice((SYSTEMS, SYSTEMS, *DATASETS)).encode(), random.choice(COMMANDS).encode()]
+    files = [random.choice((SYSTEMS, SYSTEMS, WATCHED, WATCHED, *DATASETS)).encode(), random.choice(COMMANDS).encode()]
     for _ in range(random.choice((1, 1, 1, 2, 3))):
         k = random.choice((0, 0, 1))
         files[k] = random.choices(*zip(*CHANGES, strict=True))[0](files[k], random)

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
-from ..describe.files.stages import OWN_SETTINGS, Stage
-from ..describe.scene import Scene, notes_of
-from ..describe.settings import RunSettings
-from ..errors import InputError, StiffmbsError
-from ..results.joined import joined
-from ..results.saved_state import SavedState
-from ..results.solution import Solution
-from ..solve.settings import changed, output_grid
-from ..solve.trajectory import ProgressCallback
-from .equilibrium import equilibrium
-from .given_inputs import Given
-from .run import run
-from .start_from import StartFrom, state_to_start_from
+from ...describe.files.stages import OWN_SETTINGS, Stage
+from ...describe.scene import Scene, notes_of
+from ...describe.settings import RunSettings
+from ...errors import InputError, StiffmbsError
+from ...results.joined import joined
+from ...results.saved_state import SavedState
+from ...results.solution import Solution
+from ...solve.settings import changed, output_grid
+from ...solve.trajectory import ProgressCallback
+from ..equilibrium import equilibrium
+from ..given_inputs import Given
+from ..run import run
+from ..start_from import StartFrom, state_to_start_from
+from .until import run_until
 
 
 def run_stages(
@@ -35,7 +37,7 @@ def run_stages(
     smallest moves, velocities by the smallest change in the mass matrix.  A stage after an equilibrium starts at rest.
     """
     own = [name for name in OWN_SETTINGS if name in changes and (name != "start" or start_from is None)]
-    if settings is not None or own:
+    if settings is not None or (own and len(scene.stages) > 1):
         raise InputError(
             f"found {own[0] if own else 'settings'} for a scene with stages, which have their own, expected none"
         )
@@ -46,11 +48,11 @@ def run_stages(
         place = f"stage {k + 1} of {len(scene.stages)}"
         at_start = {"start": start} if start is not None and k == 0 else {}
         try:
-            found = _solved(stage, of_stage, watch, state, inputs, {**changes, **at_start})
+            found, ended_by = _solved(stage, of_stage, watch, state, inputs, {**changes, **at_start})
         except StiffmbsError as error:
             raise type(error)(f"{place}: {error}") from None
         solutions.append(replace(found, message=f"{place}: {found.message}"))
-        if not found.success:
+        if not found.success or (ended_by and stage.until[ended_by].then == "stop"):
             break
         state = replace(found.state(), source=f"stage {k + 1}", elements=_elements(of_stage))
     return joined(scene.name, solutions)
@@ -67,11 +69,20 @@ def _solved(
     state: SavedState | None,
     inputs: Mapping[str, Given] | None,
     changes: dict[str, Any],
-) -> Solution:
+) -> tuple[Solution, str]:
+    """What a stage gives, and the condition that ended it; empty where none did."""
+    if stage.end is not None:
+        changes = {
+            **changes,
+            "duration": _up_to(stage.end, changes.get("start", state.t if state else scene.run.start)),
+        }
     if stage.analysis == "dynamic":
-        return run(scene, watch=watch, start_from=state, inputs=inputs, **changes)
+        runner = partial(run, scene, watch=watch, inputs=inputs)
+        if stage.until:
+            return run_until(runner, stage.until, _interval(scene, changes), start_from=state, **changes)
+        return runner(start_from=state, **changes), ""
     if not stage.over_time:
-        return _settled(scene, state, changes)
+        return _settled(scene, state, changes), ""
     grid = output_grid(changed(scene.run, {**changes, "start": state.t if state else scene.run.start}))
     if grid.times is None:
         raise InputError("found points = steps for an equilibrium, expected a number or an output interval")
@@ -79,7 +90,20 @@ def _solved(
     for t in grid.times:
         rows.append(_settled(scene, state, {**changes, "start": float(t)}))
         state = replace(rows[-1].state(), elements=_elements(scene))
-    return joined(scene.name, rows)
+    return joined(scene.name, rows), ""
+
+
+def _interval(scene: Scene, changes: dict[str, Any]) -> float | None:
+    """The time between the output points of a stage of its whole length."""
+    times = output_grid(changed(scene.run, changes)).times
+    return None if times is None else float(times[1] - times[0])
+
+
+def _up_to(end: float, start: float) -> float:
+    """How long a stage is that ends at some time."""
+    if not end > start:
+        raise InputError(f"found its end at {end:g} s, expected a time after {start:g} s, where it starts")
+    return end - start
 
 
 def _settled(scene: Scene, state: SavedState | None, changes: dict[str, Any]) -> Solution:

@@ -1,0 +1,56 @@
+"""Inputs and outputs of a model: VARIABLEs that PINPUT and POUTPUT name.
+
+An input whose VARIABLE is a number is one of the scene, with that number as its value until another program gives others.  One that
+is an expression keeps it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ..statements.plant import Plant
+from .expression import constant
+
+if TYPE_CHECKING:
+    from ..statements.dataset import Dataset
+    from .function import Function
+
+PLANTS = {"PINVAL": "PINPUT", "POUVAL": "POUTPUT"}
+"""Functions of inputs and outputs, and the statements that they name."""
+
+
+def input_values(dataset: Dataset) -> dict[str, float]:
+    """The scene's inputs by name, in the dataset's units.
+
+    Raises
+    ------
+    DatasetFault
+        When an input or output is no VARIABLE.
+    """
+    found = {}
+    for plant in _plants(dataset):
+        for ident in plant.variables:
+            variable = dataset.variables.get(ident)
+            if variable is None:
+                raise plant.fault(f"found VARIABLES = {ident}, expected the number of a VARIABLE")
+            value = constant(variable.function.tree)
+            if plant.keyword == "PINPUT" and value is not None:
+                found[variable.name] = value
+    return found
+
+
+def variable_of_plant(dataset: Dataset, name: str, ident: int, at: int, function: Function) -> int:
+    """The number of the VARIABLE that PINVAL or POUVAL means."""
+    plant = dataset.statements.get(PLANTS[name], {}).get(ident)
+    if plant is None or not 1 <= at <= len(plant.variables):
+        raise function.fault(
+            f"found {name}({ident}, {at}), expected a {PLANTS[name]} and the place of one of its variables"
+        )
+    number: int = plant.variables[at - 1]
+    return number
+
+
+def _plants(dataset: Dataset) -> Iterator[Plant]:
+    for keyword in PLANTS.values():
+        yield from dataset.statements.get(keyword, {}).values()

@@ -1,0 +1,50 @@
+"""Values of splines as tables of a scene: AKISPL(x, z, id, order), CUBSPL of the same, INTERP(x, z, method, id, order)."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from typing import Any
+
+from ...describe.files.quoted import quoted
+from ...describe.spatial.number_format import plain
+from ..scene.mechanism import Mechanism
+from .function import Function
+from .identifier import identifier
+
+CURVES: dict[str, dict[str, Any]] = {
+    "AKISPL": {"akima": True},
+    "CUBSPL": {"ends": "not-a-knot"},
+    "LINE": {"lines": True},
+}
+"""Functions of splines, and how the scene's table goes through the points."""
+
+
+def spline_value(
+    name: str,
+    arguments: list[ast.expr],
+    function: Function,
+    translate: Callable[[ast.expr], ast.expr],
+    mechanism: Mechanism,
+) -> ast.expr:
+    """A spline's value; its table is among the mechanism's from here on.
+
+    Raises
+    ------
+    DatasetFault
+        When there is no such spline, or more than its value is asked for.
+    """
+    x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
+    if name == "INTERP":
+        name = {1: "LINE", 3: "CUBSPL"}.get(identifier(rest, 0, function), "")
+        rest = rest[1:]
+    ident, order = identifier(rest, 0, function), identifier(rest, 1, function) if len(rest) > 1 else 0
+    spline = mechanism.dataset.splines.get(ident)
+    if spline is None:
+        raise function.fault(f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE")
+    if order or not name:
+        raise function.fault(f"found '{quoted(function.text)}', expected a spline's value, cubic or by straight lines")
+    table = f"{name}_{ident}"
+    points = [[plain(a), plain(b)] for a, b in zip(spline.x, spline.y, strict=True)]
+    mechanism.tables[table] = {"table": points, **CURVES[name]}
+    return ast.Call(ast.Name(table), [translate(x)], [])

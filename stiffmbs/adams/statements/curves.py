@@ -1,0 +1,76 @@
+"""Curves by points, and points that stay on them.  MSC Adams/Solver, CURVE and PTCV statements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .arguments import Arguments
+from .constraints import Numbered
+from .text import Statement
+from .units import Units
+
+CUBIC = 4
+"""The usual ORDER of a curve: one more than the degree of its pieces."""
+WITHOUT_EFFECT = ("DISPLACEMENT", "NODISPLACEMENT", "NOVELOCITY")
+_VELOCITIES = ("VELOCITY", "VX", "VY", "VZ")
+
+
+@dataclass(frozen=True)
+class SpaceCurve(Numbered):
+    """A curve; `matrix` has its points by rows, and `unread` says why it can only be drawn (empty where it can be followed)."""
+
+    matrix: int
+    closed: bool
+    unread: str = ""
+
+
+@dataclass(frozen=True)
+class PointOnCurve(Numbered):
+    """Marker I stays on a curve in the axes of marker `axes`; the reaction is on a floating marker of the curve's part."""
+
+    curve: int
+    i: int
+    floating: int
+    axes: int
+
+
+def read_curve(statement: Statement, units: Units) -> SpaceCurve:
+    """A curve; what cannot be followed is a fault only where a constraint names it."""
+    names = (
+        "CLOSED",
+        "OPEN",
+        "CURVE_POINTS",
+        "CONTROL_POINTS",
+        "MATRIX",
+        "ORDER",
+        "FUNCTION",
+        "ROUTINE",
+        "MINPAR",
+        "MAXPAR",
+    )
+    found = Arguments(statement, "CURVE", names, ("FUNCTION",))
+    unread = ""
+    if "FUNCTION" in found:
+        unread = "FUNCTION, which is computed by a subroutine"
+    elif "CONTROL_POINTS" in found:
+        unread = "CONTROL_POINTS"
+    elif "MATRIX" not in found:
+        unread = "no MATRIX"
+    elif (found.number("ORDER") or CUBIC) != CUBIC:
+        unread = f"ORDER = {found.text('ORDER')}"
+    closed = found.one_of("CLOSED", "OPEN") == "CLOSED"
+    return SpaceCurve(
+        found.ident(), statement.line, statement.alias, "CURVE", found.reference("MATRIX") or 0, closed, unread
+    )
+
+
+def read_point_on_curve(statement: Statement, units: Units) -> PointOnCurve:
+    """A point that stays on a curve."""
+    found = Arguments(statement, "PTCV", ("CURVE", "I", "JFLOAT", "RM", *WITHOUT_EFFECT, *_VELOCITIES))
+    for name in _VELOCITIES:
+        if name in found:
+            raise found.fault(f"found {name}, expected the velocities of the parts instead", found.line(name))
+    return PointOnCurve(
+        found.ident(), statement.line, statement.alias, "PTCV", found.required("CURVE"), found.required("I"),
+        found.required("JFLOAT"), found.required("RM"),
+    )  # fmt: skip

@@ -1,0 +1,26 @@
+"""Inputs and outputs of a model as another program sees it.  MSC Adams/Solver, PINPUT and POUTPUT statements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .arguments import Arguments
+from .constraints import Numbered
+from .text import Statement
+from .units import Units
+
+
+@dataclass(frozen=True)
+class Plant(Numbered):
+    """The VARIABLEs that are inputs (PINPUT) or outputs (POUTPUT), in their order."""
+
+    variables: tuple[int, ...]
+
+
+def read_plant(statement: Statement, units: Units, keyword: str) -> Plant:
+    """Inputs or outputs of a model."""
+    found = Arguments(statement, keyword, ("VARIABLES",))
+    variables = found.idents("VARIABLES")
+    if not variables:
+        raise found.fault("found no VARIABLES, expected the numbers of VARIABLE statements")
+    return Plant(found.ident(), statement.line, statement.alias, keyword, variables)

@@ -1,0 +1,60 @@
+"""Sensors, which end simulations.  MSC Adams/Solver, SENSOR statement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..functions.function import Function, required_function
+from .arguments import Arguments
+from .constraints import Numbered
+from .text import Statement
+from .units import Units
+
+RELATIONS = {"EQ": "equals", "GE": "at_least", "LE": "at_most"}
+ENDS = {"RETURN": "next", "HALT": "stop"}
+WITHOUT_EFFECT = ("CODGEN", "RESTART", "PRINT", "DT", "STEPSIZE", "YYDUMP", "BISECTION", "EVALUATE")
+"""What a sensor may do besides, none of which changes the motion."""
+USUAL_ERROR = 1e-3
+
+
+@dataclass(frozen=True)
+class Sensor(Numbered):
+    """A function that is watched, in the dataset's units.
+
+    Attributes
+    ----------
+    function : Function
+    relation : str
+        ``equals``, ``at_least`` or ``at_most``.
+    value, error : float
+        What it is compared with, and how near to it counts as equal.
+    then : str
+        ``next`` where the next command follows, ``stop`` where none does; empty where the simulation goes on.
+    left_out : tuple of str
+        Its arguments that have no effect here.
+    """
+
+    function: Function
+    relation: str
+    value: float
+    error: float
+    then: str
+    left_out: tuple[str, ...]
+
+
+def read_sensor(statement: Statement, units: Units) -> Sensor:
+    """A function that is watched."""
+    names = ("FUNCTION", "VALUE", "ERROR", "ANGULAR", *RELATIONS, *ENDS, *WITHOUT_EFFECT, "ROUTINE", "EVAL_ROUTINE")
+    found = Arguments(statement, "SENSOR", names, ("FUNCTION", "EVALUATE"))
+    value, error = found.number("VALUE"), found.number("ERROR")
+    if value is None:
+        raise found.fault("found no VALUE, expected the number that the function is compared with")
+    if error is not None and error < 0:
+        raise found.fault(f"found ERROR = {found.text('ERROR')}, expected no number below zero", found.line("ERROR"))
+    relation = RELATIONS[found.one_of(*RELATIONS) or "EQ"]
+    ends = found.one_of(*ENDS)
+    return Sensor(
+        found.ident(), statement.line, statement.alias, "SENSOR", required_function(found, "FUNCTION"), relation, value,
+        USUAL_ERROR if error is None else error, ENDS[ends] if ends else "",
+        tuple(name for name in WITHOUT_EFFECT if name in found),
+    )  # fmt: skip

@@ -1,0 +1,102 @@
+"""PTCV: a point that stays on a CURVE, against the equation of a bead on the spline through the same points."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+
+import stiffmbs
+from stiffmbs import InputError
+from stiffmbs.adams.load import read_adams
+
+from .adams_oracle import euler
+
+G = 9.80665
+BEAD = """a bead
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND
+PART/1, GROUND
+MARKER/11, PART=1, QP=100,200,300, REULER=20D,0,0
+MARKER/12, PART=1, FLOATING
+PART/2, QG={start}, MASS=2, CM=21, IP=1,1,1
+MARKER/21, PART=2
+CURVE/7, {sort}, CURVE_POINTS, ORDER=4, MATRIX=8
+MATRIX/8, FULL=RORDER, M={m}, N=3, VALUES={values}
+PTCV/4, CURVE=7, I=21, JFLOAT=12, RM=11
+JPRIM/1, ORIENTATION, I=21, J=11
+REQUEST/1, F2=PTCV(4, 0, 1, 0)\\, F3=PTCV(4, 1, 4, 11)
+REQUEST/2, FORCE, I=21, J=12
+ACCGRAV/KGRAV=-9806.65
+END
+"""
+X = np.linspace(-400, 400, 17)
+Z = 300 * (X / 400) ** 2 + 20 * np.sin(X / 60)
+TURN = euler(20, 0, 0)
+
+
+def dataset(points, sort="OPEN", first=None):
+    start = [100, 200, 300] + TURN @ np.asarray(points[0] if first is None else first)
+    values = "\n, ".join(", ".join(map(repr, map(float, row))) for row in points)
+    return BEAD.format(start=", ".join(map(repr, map(float, start))), sort=sort, m=len(points), values=values)
+
+
+def test_a_bead_slides_along_an_open_wire():
+    points = np.column_stack([X, 0 * X, Z])
+    found = stiffmbs.run(read_adams(dataset(points, first=points[2])), duration=0.5, points=26, rtol=1e-10)
+    wire = CubicSpline(X / 1000, Z / 1000)  # not-a-knot, as the table of the scene, but over x and z themselves
+
+    def rates(t, y):
+        slope, bend = wire(y[0], 1), wire(y[0], 2)
+        return [y[1], -slope * (bend * y[1] ** 2 + G) / (1 + slope**2)]
+
+    own = solve_ivp(rates, (0, 0.5), [X[2] / 1000, 0], t_eval=found.time, rtol=1e-12, atol=1e-12).y
+    place = (np.column_stack([found[f"PART_2.{axis}"] for axis in "xyz"]) - [0.1, 0.2, 0.3]) @ TURN
+    np.testing.assert_allclose(place, np.column_stack([own[0], 0 * own[0], wire(own[0])]), atol=2e-5)
+    slope, bend = wire(own[0], 1), wire(own[0], 2)
+    pressure = 2 * np.abs(bend * own[1] ** 2 + G) / np.sqrt(1 + slope**2)
+    np.testing.assert_allclose(found["REQUEST_1.f2"], pressure, rtol=2e-3)
+    np.testing.assert_allclose(found["REQUEST_1.f3"], -found["PTCV_4.fz"], atol=1e-9)
+    np.testing.assert_allclose(found["REQUEST_2.fz"], found["PTCV_4.fz"], atol=1e-9)
+    assert any("PTCV/4: the curve is a cubic spline through the points" in note for note in found.notes)
+
+
+def ring(turn):
+    angles = turn * np.linspace(0, 2 * np.pi, 25)
+    return np.column_stack([300 * np.cos(angles), 0 * angles, 200 * np.sin(angles)])
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_a_bead_goes_round_a_closed_wire(turn):
+    points = ring(turn)
+    found = stiffmbs.run(read_adams(dataset(points, "CLOSED", points[5])), duration=0.8, points=17, rtol=1e-9)
+    x, z = ((np.column_stack([found[f"PART_2.{axis}"] for axis in "xyz"]) - [0.1, 0.2, 0.3]) @ TURN)[:, [0, 2]].T
+    np.testing.assert_allclose((x / 0.3) ** 2 + (z / 0.2) ** 2, 1, atol=2e-4)  # the ellipse that the points are on
+    assert np.min(z) < -0.19
+    np.testing.assert_allclose(found["energy.total"], found["energy.total"][0], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("points", "sort", "message"),
+    [
+        (np.column_stack([X, np.abs(X) ** 1.5 / 99, Z]), "OPEN", "found a curve that leaves its plane by"),
+        (np.column_stack([X[[0, 5, 3, 8, 9]], 0 * X[:5], X[:5]]), "OPEN", "found an open curve that turns back"),
+        (ring(1)[:-1], "CLOSED", "found a first and a last point .* m apart in the closed CURVE/7, expected one point"),
+        (ring(1)[:3], "OPEN", "found MATRIX = 8 of CURVE/7, expected 4 rows or more of x, y and z"),
+    ],
+)  # fmt: skip
+def test_a_curve_that_cannot_be_followed_is_said(points, sort, message):
+    with pytest.raises(InputError, match=f"PTCV/4: {message}"):
+        read_adams(dataset(points, sort))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("CURVE=7", "CURVE=6", "found CURVE = 6, expected the number of a CURVE"),
+        ("CURVE_POINTS, ORDER=4", "CONTROL_POINTS", "found CURVE/7 with CONTROL_POINTS, expected CURVE_POINTS of order 4"),
+        ("ORDER=4", "ORDER=2", "found CURVE/7 with ORDER = 2, expected CURVE_POINTS of order 4"),
+        ("RM=11", "RM=11, VELOCITY=3", "found VELOCITY, expected the velocities of the parts instead"),
+    ],
+)  # fmt: skip
+def test_a_wrong_statement_is_said(old, new, message):
+    with pytest.raises(InputError, match=message):
+        read_adams(dataset(np.column_stack([X, 0 * X, Z])).replace(old, new))

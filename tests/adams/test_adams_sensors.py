@@ -1,0 +1,121 @@
+"""SENSOR statements, and the command files that go on after them, against integrations of their own."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import stiffmbs
+from stiffmbs import InputError
+from stiffmbs.adams.load import read_adams
+
+G = 9.80665
+PENDULUM = """a bar that lets go
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND
+PART/1, GROUND
+MARKER/11, PART=1, REULER=0,90D,0
+PART/2, QG=1000,0,0, MASS=2, CM=21, IP=1E5,2E5,2E5
+MARKER/21, PART=2
+MARKER/20, PART=2, QP=-1000,0,0, REULER=0,90D,0
+JOINT/1, REVOLUTE, I=20, J=11
+ACCGRAV/KGRAV=-9806.65
+{sensor}
+END
+"""
+
+
+@pytest.fixture
+def run_with(tmp_path):
+    def run(sensor, commands="", **settings):
+        (tmp_path / "model.adm").write_text(PENDULUM.format(sensor=sensor))
+        if commands:
+            (tmp_path / "model.acf").write_text(commands)
+        return stiffmbs.run(tmp_path / "model.adm", rtol=1e-10, **settings)
+
+    return run
+
+
+def swing(event):
+    """Angle below the x axis, and its rate, of the bar of 2 m that falls from the horizontal, up to an event."""
+    event.terminal = True
+
+    def rates(t, y):
+        return [y[1], 2 * G * np.cos(y[0]) / 2.2]
+
+    found = solve_ivp(rates, (0, 9), [0, 0], events=event, rtol=1e-12, atol=1e-12)
+    return found.t[-1], *found.y[:, -1]
+
+
+def test_a_bar_is_let_go_where_a_sensor_says_so(run_with):
+    """The usual script: SIMULATE, then DEACTIVATE what the sensor tells, then SIMULATE up to a time."""
+    found = run_with(
+        "SENSOR/3, FUNCTION=DZ(21, 11), VALUE=-800, LE, ERROR=1, RETURN, CODGEN, BISECTION",
+        "SIM/DYN, END=2, STEPS=8\nDEACTIVATE/SENSOR, ID=3\nDEACTIVATE/JOINT, ID=1\nSIM/DYN, END=2, STEPS=4\n",
+    )
+    t, angle, rate = swing(lambda t, y: np.sin(y[0]) - 0.8)
+    k = int(np.flatnonzero(found["PART_2.z"] < -0.79999)[0])
+    assert found.time[k] == pytest.approx(t, abs=1e-7) and found.time[k - 1] == 0.25 * (k - 1)
+    np.testing.assert_allclose(found["SENSOR_3"][k], -800, atol=1e-4)
+    flown = found.time[k + 1 :] - t
+    speed = rate * np.array([-np.sin(angle), -np.cos(angle)])
+    np.testing.assert_allclose(found["PART_2.x"][k + 1 :], np.cos(angle) + speed[0] * flown, atol=2e-6)
+    np.testing.assert_allclose(found["PART_2.z"][k + 1 :], -0.8 + speed[1] * flown - G / 2 * flown**2, atol=2e-6)
+    assert found.time[-1] == 2.0 and not np.any(found["JOINT_1.fz"][k + 2 :])
+    assert any("ended at t = " in note and "SENSOR_3" in note for note in found.notes)
+    assert "SENSOR/3: CODGEN, BISECTION left out: no effect on the motion" in found.notes
+
+
+@pytest.mark.parametrize(
+    ("sensor", "event"),
+    [
+        ("FUNCTION=AZ(20, 11), VALUE=50D, ANGULAR, GE, HALT", lambda t, y: np.sin(y[0]) - np.sin(np.radians(50))),
+        ("FUNCTION=JOINT(1, 0, 1, 0), VALUE=50, GE, RETURN", lambda t, y: np.hypot(
+            2 * (-np.sin(y[0]) * 2 * G * np.cos(y[0]) / 2.2 - np.cos(y[0]) * y[1] ** 2),
+            2 * (-np.cos(y[0]) * 2 * G * np.cos(y[0]) / 2.2 + np.sin(y[0]) * y[1] ** 2) + 2 * G) - 50),
+        ("FUNCTION=WY(21, 11), VALUE=3, ERROR=1E-3, EQ, RETURN", lambda t, y: y[1] - 3),
+    ],
+)  # fmt: skip
+def test_a_run_without_commands_ends_at_its_sensor(run_with, sensor, event):
+    sign = "-1*" if "AZ" in sensor else ""
+    found = run_with(f"SENSOR/1, {sensor}".replace("FUNCTION=", f"FUNCTION={sign}"), duration=3, output=0.1)
+    t, angle, _ = swing(event)
+    assert found.time[-1] == pytest.approx(t, abs=1e-6) and found.success
+    assert found["PART_2.z"][-1] == pytest.approx(-np.sin(angle), abs=1e-5)
+    np.testing.assert_allclose(found.time[:-1], np.arange(len(found.time) - 1) * 0.1)
+
+
+def test_no_command_is_followed_after_halt(run_with):
+    found = run_with(
+        "SENSOR/3, FUNCTION=TIME, VALUE=0.3, HALT",
+        "SIM/DYN, END=1, STEPS=4\nACCGRAV/KGRAV=0\nSIM/DYN, DURATION=1, STEPS=4\n",
+    )
+    assert found.time[-1] == pytest.approx(0.3, abs=1e-9)
+
+
+def test_a_sensor_that_neither_returns_nor_halts_is_left_out(run_with):
+    found = run_with("SENSOR/3, FUNCTION=TIME, VALUE=0.3, GE, DT=0.01, RESTART", "SIM/DYN, END=1, STEPS=4\n")
+    np.testing.assert_allclose(found.time, np.arange(5) / 4)
+    assert any("SENSOR/3 is left out: it neither returns nor halts, and RESTART, DT" in note for note in found.notes)
+
+
+def test_a_sensor_that_is_true_at_once_is_told(run_with):
+    """It was not deactivated after it had ended the first simulation."""
+    with pytest.raises(
+        InputError, match=r"stage 2 of 2: 'SENSOR_3': found its condition true where the run starts, at t = 0.3"
+    ):
+        run_with("SENSOR/3, FUNCTION=TIME, VALUE=0.3, GE, RETURN", "SIM/DYN, END=1, STEPS=4\nSIM/DYN, END=2, STEPS=4\n")
+
+
+@pytest.mark.parametrize(
+    ("sensor", "message"),
+    [
+        ("FUNCTION=TIME, GE, RETURN", "SENSOR/1: found no VALUE, expected the number"),
+        ("VALUE=1, RETURN", "SENSOR/1: found no FUNCTION"),
+        ("FUNCTION=TIME, VALUE=1, GE, LE", "SENSOR/1: found GE and LE, expected one of them"),
+        ("FUNCTION=USER(1), VALUE=1, RETURN", "SENSOR/1: found FUNCTION = USER\\(1\\), which is computed by a subroutine"),
+        ("FUNCTION=SENVAL(2), VALUE=1, RETURN", "found the function SENVAL"),
+        ("FUNCTION=TIME, VALUE=1, ERROR=-1, RETURN", "found ERROR = -1, expected no number below zero"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_with_a_sensor_is_said(sensor, message):
+    with pytest.raises(InputError, match=message):
+        read_adams(PENDULUM.format(sensor=f"SENSOR/1, {sensor}"))

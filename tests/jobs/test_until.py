@@ -1,0 +1,75 @@
+"""Stages that end where a request comes to a value."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+
+THROWN = """
+name: a ball that is thrown up
+gravity: [0, -10]
+bodies: {ball: {mass: 2, inertia: 1, velocity: [1, 6]}}
+requests: {height: ball.y, speed: ball.vy, pull: ball.ay}
+run: {rtol: 1e-9}
+stages:
+  - {until: {top: {request: CONDITION}}, run: {duration: 2, output: 0.25}}
+  - {change: {gravity: [0, 0]}, end: 3, run: {points: 3}}
+"""
+
+
+def ran(condition, scene=THROWN):
+    return stiffmbs.run(stiffmbs.read_scene(scene.replace("CONDITION", condition)))
+
+
+@pytest.mark.parametrize(
+    ("condition", "t"),
+    [
+        ("speed, at_most: 0", 0.6),
+        ("height, at_least: 1", 0.2),
+        ("height, equals: 1", 0.2),
+        ("height, equals: -1", 0.6 + np.sqrt(0.36 + 0.2)),
+        ("height, equals: 2, within: 0.35", 0.6 - np.sqrt(0.03)),  # 1.8 m high at the most
+    ],
+)
+def test_a_stage_ends_where_a_request_comes_to_a_value(condition, t):
+    found = ran(condition)
+    assert "3 runs" not in found.message and found.success
+    k = np.flatnonzero(found.time == found.time[np.searchsorted(found.time, t - 1e-4)])
+    np.testing.assert_allclose(found.time[k], t, atol=1e-7)
+    np.testing.assert_allclose(found["height"][k], 6 * found.time[k] - 5 * found.time[k] ** 2, atol=1e-6)
+    np.testing.assert_allclose(found.time[: k[0]], np.arange(0, t, 0.25)[: k[0]])
+    assert found.time[-1] == pytest.approx(3) and len(found.time) == k[-1] + 3
+    np.testing.assert_allclose(found["ball.vy"][-1], found["ball.vy"][k[-1]], atol=1e-8)
+
+
+def test_a_condition_that_never_holds_changes_nothing():
+    found = ran("height, at_least: 9")
+    np.testing.assert_allclose(found.time, [*np.arange(9) / 4, 2.0, 2.5, 3.0][: len(found.time)])
+    assert found.time[8] == 2.0 and found["ball.vy"][-1] == pytest.approx(-14)
+
+
+def test_no_stage_follows_where_the_condition_says_so():
+    found = ran("speed, at_most: 0, then: stop")
+    assert found.time[-1] == pytest.approx(0.6, abs=1e-8) and found.success
+    assert "ended at t = 0.6" in found.message and "'top'" in found.message
+
+
+@pytest.mark.parametrize(
+    ("condition", "message"),
+    [
+        ("speed", "found no bound, expected one of at_least, at_most, equals"),
+        ("speed, at_least: 1, at_most: 2", "found at_least and at_most, expected one of"),
+        ("spin, at_least: 1", "stage 1 of 2: 'top': found request = spin, expected the name of a request"),
+        ("speed, at_least: 1", "'top': found its condition true where the run starts"),
+    ],
+)
+def test_a_wrong_condition_is_said(condition, message):
+    with pytest.raises(stiffmbs.InputError, match=message):
+        ran(condition)
+
+
+def test_a_stage_has_one_end_that_lies_after_its_start():
+    with pytest.raises(stiffmbs.InputError, match="found end and a duration, expected one of them"):
+        ran("speed, at_most: 0", THROWN.replace("end: 3, run: {", "end: 3, run: {duration: 1, "))
+    with pytest.raises(stiffmbs.InputError, match=r"stage 2 of 2: found its end at 0.5 s, expected a time after 0.6 s"):
+        ran("speed, at_most: 0", THROWN.replace("end: 3", "end: 0.5"))
