@@ -13,7 +13,9 @@ import sympy as sp
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.nodes import TIME
 from ...describe.formula.text import evaluate
-from ..kind import OWN, REACTION, STATE, Kind, Shape
+from ..element_data import Shape
+from ..formula_shape import OWN, REACTION, STATE
+from ..kind import Kind
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
