@@ -25,6 +25,7 @@ from stiffmbs.describe.spatial.forces.shared import SpringDamper as _SpringDampe
 from stiffmbs.describe.spatial.forces.sphere_box_impact import SphereBoxImpact as _SphereBoxImpact
 from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
 from stiffmbs.describe.spatial.forces.sphere_cylinder_impact import SphereCylinderImpact as _SphereCylinderImpact
+from stiffmbs.describe.spatial.forces.sphere_sphere_impact import SphereSphereImpact as _SphereSphereImpact
 from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
 from stiffmbs.describe.spatial.forces.vertical_tyre import VerticalTyre as _VerticalTyre
 from stiffmbs.describe.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
@@ -479,6 +480,26 @@ class SphereCylinderImpact(_SphereCylinderImpact):
         cylinder_radius: given.Number,
         cylinder_length: given.Number,
         type: Literal["sphere_cylinder_impact"] = ...,
+    ) -> None: ...
+
+class SphereSphereImpact(_SphereSphereImpact):
+    """A sphere about marker i that presses on a sphere about marker j."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        radius: given.Number,
+        other_radius: given.Number,
+        type: Literal["sphere_sphere_impact"] = ...,
     ) -> None: ...
 
 class Spherical(_Spherical):

@@ -2,7 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
+import stiffmbs
+from stiffmbs.adams.load import read_adams
 from stiffmbs.errors import InputError
 
 from .adams_parts import made
@@ -68,3 +71,73 @@ def test_pairs_that_are_not_solved_are_refused():
         contact(4, 3)
     with pytest.raises(InputError, match="found no RADIUS, expected a number above zero"):
         made("GRAPHICS/1, PLANE, RM=1\nGRAPHICS/3, CYLINDER, CM=22, LENGTH=300\nCONTACT/1, IGEOM=3, JGEOM=1, " + LAW)
+
+
+BALLS = """two balls
+PART/1, GROUND
+PART/2, MASS=2, CM=21, IP=0.01,0.01,0.01, VX=3, WZ=20
+MARKER/21, PART=2
+PART/3, QG=0.5,0.1,0, MASS=1, CM=31, IP=0.002,0.002,0.002
+MARKER/31, PART=3
+GRAPHICS/1, ELLIPSOID, CM=21, XSCALE=0.3, YSCALE=0.3, ZSCALE=0.3
+GRAPHICS/2, ELLIPSOID, CM=31, XSCALE=0.2, YSCALE=0.2, ZSCALE=0.2
+CONTACT/1, IGEOM=1, JGEOM=2, IMPACT, STIFFNESS=1E5, DAMPING=50, EXPONENT=1.5, DMAX=1E-3, COULOMB_FRICTION=ON
+, MU_STATIC=0.3, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=0.1, FRICTION_TRANSITION_VELOCITY=0.5
+END
+"""
+
+
+def step(x, x0, h0, x1, h1):
+    z = min(max((x - x0) / (x1 - x0), 0), 1)
+    return h0 + (h1 - h0) * z * z * (3 - 2 * z)
+
+
+def cross(a, b):
+    return a[0] * b[1] - a[1] * b[0]
+
+
+@pytest.mark.long
+def test_two_balls_rub_as_they_collide():
+    """Against the same law in the plane of the collision, integrated by itself."""
+    found = stiffmbs.run(read_adams(BALLS), duration=0.2, points=11, rtol=1e-9)
+
+    def rates(t, y):
+        a, b, va, vb, wa, wb = y[0:2], y[2:4], y[4:6], y[6:8], y[8], y[9]
+        way = a - b
+        distance = np.hypot(*way)
+        n = way / distance
+        gap, rate = distance - 0.25, (va - vb) @ n
+        force, moment_a, moment_b = np.zeros(2), 0.0, 0.0
+        if gap < 0:
+            pressure = max(1e5 * (-gap) ** 1.5 - 50 * rate * step(gap, -1e-3, 1, 0, 0), 0)
+            point = a - 0.15 * n
+            across = np.array([-n[1], n[0]])
+            slide = (
+                (va - vb) @ across + wa * -0.15 * (n[0] * across[1] - n[1] * across[0]) - wb * cross(point - b, across)
+            )
+            mu = (
+                step(slide, -0.1, -0.3, 0.1, 0.3)
+                if abs(slide) < 0.1
+                else np.sign(slide) * step(abs(slide), 0.1, 0.3, 0.5, 0.2)
+            )
+            force = pressure * n - mu * pressure * across
+            moment_a, moment_b = cross(point - a, force), -cross(point - b, force)
+        return [*va, *vb, *(force / 2), *(-force / 1), moment_a / 0.01, moment_b / 0.002]
+
+    own = solve_ivp(rates, (0, 0.2), [0, 0, 0.5, 0.1, 3, 0, 0, 0, 20, 0], rtol=1e-10, atol=1e-12, max_step=1e-5).y[
+        :, -1
+    ]
+    names = [
+        "PART_2.x",
+        "PART_2.y",
+        "PART_3.x",
+        "PART_3.y",
+        "PART_2.vx",
+        "PART_2.vy",
+        "PART_3.vx",
+        "PART_3.vy",
+        "PART_2.wz",
+        "PART_3.wz",
+    ]
+    np.testing.assert_allclose([found[name][-1] for name in names], own, atol=2e-5)
+    assert abs(own[9]) > 1

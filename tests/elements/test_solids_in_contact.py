@@ -26,7 +26,9 @@ SPHERE_CYLINDER = (
 CYLINDER = "type: cylinder_plane_impact, i: b, j: ground, radius: 0.1, length: 0.4"
 ELLIPSOID = "type: ellipsoid_plane_impact, i: b, j: ground, x: 0.3, y: 0.2, z: 0.1"
 BOX = "type: box_plane_impact, i: b, j: ground, x: 0.3, y: 0.2, z: 0.1"
+SPHERES = "type: sphere_sphere_impact, i: b, j: ground, radius: 0.1, other_radius: 0.3"
 FALLING = [  # by an edge, by a corner, tumbling
+    (SPHERES, f"{BALL}, position: [0.2, 0.1, 0.5]"),
     (SPHERE_BOX, f"{BALL}, position: [0.55, 0, 0.25]"),
     (SPHERE_BOX, f"{BALL}, position: [0.54, 0.43, 0.25]"),
     (SPHERE_CYLINDER, f"{BALL}, position: [0.53, 0.1, 0.22]"),
@@ -51,6 +53,7 @@ def test_energy_is_kept_over_impacts(force, body):
 @pytest.mark.parametrize(
     ("force", "inertia", "height", "points"),
     [
+        (SPHERES, BALL, 0.4, 1),
         (SPHERE_BOX, BALL, 0.2, 1),
         (SPHERE_CYLINDER, BALL, 0.2, 1),
         (CYLINDER, "inertia: [0.014, 0.005, 0.014], orientation: [0.5, 0.5, 0.5, 0.5]", 0.1, 2),

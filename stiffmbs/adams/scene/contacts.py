@@ -28,7 +28,7 @@ def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
 
 def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
-    if (first.sort, second.sort) == (SPHERE, SPHERE):
+    if (first.sort, second.sort) == (SPHERE, SPHERE) and not contact.friction:
         return _of_spheres(contact, first, second, mechanism, translation)
     if {first.sort, second.sort} == {SPHERE, PLANE}:
         sphere, plane = (first, second) if first.sort == SPHERE else (second, first)
@@ -52,8 +52,6 @@ def _impact(contact: Contact, gap: str, rate: str) -> str:
 def _of_spheres(
     contact: Contact, one: Shape, other: Shape, mechanism: Mechanism, translation: Translation
 ) -> dict[str, Any]:
-    if contact.friction:
-        raise contact.fault("found friction between two spheres, expected a sphere and a plane, or no friction")
     i, j = (mechanism.place(shape.marker, contact, "CM").reference for shape in (one, other))
     ends = f"({one.marker}, {other.marker})"
     law = _impact(contact, f"DM{ends} - {one.sizes[0] + other.sizes[0]!r}", f"VR{ends}")

@@ -12,6 +12,7 @@ from ..statements.units import Units
 from .mechanism import Mechanism
 
 PAIRS = {
+    (SPHERE, SPHERE): "sphere_sphere_impact",
     (SPHERE, CYLINDER): "sphere_cylinder_impact",
     (SPHERE, BOX): "sphere_box_impact",
     (CYLINDER, PLANE): "cylinder_plane_impact",
@@ -31,7 +32,7 @@ def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mec
     one, other = (first, second) if (first.sort, second.sort) in PAIRS else (second, first)
     kind = PAIRS.get((one.sort, other.sort))
     if kind is None:
-        known = ", ".join(" and ".join(pair) for pair in ((SPHERE, PLANE), (SPHERE, SPHERE), *PAIRS))
+        known = ", ".join(" and ".join(pair) for pair in ((SPHERE, PLANE), *PAIRS))
         raise contact.fault(f"found {first.sort} and {second.sort}, expected {known}")
     units = mechanism.dataset.units
     made: dict[str, Any] = {
@@ -40,11 +41,11 @@ def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mec
         "j": _middle(other, contact, mechanism),
         **_law(contact, units),
     }
-    for shape in (one, other):
-        made |= {
-            name: plain(size * units.length) for name, size in _sizes(shape, with_sphere=one.sort == SPHERE).items()
-        }
-    return made
+    if (one.sort, other.sort) == (SPHERE, SPHERE):
+        sizes = {"radius": one.sizes[0], "other_radius": other.sizes[0]}
+    else:
+        sizes = _sizes(one, with_sphere=False) | _sizes(other, with_sphere=one.sort == SPHERE)
+    return made | {name: plain(size * units.length) for name, size in sizes.items()}
 
 
 def _sizes(shape: Shape, with_sphere: bool) -> dict[str, float]:
