@@ -54,7 +54,7 @@ class State:
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
         self._evaluated = np.zeros(1, dtype=np.int64)
         self.table = self._packed(self._n_calls, self._calls_at)
-        self._evaluate = TERMS.call
+        self._evaluate = TERMS.short_call
 
     def _packed(self, n_calls: np.ndarray, calls_at: np.ndarray) -> np.ndarray:
         system = self.system

@@ -193,16 +193,16 @@ class Dynamics:
 
     def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
         """Move positions by Newton's smallest moves until |C| <= tolerance; the number of moves, or a failure."""
-        return ASSEMBLE.call(t, tolerance, most, self._at)
+        return ASSEMBLE.short_call(t, tolerance, most, self._at)
 
     def correct_velocities(self, t: float) -> int:
         """The smallest correction of u in the mass matrix that satisfies J u + C_t = 0; 0 or a failure."""
-        return CORRECT_VELOCITIES.call(t, self._at)
+        return CORRECT_VELOCITIES.short_call(t, self._at)
 
     def accelerate(self, t: float) -> tuple[int, np.ndarray]:
         """0 or a failure (`stiffmbs.solve.native.statuses`), and u' from the block system; the multipliers are in the state's lam."""
         acceleration = np.empty(self.system.n_u)
-        return ACCELERATE.call(t, acceleration.ctypes.data, self._at), acceleration
+        return ACCELERATE.short_call(t, acceleration.ctypes.data, self._at), acceleration
 
     def contradicting(
         self, ends: tuple[np.ndarray, np.ndarray], apart: float, states: tuple[np.ndarray, np.ndarray],

@@ -18,6 +18,7 @@ from .measured import Measured, measured
 from .outputs import Output, outputs_of
 from .parameters import Sought, sought
 from .sensitivities.gradients import Gradients
+from .uncertainty import of_common_noise, of_separate_noise
 
 CONFIDENCE = 0.95
 ROUNDS = 3
@@ -126,7 +127,7 @@ def fit(
         if sigma is None:
             off = model.residual_rms(point)
             weights = {name: 1 / max(rms, 1e-9 / weights[name]) for name, rms in off.items()}
-    return _concluded(model, ranges, point, weights, result)
+    return _concluded(model, ranges, point, weights, result, of_channels=sigma is None)
 
 
 def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, float]:
@@ -229,18 +230,25 @@ class _Model:
             columns.append((above - below) / (ends[1][k] - ends[0][k]))
         return np.column_stack(columns)
 
+    def by_channel(self, rows: np.ndarray) -> list[np.ndarray]:
+        """Rows of `residuals` or `jacobian`, those of each channel by themselves."""
+        return np.split(
+            rows, np.cumsum([int(np.isfinite(values).sum()) for values in self._data.channels.values()])[:-1]
+        )
+
     def residual_rms(self, point: np.ndarray) -> dict[str, float]:
         """Of each channel."""
         off = self._differences(self.solution(point))
         return {name: float(np.sqrt(np.nanmean(values**2))) for name, values in off.items()}
 
 
-def _concluded(model: _Model, ranges: Sought, point: np.ndarray, weights: Mapping[str, float], result: Any) -> Fit:
+def _concluded(
+    model: _Model, ranges: Sought, point: np.ndarray, weights: Mapping[str, float], result: Any, of_channels: bool
+) -> Fit:
     from scipy.stats import t as student
 
     J, r = model.jacobian(point, weights), model.residuals(point, weights)
-    freedom = len(r) - len(point)
-    if freedom < 1:
+    if len(r) <= len(point):
         raise InputError(f"data: found {len(r)} values, expected more than the {len(point)} parameters")
     singular = np.linalg.svd(J, compute_uv=False)
     if not singular[-1] > 1e-10 * singular[0]:
@@ -248,9 +256,9 @@ def _concluded(model: _Model, ranges: Sought, point: np.ndarray, weights: Mappin
         raise InputError(
             f"data: found that they do not determine '{flat}', expected channels that depend on it, or fewer parameters"
         )
-    covariance = np.linalg.inv(J.T @ J) * float(r @ r) / freedom
-    errors = np.sqrt(np.diag(covariance))
-    values, half = ranges.values(point), float(student.ppf((1 + CONFIDENCE) / 2, freedom)) * errors
+    found = of_separate_noise(*map(model.by_channel, (J, r))) if of_channels else of_common_noise(J, r)
+    errors = np.sqrt(np.diag(found.covariance))
+    values, half = ranges.values(point), student.ppf((1 + CONFIDENCE) / 2, found.freedom) * errors
     low, high = (ranges.values(point + side * half) for side in (-1, 1))
     rms = model.residual_rms(point)
     slopes = ranges.slopes(point)
@@ -258,5 +266,5 @@ def _concluded(model: _Model, ranges: Sought, point: np.ndarray, weights: Mappin
         dict(zip(ranges.names, values, strict=True)),
         {name: (a, b) for name, a, b in zip(ranges.names, low, high, strict=True)},
         {name: float(error) for name, error in zip(ranges.names, errors * slopes, strict=True)},
-        covariance / np.outer(errors, errors), rms, model.solution(point), model.runs, bool(result.success), str(result.message),
+        found.covariance / np.outer(errors, errors), rms, model.solution(point), model.runs, bool(result.success), str(result.message),
     )  # fmt: skip

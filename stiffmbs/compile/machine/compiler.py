@@ -25,13 +25,15 @@ _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 @dataclass(frozen=True)
 class Compiled:
-    """A compiled function: its address for other compiled code, and a way to call it from Python.
+    """A compiled function: its address for other compiled code, and two ways to call it from Python.
 
-    Pointers are passed as addresses (``array.ctypes.data``); the interpreter lock is released during a call.
+    Pointers are passed as addresses (``array.ctypes.data``); the interpreter lock is released during a `call`, and kept during a
+    `short_call`: another thread that takes it for a while makes a call of a few microseconds wait for longer than it lasts.
     """
 
     address: int
     call: Callable[..., Any]
+    short_call: Callable[..., Any]
 
 
 Signatures = tuple[tuple[str, str], ...]
@@ -208,13 +210,15 @@ def _linked(code: bytes, entry: str, signatures: Signatures) -> dict[str, Compil
         address = engine.get_function_address(symbol)
         if not address:
             return None
-        found[name] = Compiled(address, _prototype(signature)(address))
+        call, short_call = (made(*_prototype(signature))(address) for made in (ctypes.CFUNCTYPE, ctypes.PYFUNCTYPE))
+        found[name] = Compiled(address, call, short_call)
     return found
 
 
-def _prototype(signature: str) -> Any:
+def _prototype(signature: str) -> list[Any]:
+    """The types of the result and of the arguments."""
     arguments, result = _c_types(signature)
-    return ctypes.CFUNCTYPE(_CTYPES[result], *(ctypes.c_void_p if "*" in kind else _CTYPES[kind] for kind in arguments))
+    return [_CTYPES[result], *(ctypes.c_void_p if "*" in kind else _CTYPES[kind] for kind in arguments)]
 
 
 def _c_types(signature: str) -> tuple[list[str], str]:

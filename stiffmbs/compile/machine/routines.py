@@ -37,6 +37,11 @@ class Routine:
         return self._compiled().call
 
     @cached_property
+    def short_call(self) -> Callable[..., Any]:
+        """The same, for calls that last some microseconds: the interpreter's lock is kept."""
+        return self._compiled().short_call
+
+    @cached_property
     def address(self) -> int:
         """The function's address, for calls from compiled code."""
         return self._compiled().address

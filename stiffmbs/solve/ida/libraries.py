@@ -40,7 +40,7 @@ class Libraries:
         What `sunindextype` is.
     """
 
-    loaded: tuple[ctypes.CDLL, ...]
+    loaded: tuple[ctypes.PyDLL, ...]
     index: type[Any]
 
     def __getattr__(self, name: str) -> Any:
@@ -64,7 +64,7 @@ class Libraries:
         return address
 
     @cached_property
-    def _with_threads(self) -> ctypes.CDLL | None:
+    def _with_threads(self) -> ctypes.PyDLL | None:
         """The library that works with OpenMP."""
         return next((lib for lib in self.loaded if hasattr(lib, "omp_set_num_threads")), None)
 
@@ -129,12 +129,12 @@ def sparse_libraries() -> Libraries:
     return _tried((*_loaded(IDA_LIBRARIES), *_loaded(SPARSE_LIBRARIES)))
 
 
-def _loaded(names: tuple[str, ...]) -> tuple[ctypes.CDLL, ...]:
+def _loaded(names: tuple[str, ...]) -> tuple[ctypes.PyDLL, ...]:
     folder = _folder()
     if hasattr(os, "add_dll_directory"):
         os.add_dll_directory(str(folder))  # Windows looks for what a library needs in declared folders alone
     try:
-        return tuple(ctypes.CDLL(str(_file(folder, name))) for name in names)
+        return tuple(ctypes.PyDLL(str(_file(folder, name))) for name in names)  # Python makes short calls alone
     except OSError as error:
         raise Unavailable(f"the SUNDIALS libraries in {folder} cannot be loaded: {error}") from None
 
@@ -170,7 +170,7 @@ def _matching(folder: Path, name: str) -> list[Path]:
     return sorted(path for path in folder.glob(f"*sundials_{name}*") if pattern.match(path.name))
 
 
-def _tried(loaded: tuple[ctypes.CDLL, ...]) -> Libraries:
+def _tried(loaded: tuple[ctypes.PyDLL, ...]) -> Libraries:
     """The libraries, after a trial of their version and of the types of their numbers."""
     try:
         trial = Libraries(loaded, ctypes.c_int64)  # small positive numbers pass alike, whatever the type is

@@ -1,0 +1,64 @@
+"""How certain fitted parameters are, by the linearised model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+ROUNDS = 4
+"""Of estimates of the channels' noise, each with the leverages of the one before: they settle by a factor of the leverage per value."""
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Of p parameters.
+
+    Attributes
+    ----------
+    covariance : ndarray, shape (p, p)
+    freedom : ndarray, shape (p,)
+        Degrees of freedom of each parameter's variance, for Student's distribution.
+    """
+
+    covariance: np.ndarray
+    freedom: np.ndarray
+
+
+def of_common_noise(J: np.ndarray, r: np.ndarray) -> Uncertainty:
+    """That of residuals r with derivatives J whose noise is known up to a common factor.
+
+    Seber and Wild, Nonlinear Regression (1989), sec. 5.1.
+    """
+    count, p = J.shape
+    return Uncertainty(np.linalg.inv(J.T @ J) * float(r @ r) / (count - p), np.full(p, float(count - p)))
+
+
+def of_separate_noise(J: Sequence[np.ndarray], r: Sequence[np.ndarray]) -> Uncertainty:
+    """That of channels, each with a noise of its own which its residuals tell.
+
+    A channel loses as many degrees of freedom to the parameters as its leverages sum up to.  The variance of a parameter is a sum over
+    channels, whose degrees of freedom are those of Satterthwaite, Biometrics Bulletin 2 (1946) 110-114.  Where a channel has none
+    left, the noise is taken for a common one.
+
+    Parameters
+    ----------
+    J : sequence of ndarrays, shapes (n_k, p)
+        Derivatives of each channel's residuals, weighted so that all have about the same noise.
+    r : sequence of ndarrays, shapes (n_k,)
+    """
+    information = np.array([part.T @ part for part in J])
+    squares, counts = np.array([part @ part for part in r]), np.array([float(len(part)) for part in r])
+    variance = np.full(len(r), squares.sum() / counts.sum())
+    for _ in range(ROUNDS):
+        parts = information / variance[:, None, None]
+        covariance = np.linalg.inv(parts.sum(axis=0))
+        freedom = counts - np.einsum("ij,kji->k", covariance, parts)
+        if np.any(freedom < 1) or not np.all(squares > 0):
+            return of_common_noise(np.concatenate(J), np.concatenate(r))
+        variance = squares / freedom
+    parts = information / variance[:, None, None]
+    covariance = np.linalg.inv(parts.sum(axis=0))
+    shares = np.einsum("ij,kjl,li->ki", covariance, parts, covariance) / np.diag(covariance)
+    return Uncertainty(covariance, 1.0 / (shares**2 / freedom[:, None]).sum(axis=0))
