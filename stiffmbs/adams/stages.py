@@ -85,7 +85,7 @@ def _staged(
             run = simulation.settings(time, units)
             time += simulation.length(time) if simulation.takes_time else 0.0
         run |= _in_si(segment, units)
-        until = {} if simulation.kind == STATICS else conditions(known[0])
+        until = {} if simulation.kind == STATICS else conditions(known[0], known[1].get("inputs", {}))
         stages.append(stage | ({"until": until} if until else {}) | ({"run": run} if run else {}))
         before = segment
     if any(segment.simulation.kind == STATICS for segment in segments[1:]):

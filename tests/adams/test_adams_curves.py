@@ -92,11 +92,20 @@ def test_a_curve_that_cannot_be_followed_is_said(points, sort, message):
     ("old", "new", "message"),
     [
         ("CURVE=7", "CURVE=6", "found CURVE = 6, expected the number of a CURVE"),
-        ("CURVE_POINTS, ORDER=4", "CONTROL_POINTS", "found CURVE/7 with CONTROL_POINTS, expected CURVE_POINTS of order 4"),
-        ("ORDER=4", "ORDER=2", "found CURVE/7 with ORDER = 2, expected CURVE_POINTS of order 4"),
+        ("CURVE_POINTS, ORDER=4", "CONTROL_POINTS", "CURVE/7: found CONTROL_POINTS; expected CURVE_POINTS of order 4"),
+        ("ORDER=4", "ORDER=2", "CURVE/7: found ORDER = 2; expected CURVE_POINTS of order 4"),
+        ("ORDER=4", "SORT=4", "PTCV/4: CURVE/7: found 'SORT=4', expected one of CLOSED, .*; expected CURVE_POINTS of order 4"),
         ("RM=11", "RM=11, VELOCITY=3", "found VELOCITY, expected the velocities of the parts instead"),
     ],
 )  # fmt: skip
 def test_a_wrong_statement_is_said(old, new, message):
     with pytest.raises(InputError, match=message):
         read_adams(dataset(np.column_stack([X, 0 * X, Z])).replace(old, new))
+
+
+def test_a_curve_that_is_only_drawn_may_be_of_any_kind():
+    text = dataset(np.column_stack([X, 0 * X, Z])).replace("PTCV/4, CURVE=7, I=21, JFLOAT=12, RM=11\n", "")
+    scene = read_adams(
+        text.replace("ORDER=4", "SORT=4").replace("PTCV(4, 0, 1, 0)", "1").replace("PTCV(4, 1, 4, 11)", "2")
+    )
+    assert "PTCV_4" not in scene.joints and "JPRIM_1" in scene.joints

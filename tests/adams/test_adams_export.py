@@ -53,6 +53,7 @@ BETWEEN = {
     "field": "forces: {s: {type: field, i: b.end, j: {body: ground, point: [0.8, 0.3, 0.1]}, stiffness: [[90, 5, 0, 0, 0, 1], [5, 80, 0, 0, 0, 0], [0, 0, 70, 0, 2, 0], [0, 0, 0, 9, 0, 0], [0, 0, 2, 0, 8, 0], [1, 0, 0, 0, 0, 7]], free: [0.01, 0, 0.02, 0, 0.1, 0]}}",
     "beam": "forces: {s: {type: beam, i: {body: b, point: [-0.2, 0.1, 0]}, j: {body: ground, point: [0.3, 0.3, 0.1]}, length: 0.5, young: 1e7, shear_modulus: 4e6, area: 1e-4, torsion: 2e-8, iyy: 1e-8, izz: 1e-8, damping_ratio: 1e-3}}",
     "torques": "joints: {one: {type: spherical, i: a, j: ground}}\nforces: {turn: {type: torque, i: a, j: b, frame: b.side, torque: ['0.3*az(a, b)', '-0.2*wx(a, b, a)', 'max(0.1, min(t, 0.2), loss)']}, g: {type: force, i: b, j: a, axes: body, force: ['branch(b.vx, 1, 2, 3)', 'sign(t - 0.1)*asinh(2*t)', 'exp(-t) + atan2(t, 2) - 2^-t - (1 - (t - 2))/(3/(1 + t))']}}",
+    "reactions": "joints: {one: {type: prismatic, i: b, j: {body: ground, point: [1, 0.2, 0.1]}}, two: {type: point_on_line, i: a, j: ground}}\nforces: {f: {type: force, i: b, force: [0, 0, '-0.2*sqrt(fx(one)^2 + fy(one)^2 + 0.01)*step(vz(b), -0.1, -1, 0.1, 1) + 0.01*tx(one) - 0.02*fy(two)']}}",
     "tables": "forces: {f: {type: force, i: b, force: ['smooth(t)', 'straight(b.x - 1.1)', '-2*local(b.vz)']}}",
     "states": "states: {lag: {rate: '(b.vz - lag)/0.05', start: 0.3}, root: {zero: 'root^3 + root - b.x', start: 0.6}, smooth: {numerator: [2], denominator: [0.1, 1], input: b.vy}}\nforces: {f: {type: force, i: b, force: [root, '-smooth', '-3*lag']}}",
 }  # fmt: skip

@@ -58,7 +58,7 @@ MARKER/10, PART=1
 MARKER/21, PART=2
 SFORCE/1, ROT, I=21, J=10
 , FUNCTION=SIN(TIME) +
-, MOD(3, 1)*SENVAL(1)
+, MOD(3, 1)*NFORCE(1)
 REQUEST/1, F2=SFORCE(1,0,1,0)\\, F3=MOD(TIME, 1)\\, COM='ab'
 END
 """
@@ -76,7 +76,7 @@ def test_arguments_and_functions_have_lines_of_their_own(tmp_path):
         "line 5, MARKER/21: read (PART)",
         "line 6, SFORCE/1: read (ROTATIONAL I J FUNCTION)",
         "line 7, SFORCE/1, MOD: refused, a function that FUNCTION cannot use here",
-        "line 7, SFORCE/1, SENVAL: refused, a function that FUNCTION cannot use here",
+        "line 7, SFORCE/1, NFORCE: refused, a function that FUNCTION cannot use here",
         "line 9, REQUEST/1: read (F2 F3)",
         "line 9, REQUEST/1, COMMENT: left out, text",
     ]

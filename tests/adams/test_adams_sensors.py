@@ -61,7 +61,7 @@ def test_a_bar_is_let_go_where_a_sensor_says_so(run_with):
     np.testing.assert_allclose(found["PART_2.z"][k + 1 :], -0.8 + speed[1] * flown - G / 2 * flown**2, atol=2e-6)
     assert found.time[-1] == 2.0 and not np.any(found["JOINT_1.fz"][k + 2 :])
     assert any("ended at t = " in note and "SENSOR_3" in note for note in found.notes)
-    assert "SENSOR/3: CODGEN, BISECTION left out: no effect on the motion" in found.notes
+    assert "SENSOR/3: CODGEN, BISECTION left out: no effect on results" in found.notes
 
 
 @pytest.mark.parametrize(
@@ -91,10 +91,58 @@ def test_no_command_is_followed_after_halt(run_with):
     assert found.time[-1] == pytest.approx(0.3, abs=1e-9)
 
 
-def test_a_sensor_that_neither_returns_nor_halts_is_left_out(run_with):
-    found = run_with("SENSOR/3, FUNCTION=TIME, VALUE=0.3, GE, DT=0.01, RESTART", "SIM/DYN, END=1, STEPS=4\n")
+def test_a_sensor_that_only_restarts_the_integration_is_left_out(run_with):
+    found = run_with("SENSOR/3, FUNCTION=TIME, VALUE=0.3, GE, STEPSIZE=1, RESTART", "SIM/DYN, END=1, STEPS=4\n")
     np.testing.assert_allclose(found.time, np.arange(5) / 4)
-    assert any("SENSOR/3 is left out: it neither returns nor halts, and RESTART, DT" in note for note in found.notes)
+    told = "SENSOR/3 is left out: it does not end the run, and RESTART, STEPSIZE change no results"
+    assert told in found.notes
+
+
+CART = """a cart that is pushed by what a sensor has seen
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=METER, TIME=SECOND
+PART/1, GROUND
+MARKER/11, PART=1
+PART/2, MASS=1, CM=21, IP=1,1,1
+MARKER/21, PART=2
+JOINT/1, TRANSLATIONAL, I=21, J=11
+SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=21, J=11, FUNCTION=1 - SENVAL(5)
+SENSOR/5, FUNCTION=DZ(21, 11), VALUE=0.5, {relation}, ERROR=1E-3, EVALUATE=3*VZ(21, 11)
+REQUEST/1, F2=SENVAL(5)
+END
+"""
+PIECES = [(0, 0, 0, 0), (1, 0.5, 1, 3), (2, 0.5, -1, -3), (2.5, 0.5, 1, 3), (3.5, 0.5, -1, -3), (9, 0, 0, 0)]
+"""Times at which the cart passes 0.5 m with the place, its speed, and what is evaluated."""
+
+
+@pytest.mark.parametrize(("relation", "last"), [("EQ", 5), ("GE", 2)])
+def test_what_a_sensor_evaluates_is_kept_until_it_counts_again(tmp_path, relation, last):
+    """By GE the cart comes back once, beyond ERROR below VALUE it goes on down, so that the sensor counts no more."""
+    (tmp_path / "model.adm").write_text(CART.format(relation=relation))
+    found = stiffmbs.run(tmp_path / "model.adm", duration=3.8, output=0.1, rtol=1e-10)
+    for (t, z, v, seen), (end, *_) in zip(PIECES[:last], [*PIECES[1:last], PIECES[-1]], strict=True):
+        rows = (found.time > t + 1e-6) & (found.time < min(end, 3.81) - 1e-6)
+        way = found.time[rows] - t
+        np.testing.assert_allclose(found["REQUEST_1.f2"][rows], seen, atol=1e-6)
+        np.testing.assert_allclose(found["PART_2.z"][rows], z + v * way + (1 - seen) / 2 * way**2, atol=1e-6)
+    assert found.time[-1] == pytest.approx(3.8) and any(
+        "changed at t = 1 s by 'SENSOR_5'" in note for note in found.notes
+    )
+
+
+def test_a_sensor_changes_the_output_and_records(run_with):
+    commands = "SIM/DYN, END=1, STEPS=4\n"
+    found = run_with("SENSOR/3, FUNCTION=TIME, VALUE=0.3, GE, DT=0.1, PRINT", commands)
+    np.testing.assert_allclose(found.time, [0, 0.25, *np.arange(3, 11) / 10], atol=1e-9)
+
+
+def test_an_inactive_sensor_keeps_what_it_has_seen(tmp_path):
+    (tmp_path / "model.adm").write_text(CART.format(relation="GE"))
+    (tmp_path / "model.acf").write_text(
+        "SIM/DYN, END=1.5, STEPS=3\nDEACTIVATE/SENSOR, ID=5\nSIM/DYN, END=2.5, STEPS=2\n"
+    )
+    found = stiffmbs.run(tmp_path / "model.adm", rtol=1e-10)
+    assert found["PART_2.z"][-1] == pytest.approx(0.5 + 1.5 - 1.5**2, abs=1e-6)
+    assert found["REQUEST_1.f2"][-1] == pytest.approx(3, abs=1e-6)
 
 
 def test_a_sensor_that_is_true_at_once_is_told(run_with):
@@ -112,7 +160,8 @@ def test_a_sensor_that_is_true_at_once_is_told(run_with):
         ("VALUE=1, RETURN", "SENSOR/1: found no FUNCTION"),
         ("FUNCTION=TIME, VALUE=1, GE, LE", "SENSOR/1: found GE and LE, expected one of them"),
         ("FUNCTION=USER(1), VALUE=1, RETURN", "SENSOR/1: found FUNCTION = USER\\(1\\), which is computed by a subroutine"),
-        ("FUNCTION=SENVAL(2), VALUE=1, RETURN", "found the function SENVAL"),
+        ("FUNCTION=SENVAL(2), VALUE=1, RETURN", "found SENVAL\\(2\\), expected the number of a SENSOR with EVALUATE"),
+        ("FUNCTION=TIME, VALUE=1, DT=0", "found DT = 0, expected a number above zero"),
         ("FUNCTION=TIME, VALUE=1, ERROR=-1, RETURN", "found ERROR = -1, expected no number below zero"),
     ],
 )  # fmt: skip

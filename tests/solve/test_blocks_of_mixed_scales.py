@@ -54,11 +54,11 @@ def scene(seed):
     return read_scene("\n".join([*head, *links(random, n), *connections(random, n), *run]) + "\n")
 
 
-NEED_PIVOTS = (28, 43)
+NEED_PIVOTS = (43, 76)
 """Seeds whose factors by blocks are refused at times."""
 
 
-@pytest.mark.parametrize("seed", [0, *range(2, 8), *NEED_PIVOTS])
+@pytest.mark.parametrize("seed", [0, *range(2, 8), 28, *NEED_PIVOTS])
 def test_motion_is_that_with_pivots(seed):
     by_blocks, pivoted = (prepare(scene(seed), solver="bdf", rtol=1e-6) for _ in range(2))
     ours, expected = by_blocks.integrate(), with_pivots(pivoted).integrate()

@@ -10,7 +10,7 @@ from ...describe.spatial.model import SpatialData
 from ...errors import InputError
 from .forces import Forces
 from .formulas import Functions
-from .joints import Joints
+from .joints import Joints, reactions
 from .numbering import Numbering
 from .outputs import requests, state_names, states
 from .refusal import Refusal
@@ -34,7 +34,7 @@ def dataset_text(scene: SpatialData, source: str = "scene") -> str:
         Where the scene holds what Adams/Solver has no statement for; names all such elements.
     """
     numbering, names = Numbering(scene), state_names(scene)
-    functions = Functions(numbering, names)
+    functions = Functions(numbering, names, reactions(scene))
     joints, forces = Joints(scene, numbering, functions), Forces(numbering, functions)
     refused: list[str] = []
     made = [

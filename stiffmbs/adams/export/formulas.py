@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
+from ...describe.files.quoted import quoted
 from ...describe.formula.formula import Formula
-from ...describe.formula.nodes import is_measure, measured_markers
+from ...describe.formula.nodes import is_measure, is_reaction, joint_of, measured_markers
 from ...describe.formula.text import UNIT
 from ...describe.marker import GROUND, MarkerReference
 from ...describe.requests.output import Output, Term, placeholder
 from ...describe.table import Table
+from ..functions.reactions import COMPONENTS
 from .numbering import Numbering
 from .refusal import Refusal
 from .statements import number
@@ -52,10 +54,12 @@ class Functions:
     numbering : Numbering
     names : mapping of str to str
         What states, and outputs of states, are called: ``DIF(3)``, ``VARVAL(1)``.
+    reactions : mapping of str to (str, int)
+        Of joints by name: the function of their reactions, and the number that it takes.
     """
 
-    def __init__(self, numbering: Numbering, names: dict[str, str]) -> None:
-        self._numbering, self._names = numbering, names
+    def __init__(self, numbering: Numbering, names: dict[str, str], reactions: Mapping[str, tuple[str, int]]) -> None:
+        self._numbering, self._names, self._reactions = numbering, names, reactions
 
     def text(self, law: Formula | Table | float, variable: str = "TIME") -> str:
         """The expression of a formula, a table of a variable, or a number.
@@ -91,7 +95,7 @@ class Functions:
         return self._with(terms)._written(output.tree, law)
 
     def _with(self, names: dict[str, str]) -> Functions:
-        return Functions(self._numbering, {**self._names, **names})
+        return Functions(self._numbering, {**self._names, **names}, self._reactions)
 
     def _term(self, term: Term) -> str:
         if term.element or term.function not in (*MEASURED, *REQUESTED):
@@ -118,7 +122,7 @@ class Functions:
                 return self._coordinate(owner, name, law)
             case ast.Call(ast.Name(name), arguments):
                 return self._call(node, name, arguments, law)
-        raise Refusal(f"found '{ast.unparse(node)}' in '{law.text}', expected what Adams' functions have")
+        raise Refusal(f"found '{ast.unparse(node)}' in '{quoted(law.text)}', expected what Adams' functions have")
 
     def _name(self, name: str, law: Formula) -> str:
         if name == "t":
@@ -126,7 +130,7 @@ class Functions:
         if name in self._names:
             return self._names[name]
         if name not in law.values:
-            raise Refusal(f"found '{name}' in '{law.text}', expected what Adams' functions have")
+            raise Refusal(f"found '{name}' in '{quoted(law.text)}', expected what Adams' functions have")
         return f"({number(law.values[name])})" if law.values[name] < 0 else number(law.values[name])
 
     def _coordinate(self, body: str, name: str, law: Formula) -> str:
@@ -134,7 +138,7 @@ class Functions:
             return self._names[f"{body}.{name}"]
         if name not in COORDINATES:
             raise Refusal(
-                f"found '{body}.{name}' in '{law.text}', expected another coordinate, or angles between markers"
+                f"found '{body}.{name}' in '{quoted(law.text)}', expected another coordinate, or angles between markers"
             )
         centre = self._numbering.center(body)
         origin = self._numbering.marker(MarkerReference(body=GROUND))
@@ -143,9 +147,13 @@ class Functions:
     def _call(self, node: ast.Call, name: str, arguments: list[ast.expr], law: Formula) -> str:
         if is_measure(node):
             if name not in MEASURED:
-                raise Refusal(f"found '{ast.unparse(node)}' in '{law.text}', expected one of {', '.join(MEASURED)}")
+                raise Refusal(
+                    f"found '{ast.unparse(node)}' in '{quoted(law.text)}', expected one of {', '.join(MEASURED)}"
+                )
             markers = ",".join(str(self._numbering.marker(marker)) for marker in measured_markers(node))
             return f"{name.upper()}({markers})"
+        if is_reaction(node):
+            return self._reaction(node, name, law)
         if name in law.tables:
             return self._curve(name, law.tables[name], self._written(arguments[0], law))
         written = [self._written(argument, law) for argument in arguments]
@@ -153,7 +161,16 @@ class Functions:
             return f"{name.upper()}({','.join(written)})"
         if name in WRITTEN:
             return WRITTEN[name](written)
-        raise Refusal(f"found the function {name} in '{law.text}', expected one that Adams has")
+        raise Refusal(f"found the function {name} in '{quoted(law.text)}', expected one that Adams has")
+
+    def _reaction(self, node: ast.Call, name: str, law: Formula) -> str:
+        joint = joint_of(node)
+        if joint not in self._reactions:
+            raise Refusal(
+                f"found '{ast.unparse(node)}' in '{quoted(law.text)}', expected the reaction of a joint that Adams has"
+            )
+        function, ident = self._reactions[joint]
+        return f"{function}({ident},0,{COMPONENTS.index(name.upper()) + 1},0)"
 
     def _curve(self, name: str, table: Table, argument: str) -> str:
         way, ident = self._numbering.spline(name, table)

@@ -25,6 +25,19 @@ TYPES = {kind: name for name, kind in KINDS.items() if name != "ATPOINT"}
 TURNS = {"angle": "ROTATIONAL", "displacement": "TRANSLATIONAL"}
 
 
+def reactions(model: SpatialData) -> dict[str, tuple[str, int]]:
+    """The joints whose reactions functions know: by name the function and the number that it takes."""
+    return {
+        name: ("JPRIM" if TYPES.get(joint.kind) in PRIMITIVES else "JOINT", k)
+        for k, (name, joint) in enumerate(_plain(model).items(), 1)
+    }
+
+
+def _plain(model: SpatialData) -> dict[str, Joint]:
+    """The joints that become JOINT or JPRIM statements, in the order of their numbers."""
+    return {name: joint for name, joint in model.joints.items() if joint.kind in (*TYPES, Thread.kind)}
+
+
 class Joints:
     """Writes the joints of one scene.
 
@@ -37,8 +50,7 @@ class Joints:
 
     def __init__(self, model: SpatialData, numbering: Numbering, functions: Functions) -> None:
         self._model, self._numbering, self._functions = model, numbering, functions
-        plain = [name for name, joint in model.joints.items() if joint.kind in (*TYPES, Thread.kind)]
-        self._numbers = {name: k for k, name in enumerate(plain, 1)}
+        self._numbers = {name: k for k, name in enumerate(_plain(model), 1)}
         self._others = 0
 
     def statements(self, name: str, joint: Joint) -> Iterator[str]:

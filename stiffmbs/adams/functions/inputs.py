@@ -13,6 +13,7 @@ from ..statements.plant import Plant
 from .expression import constant
 
 if TYPE_CHECKING:
+    from ..scene.mechanism import Mechanism
     from ..statements.dataset import Dataset
     from .function import Function
 
@@ -49,6 +50,17 @@ def variable_of_plant(dataset: Dataset, name: str, ident: int, at: int, function
         )
     number: int = plant.variables[at - 1]
     return number
+
+
+def evaluated_name(mechanism: Mechanism, ident: int, function: Function) -> str:
+    """What a sensor has evaluated last, SENVAL: an input that is zero until the sensor sets it; it keeps that while it is inactive."""
+    dataset = mechanism.dataset
+    sensor = dataset.statements.get("SENSOR", {}).get(ident)
+    if ("SENSOR", ident) not in dataset.inactive and (sensor is None or sensor.evaluated is None):
+        raise function.fault(f"found SENVAL({ident}), expected the number of a SENSOR with EVALUATE")
+    name = f"SENVAL_{ident}"
+    mechanism.inputs.setdefault(name, 0.0)
+    return name
 
 
 def _plants(dataset: Dataset) -> Iterator[Plant]:

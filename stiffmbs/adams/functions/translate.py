@@ -19,7 +19,7 @@ from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED
 from .function import Function
 from .identifier import identifier
-from .inputs import PLANTS, input_values, variable_of_plant
+from .inputs import PLANTS, evaluated_name, variable_of_plant
 from .reactions import BY_ITS_PLACE, REACTIONS, component_of, reaction
 from .splines import CURVES, spline_value
 from .states import depending_on_themselves, differential, rate_name, value_name, value_of_system
@@ -61,11 +61,6 @@ class Translation:
     def implicit_variables(self) -> frozenset[int]:
         """The VARIABLES that depend on themselves: algebraic states of the scene."""
         return depending_on_themselves(self.mechanism.dataset.variables)
-
-    @cached_property
-    def inputs(self) -> dict[str, float]:
-        """The VARIABLES that another program may give, with their values."""
-        return input_values(self.mechanism.dataset)
 
     def formula(self, function: Function, unit: float = 1.0) -> str:
         """The formula of an expression, times a unit.
@@ -117,7 +112,7 @@ class Translation:
             raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
         if ident in self.implicit_variables:
             return name_of(value_name(variable))
-        if variable.name not in self.mechanism.variables and variable.name not in self.inputs:
+        if variable.name not in self.mechanism.variables and variable.name not in self.mechanism.inputs:
             self.mechanism.variables[variable.name] = self.formula(variable.function)
         return name_of(variable.name)
 
@@ -138,6 +133,8 @@ class Translation:
                 ) from None
         if name in (*CURVES, "INTERP"):
             return spline_value(name, arguments, function, translate, self.mechanism)
+        if name == "SENVAL":
+            return name_of(evaluated_name(self.mechanism, identifier(arguments, 0, function), function))
         if name in PLANTS:
             plant, at = (identifier(arguments, k, function) for k in range(2))
             return self.variable(variable_of_plant(self.mechanism.dataset, name, plant, at, function), function)

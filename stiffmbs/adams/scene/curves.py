@@ -56,7 +56,7 @@ def _points(one: PointOnCurve, mechanism: Mechanism) -> tuple[np.ndarray, bool]:
     if curve is None:
         raise one.fault(f"found CURVE = {one.curve}, expected the number of a CURVE")
     if curve.unread:
-        raise one.fault(f"found {curve.label} with {curve.unread}, expected CURVE_POINTS of order 4 in a MATRIX")
+        raise one.fault(f"{curve.label}: {curve.unread}; expected CURVE_POINTS of order 4 in a MATRIX")
     matrix = statements.get("MATRIX", {}).get(curve.matrix)
     points = np.array(matrix.rows if matrix else []) * mechanism.dataset.units.length
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < FEWEST:

@@ -80,6 +80,8 @@ class Mechanism:
         Of the scene, by name: splines that functions have called so far, in the dataset's units.
     variables : mapping of str to str
         Of the scene, by name: variables that functions have used so far, in the dataset's units.
+    inputs : mapping of str to float
+        Of the scene, by name: what another program may give, or a sensor sets, in the dataset's units.
 
     Raises
     ------
@@ -92,6 +94,7 @@ class Mechanism:
         self.further: dict[str, Place] = {}
         self.tables: dict[str, dict[str, Any]] = {}
         self.variables: dict[str, str] = {}
+        self.inputs: dict[str, float] = {}
         self.least = lightest(dataset.parts)
         self.parts = {(part.point, part.ident): weighed(part, self.least) for part in dataset.parts}
         grounds = [part for part in dataset.parts if part.ground]

@@ -13,6 +13,7 @@ from ..functions.trees import measured
 from ..statements.fault import DatasetFault
 from ..statements.outputs import Request
 from .mechanism import Mechanism
+from .sensors import EVALUATED
 
 MARKED = {
     "DISPLACEMENT": ("DX", "DY", "DZ", "PSI", "THETA", "PHI"),
@@ -44,15 +45,16 @@ class Requests:
             components = self._between_markers(request) if request.sort else self._functions(request)
             if components:
                 found[request.name] = components
-        inputs = self._translation.inputs
         for variable in self._mechanism.dataset.variables.values():
-            if variable.name in inputs:
+            if variable.name in self._mechanism.inputs:
                 continue
             formula = self._formula(variable.function, variable.label)
             if formula is not None:
                 found[variable.name] = formula
         for sensor in self._mechanism.dataset.sensors:
             found[sensor.name] = self._translation.formula(sensor.function)
+            if sensor.evaluated is not None:
+                found[sensor.name + EVALUATED] = self._translation.formula(sensor.evaluated)
         named = self._mechanism.variables
         return {name: name if name in named else formula for name, formula in found.items()}
 

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from ...describe.spatial.number_format import vector
+from ..functions.inputs import input_values
 from ..functions.states import states
 from ..functions.translate import Translation
 from ..statements.dataset import Dataset
@@ -45,6 +46,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         When statements contradict each other, or hold what a scene cannot.
     """
     mechanism = Mechanism(set_in_motion(Mechanism(dataset)))
+    mechanism.inputs |= input_values(dataset)
     translation = Translation(mechanism)
     requests = Requests(mechanism)
     makers: list[tuple[str, Callable[[], dict[str, Any]]]] = [
@@ -67,7 +69,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
         "gravity": vector(dataset.gravity),
-        "inputs": translation.inputs,
+        "inputs": mechanism.inputs,
         "variables": mechanism.variables,
         "markers": {},
         "bodies": {},
@@ -75,7 +77,6 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         "at_start": at_start(mechanism),
         "requests": requests.all(),
         "run": dict(RUN),
-        "stages": [{"until": conditions(dataset)}] if dataset.sensors else [],
         "notes": [
             *dataset.notes,
             *mechanism.notes(),
@@ -90,4 +91,5 @@ def scene(dataset: Dataset) -> dict[str, Any]:
     }
     found |= {"bodies": bodies(mechanism), "markers": ground_markers(mechanism)}  # with the markers that formulas need
     found["tables"] = mechanism.tables
+    found["stages"] = [{"until": conditions(dataset, mechanism.inputs)}] if dataset.sensors else []
     return {key: value for key, value in found.items() if value or key == "bodies"}

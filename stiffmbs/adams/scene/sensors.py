@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...describe.spatial.number_format import plain
 from ..statements.dataset import Dataset
 from ..statements.sensor import Sensor
+from ..statements.units import Units
+
+EVALUATED = "_evaluate"
+"""Behind the name of a sensor: the request of what it evaluates."""
 
 
-def conditions(dataset: Dataset) -> dict[str, Any]:
-    """What ends a simulation, by name; each watches a request of its own name."""
-    return {sensor.name: _condition(sensor) for sensor in dataset.sensors}
+def conditions(dataset: Dataset, inputs: Mapping[str, float]) -> dict[str, Any]:
+    """What ends or changes a simulation, by name; each watches a request of its own name, and sets inputs that the scene has."""
+    return {sensor.name: _condition(sensor, inputs, dataset.units) for sensor in dataset.sensors}
 
 
-def _condition(sensor: Sensor) -> dict[str, Any]:
-    within = {"within": plain(sensor.error)} if sensor.relation == "equals" and sensor.error else {}
-    then = {} if sensor.then == "next" else {"then": sensor.then}
-    return {"request": sensor.name, sensor.relation: plain(sensor.value), **within, **then}
+def _condition(sensor: Sensor, inputs: Mapping[str, float], units: Units) -> dict[str, Any]:
+    made: dict[str, Any] = {"request": sensor.name, sensor.relation: plain(sensor.value)}
+    if sensor.error and (sensor.relation == "equals" or sensor.then == "on"):
+        made["within"] = plain(sensor.error)
+    if sensor.then != "next":
+        made["then"] = sensor.then
+    if sensor.interval and sensor.then == "on":
+        made["output"] = plain(sensor.interval * units.time)
+    name = f"SENVAL_{sensor.ident}"
+    return made | ({"sets": {name: sensor.name + EVALUATED}} if sensor.evaluated and name in inputs else {})
 
 
 def notes(dataset: Dataset) -> Iterator[str]:
@@ -26,8 +36,8 @@ def notes(dataset: Dataset) -> Iterator[str]:
     for sensor in dataset.statements.get("SENSOR", {}).values():
         listed = ", ".join(sensor.left_out)
         if sensor.then and listed:
-            yield f"{sensor.label}: {listed} left out: no effect on the motion"
+            yield f"{sensor.label}: {listed} left out: no effect on results"
         elif not sensor.then:
-            yield f"{sensor.label} is left out: it neither returns nor halts" + (
-                listed and f", and {listed} change no motion"
+            yield f"{sensor.label} is left out: it does not end the run" + (
+                listed and f", and {listed} change no results"
             )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .arguments import Arguments
 from .constraints import Numbered
+from .fault import DatasetFault
 from .text import Statement
 from .units import Units
 
@@ -36,32 +37,30 @@ class PointOnCurve(Numbered):
 
 def read_curve(statement: Statement, units: Units) -> SpaceCurve:
     """A curve; what cannot be followed is a fault only where a constraint names it."""
-    names = (
-        "CLOSED",
-        "OPEN",
-        "CURVE_POINTS",
-        "CONTROL_POINTS",
-        "MATRIX",
-        "ORDER",
-        "FUNCTION",
-        "ROUTINE",
-        "MINPAR",
-        "MAXPAR",
-    )
-    found = Arguments(statement, "CURVE", names, ("FUNCTION",))
-    unread = ""
+    try:
+        found = Arguments(statement, "CURVE", _CURVE, ("FUNCTION",))
+        matrix = found.reference("MATRIX") or 0
+        closed, unread = found.one_of("CLOSED", "OPEN") == "CLOSED", _unread(found)
+    except DatasetFault as fault:
+        found = Arguments(replace(statement, pieces=()), "CURVE", ())
+        matrix, closed, unread = 0, False, fault.reason
+    return SpaceCurve(found.ident(), statement.line, statement.alias, "CURVE", matrix, closed, unread)
+
+
+_CURVE = (
+    "CLOSED", "OPEN", "CURVE_POINTS", "CONTROL_POINTS", "MATRIX", "ORDER", "FUNCTION", "ROUTINE", "MINPAR", "MAXPAR",
+)  # fmt: skip
+
+
+def _unread(found: Arguments) -> str:
+    """Why a curve cannot be followed; empty where it can."""
     if "FUNCTION" in found:
-        unread = "FUNCTION, which is computed by a subroutine"
-    elif "CONTROL_POINTS" in found:
-        unread = "CONTROL_POINTS"
-    elif "MATRIX" not in found:
-        unread = "no MATRIX"
-    elif (found.number("ORDER") or CUBIC) != CUBIC:
-        unread = f"ORDER = {found.text('ORDER')}"
-    closed = found.one_of("CLOSED", "OPEN") == "CLOSED"
-    return SpaceCurve(
-        found.ident(), statement.line, statement.alias, "CURVE", found.reference("MATRIX") or 0, closed, unread
-    )
+        return "found FUNCTION, which is computed by a subroutine"
+    if "CONTROL_POINTS" in found:
+        return "found CONTROL_POINTS"
+    if "MATRIX" not in found:
+        return "found no MATRIX"
+    return "" if (found.number("ORDER") or CUBIC) == CUBIC else f"found ORDER = {found.text('ORDER')}"
 
 
 def read_point_on_curve(statement: Statement, units: Units) -> PointOnCurve:

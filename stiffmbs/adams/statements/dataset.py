@@ -113,7 +113,7 @@ class Dataset:
 
     @property
     def sensors(self) -> tuple[Sensor, ...]:
-        """Those that end a simulation."""
+        """Those that end a simulation, or change how it goes on."""
         return tuple(sensor for sensor in self._all(Sensor) if sensor.then)
 
     @property

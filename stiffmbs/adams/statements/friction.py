@@ -86,7 +86,7 @@ def read_friction(statement: Statement, units: Units) -> JointFriction:
         if name in found:
             raise found.fault(f"found {name}, expected friction without it", found.line(name))
     _one_word(found, "FORMULATION", ("ORIGINAL",))
-    effect = _one_word(found, "EFFECT", ("ALL", "SLIDING"))
+    effect = _effect(found)
     numbers = {name: _number(found, name, usual) for name, usual in _ABOVE_ZERO.items()}
     static, dynamic, force, torque = (_from_zero(found, name) for name in FROM_ZERO)
     if numbers["TRANSITION_VELOCITY_COEFFICIENT"] <= 1:
@@ -124,6 +124,18 @@ def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
         if text and word.startswith(text):
             return word
     raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", found.line(name))
+
+
+def _effect(found: Arguments) -> str:
+    """``ALL``, also where both effects are named, or ``SLIDING``."""
+    words = {word.strip() for word in (found.text("EFFECT") or "ALL").strip(" ()").upper().replace(",", ":").split(":")}
+    if (
+        len(words) == 2
+        and any(w and "STICTION".startswith(w) for w in words)
+        and any(w and "SLIDING".startswith(w) for w in words)
+    ):
+        return "ALL"
+    return _one_word(found, "EFFECT", ("ALL", "SLIDING"))
 
 
 def _inputs(found: Arguments) -> frozenset[str]:

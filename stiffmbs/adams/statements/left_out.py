@@ -22,7 +22,7 @@ LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     },
     "CURVE": {"MINPAR": "of a subroutine", "MAXPAR": "of a subroutine"},
     "PTCV": dict.fromkeys(CURVE_STARTS, "parts start where they are drawn"),
-    "SENSOR": dict.fromkeys(WITHOUT_EFFECT, "no effect on the motion"),
+    "SENSOR": dict.fromkeys(WITHOUT_EFFECT, "no effect on results"),
     "DIFF": {"STATIC_HOLD": _NO_STATICS},
     "LSE": {"STATIC_HOLD": _NO_STATICS},
     "TFSISO": {"STATIC_HOLD": _NO_STATICS},

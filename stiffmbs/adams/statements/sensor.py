@@ -1,10 +1,10 @@
-"""Sensors, which end simulations.  MSC Adams/Solver, SENSOR statement."""
+"""Sensors, which end simulations or change how they go on.  MSC Adams/Solver, SENSOR statement."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..functions.function import Function, required_function
+from ..functions.function import Function, read_function, required_function
 from .arguments import Arguments
 from .constraints import Numbered
 from .text import Statement
@@ -12,8 +12,10 @@ from .units import Units
 
 RELATIONS = {"EQ": "equals", "GE": "at_least", "LE": "at_most"}
 ENDS = {"RETURN": "next", "HALT": "stop"}
-WITHOUT_EFFECT = ("CODGEN", "RESTART", "PRINT", "DT", "STEPSIZE", "YYDUMP", "BISECTION", "EVALUATE")
-"""What a sensor may do besides, none of which changes the motion."""
+RECORDS = ("PRINT", "DT", "EVALUATE")
+"""What it does where the simulation goes on."""
+WITHOUT_EFFECT = ("CODGEN", "RESTART", "STEPSIZE", "YYDUMP", "BISECTION")
+"""What a sensor may say of the integration, which starts anew there in any case."""
 USUAL_ERROR = 1e-3
 
 
@@ -29,7 +31,12 @@ class Sensor(Numbered):
     value, error : float
         What it is compared with, and how near to it counts as equal.
     then : str
-        ``next`` where the next command follows, ``stop`` where none does; empty where the simulation goes on.
+        ``next`` where the next command follows, ``stop`` where none does, ``on`` where the simulation goes on with a row of results
+        there; empty where nothing comes of it.
+    interval : float or None
+        Between output points from there on.
+    evaluated : Function or None
+        What SENVAL has from there on.
     left_out : tuple of str
         Its arguments that have no effect here.
     """
@@ -39,12 +46,25 @@ class Sensor(Numbered):
     value: float
     error: float
     then: str
+    interval: float | None
+    evaluated: Function | None
     left_out: tuple[str, ...]
 
 
 def read_sensor(statement: Statement, units: Units) -> Sensor:
     """A function that is watched."""
-    names = ("FUNCTION", "VALUE", "ERROR", "ANGULAR", *RELATIONS, *ENDS, *WITHOUT_EFFECT, "ROUTINE", "EVAL_ROUTINE")
+    names = (
+        "FUNCTION",
+        "VALUE",
+        "ERROR",
+        "ANGULAR",
+        *RELATIONS,
+        *ENDS,
+        *RECORDS,
+        *WITHOUT_EFFECT,
+        "ROUTINE",
+        "EVAL_ROUTINE",
+    )
     found = Arguments(statement, "SENSOR", names, ("FUNCTION", "EVALUATE"))
     value, error = found.number("VALUE"), found.number("ERROR")
     if value is None:
@@ -53,8 +73,12 @@ def read_sensor(statement: Statement, units: Units) -> Sensor:
         raise found.fault(f"found ERROR = {found.text('ERROR')}, expected no number below zero", found.line("ERROR"))
     relation = RELATIONS[found.one_of(*RELATIONS) or "EQ"]
     ends = found.one_of(*ENDS)
+    interval = found.number("DT")
+    if interval is not None and not interval > 0:
+        raise found.fault(f"found DT = {found.text('DT')}, expected a number above zero", found.line("DT"))
+    then = ENDS[ends] if ends else "on" if any(name in found for name in RECORDS) else ""
     return Sensor(
         found.ident(), statement.line, statement.alias, "SENSOR", required_function(found, "FUNCTION"), relation, value,
-        USUAL_ERROR if error is None else error, ENDS[ends] if ends else "",
+        USUAL_ERROR if error is None else error, then, interval, read_function(found, "EVALUATE"),
         tuple(name for name in WITHOUT_EFFECT if name in found),
     )  # fmt: skip

@@ -105,7 +105,7 @@ PAIRED_COLUMNS = Layout({
 BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
     "compile_pivots": INT_CELL, "setup_pivots": INT_CELL, "solve_pivots": INT_CELL,
-    "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL,
+    "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL, "refined": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
@@ -115,7 +115,8 @@ BLOCK_LU = Layout({
 """The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
 of columns in pairs that takes over where those cannot be trusted, `compile_pivots` that of the C function that puts the addresses of
 its routines into the next two cells.  `ready` says whether the counts are of this run: whether the factors at
-hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, and trials that were failed."""
+hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, trials that were failed, and
+whether solutions are refined."""
 
 DYNAMICS = Layout({
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
@@ -212,7 +213,7 @@ NATIVE_IDA = Layout({
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
     "long_steps": INTS,
-    "trace": INT_CELL, "traced": INT_CELL,
+    "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
@@ -220,7 +221,7 @@ of SUNDIALS by their addresses, the values of the matrix, how its pattern is wri
 Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
 last step, size of the one that it will try next; output points served, tiny steps in succession, whether the last event
 was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
-of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call."""
+of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call; the time for which the state holds the values of event functions."""
 MOST_STEPS, HISTORY_WIDTH = 2048, 3
 """Steps of any one call, and rows of the history: time of the end, order, size."""
 SAMPLES = 16
@@ -312,6 +313,7 @@ EVENT_SEARCH = Layout({
     "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
+    "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 })  # fmt: skip

@@ -20,7 +20,7 @@ from ..equilibrium import equilibrium
 from ..given_inputs import Given
 from ..run import run
 from ..start_from import StartFrom, state_to_start_from
-from .until import run_until
+from .until import Ended, run_until
 
 
 def run_stages(
@@ -44,15 +44,19 @@ def run_stages(
     start = changes.pop("start", None)
     state = state_to_start_from(start_from)
     solutions: list[Solution] = []
+    set_before: dict[str, Given] = {}
     for k, (stage, of_stage) in enumerate(zip(scene.stages, scene.stage_scenes, strict=True)):
         place = f"stage {k + 1} of {len(scene.stages)}"
         at_start = {"start": start} if start is not None and k == 0 else {}
         try:
-            found, ended_by = _solved(stage, of_stage, watch, state, inputs, {**changes, **at_start})
+            known = {name: value for name, value in set_before.items() if name in of_stage.inputs}
+            ended = _solved(stage, of_stage, watch, state, {**(inputs or {}), **known}, {**changes, **at_start})
         except StiffmbsError as error:
             raise type(error)(f"{place}: {error}") from None
+        found = ended.solution
+        set_before |= {name: value for name, value in ended.inputs.items() if name not in (inputs or {})}
         solutions.append(replace(found, message=f"{place}: {found.message}"))
-        if not found.success or (ended_by and stage.until[ended_by].then == "stop"):
+        if not found.success or (ended.by and stage.until[ended.by].then == "stop"):
             break
         state = replace(found.state(), source=f"stage {k + 1}", elements=_elements(of_stage))
     return joined(scene.name, solutions)
@@ -69,20 +73,19 @@ def _solved(
     state: SavedState | None,
     inputs: Mapping[str, Given] | None,
     changes: dict[str, Any],
-) -> tuple[Solution, str]:
-    """What a stage gives, and the condition that ended it; empty where none did."""
+) -> Ended:
     if stage.end is not None:
         changes = {
             **changes,
             "duration": _up_to(stage.end, changes.get("start", state.t if state else scene.run.start)),
         }
     if stage.analysis == "dynamic":
-        runner = partial(run, scene, watch=watch, inputs=inputs)
-        if stage.until:
-            return run_until(runner, stage.until, _interval(scene, changes), start_from=state, **changes)
-        return runner(start_from=state, **changes), ""
+        if not stage.until:
+            return Ended(run(scene, watch=watch, inputs=inputs, start_from=state, **changes))
+        runner = partial(run, scene, watch=watch)
+        return run_until(runner, stage.until, _interval(scene, changes), inputs, start_from=state, **changes)
     if not stage.over_time:
-        return _settled(scene, state, changes), ""
+        return Ended(_settled(scene, state, changes))
     grid = output_grid(changed(scene.run, {**changes, "start": state.t if state else scene.run.start}))
     if grid.times is None:
         raise InputError("found points = steps for an equilibrium, expected a number or an output interval")
@@ -90,7 +93,7 @@ def _solved(
     for t in grid.times:
         rows.append(_settled(scene, state, {**changes, "start": float(t)}))
         state = replace(rows[-1].state(), elements=_elements(scene))
-    return joined(scene.name, rows), ""
+    return Ended(joined(scene.name, rows))
 
 
 def _interval(scene: Scene, changes: dict[str, Any]) -> float | None:

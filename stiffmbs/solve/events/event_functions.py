@@ -52,7 +52,7 @@ class EventSearch:
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
-        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise")  # fmt: skip
+        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
         self._arrays = {
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": zones.first, "edges": zones.edges, "overlap": zones.overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,

@@ -3,7 +3,7 @@
 Each node's diagonal block is inverted and its rows multiplied by that; what its elimination takes out of later blocks is a
 list of small dense products (`stiffmbs.solve.linear.block_updates`).  The order alone keeps pivots away from zero
 (`stiffmbs.solve.linear.elimination_order`), so the factors are tried: on a state of the system's own size, by the
-residual that they leave.  Where that is too large, factors with pivots take their place
+residual that they leave.  Where that is too large, solutions are refined once, or factors with pivots take their place
 (`stiffmbs.solve.native.paired_columns`).  While all pivots stay near those of the last trial, no other is made.
 
 References
@@ -24,8 +24,9 @@ from stiffmbs.solve.native.paired_columns import paired_view
 from stiffmbs.solve.native.statuses import CONTENT, FAILED, NOT_COMPILED, OK
 
 LU = list(BLOCK_LU).index("lu")
-LARGEST_RESIDUAL = 1e-9
-"""Part of the sizes of a row's terms that a trial may leave.  Fixed orders leave 1e-13 to 1e-15."""
+LARGEST_RESIDUAL, REFINABLE = 1e-9, 1e-7
+"""Part of the sizes of a row's terms that a trial may leave, and from which on one refinement of each solution is not tried.  Fixed
+orders leave 1e-13 to 1e-15, in long steps of a car on bushings up to 1e-8."""
 CHANGED = 2.0
 """Factor by which a pivot differs from that of the last trial when the next is made."""
 SERVES = 50
@@ -258,17 +259,29 @@ def _trusted(s, f):
     _multiply(s, f, s.trial)
     for i in range(f.n):
         s.allowed[i] = LARGEST_RESIDUAL * s.terms[i]
+    left = _left_after_solution(s, f)
+    s.refined = 1 if 1.0 < left <= REFINABLE / LARGEST_RESIDUAL else 0
+    if s.refined:
+        left = _left_after_solution(s, f)
+    for k in range(f.n):
+        s.tried[k] = 1.0 / s.pivot[k]
+    s.serves = SERVES if left <= 1.0 else 0
+    return left <= 1.0
+
+
+@compiled
+def _left_after_solution(s, f):
+    """Take what the factors make of `product` from the trial; the largest residual that stays, in units of what is allowed."""
     _solved(s, s.product)
     for j in range(f.n):
         s.trial[j] -= s.x[s.place[j]]
     _multiply(s, f, s.trial)
-    refused = 0
+    largest = 0.0
     for i in range(f.n):
-        refused += 0 if abs(s.product[i]) <= s.allowed[i] else 1
-    for k in range(f.n):
-        s.tried[k] = 1.0 / s.pivot[k]
-    s.serves = SERVES if refused == 0 else 0
-    return refused == 0
+        left = 0.0 if s.product[i] == 0.0 else abs(s.product[i]) / s.allowed[i]
+        if not left <= largest:
+            largest = left if left < float("inf") else float("inf")  # also where it is no number
+    return largest
 
 
 @compiled
@@ -277,6 +290,7 @@ def _forget(s):
     s.waits = 0
     s.serves = 0
     s.refused = 0
+    s.refined = 0
     s.ready = 1
     paired_view(ints(s.with_pivots[CONTENT])).ready = 0
 
@@ -324,8 +338,21 @@ def solve(solver, matrix, x, b, tolerance):
     s = block_view(ints(solver[CONTENT]))
     if s.pivoted:
         return int32(call_int(s.solve_pivots, (s.with_pivots, matrix, x, b, tolerance)))
-    into = floats(call_address(s.array_of, x))
-    _solved(s, floats(call_address(s.array_of, b)))
+    into, of = floats(call_address(s.array_of, x)), floats(call_address(s.array_of, b))
+    _solved(s, of)
     for j in range(s.n):
         into[j] = s.x[s.place[j]]
+    if s.refined:
+        _refine(s, into, of)
     return int32(OK)
+
+
+@compiled
+def _refine(s, x, b):
+    """Add to a solution what the factors make of its residual."""
+    _multiply(s, factors_view(s.factors), x)
+    for i in range(s.n):
+        s.product[i] = b[i] - s.product[i]
+    _solved(s, s.product)
+    for j in range(s.n):
+        x[j] += s.x[s.place[j]]

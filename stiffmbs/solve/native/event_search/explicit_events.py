@@ -23,6 +23,7 @@ from stiffmbs.solve.native.event_search.within_step import (
     keep_row,
     noted,
     noted_rates,
+    shift_ends,
     suspicious,
 )
 from stiffmbs.solve.native.interpolant import interpolated, prepare
@@ -79,10 +80,9 @@ def _note_changed(x, values):
 
 
 @compiled
-def _note_event_functions(x, s, y, rates, t, ahead, value, rate):
-    """Values and rates of all event functions at a state; rates are taken over a time `ahead`, which may be negative."""
+def _note_rates(x, s, y, rates, t, ahead, value, rate):
+    """Rates of all event functions at a state with these values, taken over a time `ahead`, which may be negative."""
     w = event_search_view(x.watch)
-    noted(value, _values(x, s, y, t), w.n)
     for i in range(x.n):
         x.difference[i] = y[i] + ahead * rates[i]
     noted_rates(rate, value, _values(x, s, x.difference, t + ahead), ahead, w.n)
@@ -119,14 +119,22 @@ def _stages_have_changed(x, c, s, until):
 @compiled
 def _event_within(x, c, s, m, until):
     """The time from the step's start to an event that begins and ends within it; 0 for none, a negative status, or the whole
-    length where stages before the part `until` of the step show that there is one but not where."""
+    length where stages before the part `until` of the step show that there is one but not where.
+
+    The values at the step's end are those in `value_after`; values and rates at its start are those at the end of the step before.
+    """
     w = event_search_view(x.watch)
     h = x.span
     if not h > ROUNDINGS * abs(x.t):
+        w.ready = 0
         return 0.0
     small = DIFFERENCE * h
-    _note_event_functions(x, s, x.y_before, x.k, x.t_before, small, w.value_before, w.rate_before)
-    _note_event_functions(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
+    if not (w.ready and w.begun == x.t_before):
+        noted(w.value_before, _values(x, s, x.y_before, x.t_before), w.n)
+        _note_rates(x, s, x.y_before, x.k, x.t_before, small, w.value_before, w.rate_before)
+        w.begun = x.t_before
+        w.ready = 1
+    _note_rates(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
     _look_within(x, c, s)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
@@ -230,14 +238,16 @@ def _taken_to_change(x, c, s, m, high, behind):
 @compiled
 def _taken_to_event(x, c, s, m, h, behind):
     """Take the step again up to the first event in it; 0, a negative status, `RETRIED`, or `NO_EVENT`."""
-    values = _values(x, s, x.y, x.t)
-    changed = _changed(x, values)
+    w = event_search_view(x.watch)
+    noted(w.value_after, _values(x, s, x.y, x.t), w.n)
+    changed = _changed(x, w.value_after)
     if changed:
-        _note_changed(x, values)
+        _note_changed(x, w.value_after)
         status = _taken_to_change(x, c, s, m, h, behind)
         if status != 0:
             return status
         h = x.span
+        noted(w.value_after, _values(x, s, x.y, x.t), w.n)
     within = _event_within(x, c, s, m, BEFORE_END if changed else ALL)
     if within == 0.0:
         return 0 if changed else NO_EVENT
@@ -264,7 +274,11 @@ def _ended_at_event(x, c, s, m):
     behind = max(BEHIND * h, ROUNDINGS * abs(x.t))
     status = _taken_to_event(x, c, s, m, h, behind)
     if status == NO_EVENT:
-        copied(x.signs, _values(x, s, x.y, x.t), x.n_event_functions)
+        w = event_search_view(x.watch)
+        copied(x.signs, w.value_after, x.n_event_functions)
+        shift_ends(w)
+        w.begun = x.t
+        _load(x, s, x.y, x.t)
         return 0
     if status < 0:
         return status

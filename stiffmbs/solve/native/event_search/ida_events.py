@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, state_view
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
 from stiffmbs.solve.native.calls import call_int, int32
 from stiffmbs.solve.native.event_search.within_step import (
@@ -20,6 +20,8 @@ from stiffmbs.solve.native.event_search.within_step import (
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK
 
+UNSEEN = float("inf")
+"""No time at which event functions are known."""
 START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
 """Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning
 than this part of the time are not told from it."""
@@ -48,6 +50,7 @@ def look_at_start(toward, ida):
         ahead = max(START_DIFFERENCE * (toward - c.returned), ROUNDINGS * abs(c.returned))
         s = state_view(c.state)
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+        c.seen = UNSEEN
         keep_row(w, s, 0)
         noted(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
         _note_rates(c, c.returned, ahead, w.value_before, w.rate_before)
@@ -64,8 +67,11 @@ def look_within(ida):
         return int32(0)
     s = state_view(c.state)
     e = equations_view(c.equations)
-    load(s, e, array_of(c, c.y), array_of(c, c.yp))
-    noted(w.value_after, evaluate(s, SWITCH, c.returned), w.n)
+    if c.seen != c.returned:
+        load(s, e, array_of(c, c.y), array_of(c, c.yp))
+        evaluate(s, SWITCH, c.returned)
+    c.seen = UNSEEN
+    noted(w.value_after, floats(s.values[SWITCH]), w.n)
     if clear(w, h, w.row, s.q):
         keep_row(w, s, 0)
         w.begun = c.returned

@@ -47,6 +47,8 @@ STEEP = 8.0
 """Times that a rate at an end must be larger than the change between the ends for the function to be one that turns round."""
 CLEAR = 4.0
 """Times that a function must be further from zero than its change in a step to be taken for far from it."""
+WIDER = 2.0
+"""Times the change and the rates in a step that no bound lies further from its ends (those of `_bound` lie within 1.8 of them)."""
 TURNED, HARDLY_TURNED = 1.0, 0.3
 """rad, by which a body may turn in a step without a look inside, or at rates: those at the ends tell nothing of whole turns."""
 
@@ -201,11 +203,42 @@ def _cubic(start, start_rate, end, end_rate, x):
 
 
 @compiled
+def _note_zones(w):
+    """Keep the edges about the values at the start of the step."""
+    for k in range(w.n):
+        value = w.value_before[k]
+        if w.zone_low[k] < value <= w.zone_high[k]:
+            continue
+        number = zone(w, k, value)
+        endless = w.period[k] > 0.0
+        w.zone_low[k] = _edge(w, k, number - 1) if endless or number > 0 else -float("inf")
+        w.zone_high[k] = (
+            _edge(w, k, number) if endless or number < w.first_edge[k + 1] - w.first_edge[k] else float("inf")
+        )
+
+
+@compiled
+def _note_apart(w, h):
+    """Note how far each function stays from the edges of its zone, by bounds wider than those of `_bound`; no number above 0 where that is not known."""
+    for k in range(w.n):
+        start, end = w.value_before[k], w.value_after[k]
+        start_rate, end_rate = h * w.rate_before[k], h * w.rate_after[k]
+        missed = abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT))
+        beyond = WIDER * (abs(end - start) + abs(start_rate) + abs(end_rate)) + UNKNOWN * missed
+        below, above = min(start, end) - beyond - w.zone_low[k], w.zone_high[k] - max(start, end) - beyond
+        w.apart[k] = min(below, above)
+
+
+@compiled
 def suspicious(w, h, q_before, q_after):
     """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, allow an event."""
     if _turned(w, q_before, q_after, TURNED):
         return True
+    _note_zones(w)
+    _note_apart(w, h)
     for k in range(w.n):
+        if w.apart[k] > 0.0:
+            continue
         start, start_rate, end, end_rate = (
             w.value_before[k],
             h * w.rate_before[k],
