@@ -15,9 +15,8 @@ from ..describe.formula.text import FormulaError
 from ..describe.marker import GROUND, PlacedMarkers
 from ..errors import InputError
 from .bodies import BODY_KINDS, BodyKind
-from .element_data import Compilable, ElementData
 from .group import Group
-from .kind import Kind, sorted_out
+from .kind import Compilable, ElementData, Kind, sorted_out
 from .record import KindRecord, record_of
 from .system import System
 

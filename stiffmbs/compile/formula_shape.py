@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..describe.element import JointName
 from ..describe.formula.formula import Formula
@@ -14,10 +14,15 @@ from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
 from ..describe.table import Table
-from .element_data import Compilable, ElementData, Shape
 from .table_values import spline_data
 
-ShapeOf: TypeAlias = Callable[[Any, Compilable, ElementData], Shape]
+if TYPE_CHECKING:
+    from .kind import Compilable, ElementData
+
+Shape: TypeAlias = tuple[Any, ...]
+"""Which equations a field makes, without its numbers."""
+
+ShapeOf: TypeAlias = Callable[[Any, "Compilable", "ElementData"], Shape]
 """The shape of any value, whose data are appended."""
 REACTION = "reaction"
 """Before the number of a joint's reaction in a formula's shape."""

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..describe.element import Component, Element
-from .element_data import Shape
+from .formula_shape import Shape
 from .kind import Kind, with_place
 from .machine import cache as store
 from .machine.description import Description

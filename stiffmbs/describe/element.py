@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
 
-from .fields import Described
-from .files.typed import typed
+from .fields import Described, typed
 from .formula.formula import Formula
 from .loads import Loads
 from .marker import MarkerReference

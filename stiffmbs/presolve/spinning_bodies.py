@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..compile.element_data import Compilable
+from ..compile.kind import Compilable
 from ..describe.element import Element, JointName
 from ..describe.formula.formula import Formula
 from ..describe.marker import GROUND, MarkerReference

@@ -13,8 +13,7 @@ import sympy as sp
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.nodes import TIME
 from ...describe.formula.text import evaluate
-from ..element_data import Shape
-from ..formula_shape import OWN, REACTION, STATE
+from ..formula_shape import OWN, REACTION, STATE, Shape
 from ..kind import Kind
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, model_validator
 
 from ..element import Component, Symbolic
-from ..files.typed import typed
+from ..fields import typed
 from ..formula.field import FormulaOf
 from ..formula.formula import Formula
 
