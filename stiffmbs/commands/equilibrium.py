@@ -41,11 +41,14 @@ if TYPE_CHECKING:
 )
 @click.option("--about", help="A point of the axis of the rotation: X,Y or X,Y,Z, m; the origin without it.")
 @click.option("--rolling", multiple=True, metavar="BODY", help="A body that rolls, or spins as described, besides.")
+@click.option(
+    "--speed", type=click.Choice(["given", "found"]), help="Whether forces tell how fast it goes along --velocity."
+)
 @state_options
 @solving_options
 def equilibrium(
     scene: str, output: Path | None, as_json: bool, velocity: str | None, rotation: str | None, about: str | None,
-    rolling: tuple[str, ...], state: str | None, at: float | None, **options: Any,
+    rolling: tuple[str, ...], speed: str | None, state: str | None, at: float | None, **options: Any,
 ) -> None:  # fmt: skip
     """Find the equilibrium of SCENE from its described pose: poses, forces, and what is free to move.
 
@@ -64,7 +67,7 @@ def equilibrium(
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = start_of(loaded, state, at, changes)
-        motion = _motion(velocity, rotation, about, rolling)
+        motion = _motion(velocity, rotation, about, rolling, speed)
         with in_file(scene):
             found = found_equilibrium(loaded, motion=motion, **start)
     except StiffmbsError as error:
@@ -79,13 +82,13 @@ def equilibrium(
 
 
 def _motion(
-    velocity: str | None, rotation: str | None, about: str | None, rolling: tuple[str, ...]
+    velocity: str | None, rotation: str | None, about: str | None, rolling: tuple[str, ...], speed: str | None
 ) -> SteadyMotion | None:
     """The steady motion that options ask for; None for none."""
     turning = _numbers(rotation)
     given: dict[str, Any] = {
         "velocity": _numbers(velocity), "rotation": turning[0] if turning and len(turning) == 1 else turning,
-        "about": _numbers(about), "rolling": rolling or None,
+        "about": _numbers(about), "rolling": rolling or None, "speed": speed,
     }  # fmt: skip
     given = {name: value for name, value in given.items() if value is not None}
     from ..describe.settings import SteadyMotion

@@ -144,7 +144,7 @@ class System:
                 return found
             found = more
 
-    @property
+    @cached_property
     def quaternions(self) -> np.ndarray:
         """The numbers of the coordinates that are parts of quaternions; none in the plane."""
         return np.setdiff1d(np.arange(self.n_pose), self.straight[0])

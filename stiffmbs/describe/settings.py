@@ -165,7 +165,10 @@ class SteadyMotion(Described):
     about : tuple of float
         A point of the axis of the rotation, m; the origin where none is given.
     rolling : tuple of str
-        Bodies that spin beside that about their axis of symmetry: as rolling constraints ask, else as they are described.
+        Bodies that spin beside that about their axis of symmetry: as rolling constraints ask, or as forces do that depend on
+        the spin, as a tyre's; else as they are described.
+    speed : str
+        ``found`` where forces tell it, as drag and a driver's traction do: the velocity is then a first guess along its line.
     """
 
     velocity: tuple[si.Velocity, ...] = Field((), description="of every point, in ground axes, m/s")
@@ -176,6 +179,9 @@ class SteadyMotion(Described):
         (), description="a point of the axis of the rotation, m; the origin without it"
     )
     rolling: tuple[str, ...] = Field((), description="bodies that spin about their axis of symmetry besides")
+    speed: Literal["given", "found"] = Field(
+        "given", description="whether forces tell how fast it goes along `velocity`"
+    )
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])

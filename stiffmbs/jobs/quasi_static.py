@@ -12,7 +12,7 @@ from ..errors import AssemblyError, SolverError
 from ..results.solution import Solution
 from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
-from ..solve.equilibrium import Equilibrium, find_equilibrium
+from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
 from .run import Runnable, data_of, prepare
 from .solution_at_rest import solution_at_rest
 

@@ -65,7 +65,8 @@ def write_numbers(job: Job, data: ModelData) -> bool:
 def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     """The forces of another model with other numbers than those of a job; None where it must be prepared anew."""
     system = job.dynamics.system
-    if job.subsystems or may_be_apart(system) or not _same_structure(job.data, data):
+    apart = job.dynamics.kept("apart", None, lambda: may_be_apart(system))
+    if job.subsystems or apart or not _same_structure(job.data, data):
         return None
     written = []
     for name, element in (*_changed(job.data, data), *_changed_by_states(job.data, data)):

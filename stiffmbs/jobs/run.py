@@ -165,9 +165,9 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         start = initial_values(dynamics, t)
     asked = data.start if isinstance(data, Scene) else "described"
     if isinstance(asked, SteadyMotion):
-        from .steady import settled_in_motion
+        from .steady import start_in_motion
 
-        return settled_in_motion(data, dynamics, start, t, asked).start
+        return start_in_motion(data, dynamics, start, t, asked)
     if asked == "equilibrium":
         from .settled import settled
 

@@ -13,10 +13,10 @@ from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
 from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
-from ..solve.equilibrium import Equilibrium, find_equilibrium
-from ..solve.force_balance import balance_at
+from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
+from ..solve.equilibria.force_balance import balance_at
+from ..solve.equilibria.steady_motion import at_rest
 from ..solve.initial import InitialValues
-from ..solve.steady_motion import at_rest
 
 MOST_WITH_STATES = 1500
 """Velocities up to which the stability of an equilibrium with states of the user's own is looked at (dense matrices)."""

@@ -12,11 +12,12 @@ from ..describe.settings import SteadyMotion as Described
 from ..errors import InputError, SolverError
 from ..linear_analysis.steady_motion import eigenvalues_beside
 from ..solve.dynamics import Dynamics
-from ..solve.equilibrium import Equilibrium, find_equilibrium
-from ..solve.force_balance import balance_at
+from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
+from ..solve.equilibria.force_balance import balance_at, forces_by_velocity
+from ..solve.equilibria.found_speeds import with_found_spins
+from ..solve.equilibria.nearest_equilibrium import nearest_equilibrium
+from ..solve.equilibria.steady_motion import SteadyMotion
 from ..solve.initial import InitialValues
-from ..solve.nearest_equilibrium import nearest_equilibrium
-from ..solve.steady_motion import SteadyMotion
 from .settled import GROWING, Settled
 
 MOST_FOR_STABILITY = 1500
@@ -31,7 +32,7 @@ STEADY_IMBALANCE, PRESCRIBED_BESIDE = 1e-6, 1e-8
 def settled_in_motion(
     model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described
 ) -> Settled:
-    """An equilibrium in steady motion.
+    """An equilibrium in steady motion, and whether it is stable.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def settled_in_motion(
     dynamics : Dynamics
         Of the model.
     start : InitialValues
-        The pose from which it is sought, and the spins of bodies that no rolling constraint tells.
+        The pose from which it is sought, and the spins of bodies that neither rolling constraints nor forces tell.
     t : float
         s.
     described : SteadyMotion
@@ -51,29 +52,49 @@ def settled_in_motion(
     SolverError
         Where none is found, a joint does not let the mechanism move so, or forces do not stay as they are.
     """
+    found = _found(model, dynamics, start, t, described)
+    values = _eigenvalues(dynamics, t, found)
+    notes = (_stability(values, dynamics.system.n_u),)
+    eigenvalues = () if values is None else tuple(values.tolist())
+    return Settled(_moving(start, found, notes), found.moves, found.imbalance, (), notes, eigenvalues)
+
+
+def start_in_motion(
+    model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described
+) -> InitialValues:
+    """The start of a run in steady motion, whether that is stable or not; parameters and errors as for `settled_in_motion`."""
+    found = _found(model, dynamics, start, t, described)
+    return _moving(start, found, ("whether the steady motion that the run starts in is stable was not looked at",))
+
+
+def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described) -> Equilibrium:
     motion = _motion(model, dynamics, start, described)
     dynamics.state.q[:] = start.q
+    if len(motion.spinning):
+        balance_at(dynamics, t, motion)
+        motion = with_found_spins(dynamics, motion, forces_by_velocity(dynamics))
     try:
         found = find_equilibrium(dynamics, t, motion)
     except SolverError:
         dynamics.state.q[:] = start.q
         found = nearest_equilibrium(dynamics, t, motion)
     _refuse_joints(dynamics, t)
-    _refuse_unsteady(dynamics, t, motion)
-    values = _eigenvalues(dynamics, t, motion, found)
-    notes = (_stability(values, dynamics.system.n_u),)
-    moving = replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
-    return Settled(moving, found.moves, found.imbalance, (), notes, () if values is None else tuple(values.tolist()))
+    _refuse_unsteady(dynamics, t, found.motion)
+    return found
 
 
-def _eigenvalues(dynamics: Dynamics, t: float, motion: SteadyMotion, found: Equilibrium) -> np.ndarray | None:
+def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) -> InitialValues:
+    return replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
+
+
+def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray | None:
     """Those of motions beside the steady one; None where they cannot be told."""
     if dynamics.system.n_u > MOST_FOR_STABILITY:
         return None
     state = dynamics.state
     state.q[:], state.u[:] = found.q, found.u
     dynamics.accelerate(t)
-    return eigenvalues_beside(dynamics, t, motion, found.acceleration)
+    return eigenvalues_beside(dynamics, t, found.motion, found.acceleration)
 
 
 def _stability(values: np.ndarray | None, n_u: int) -> str:
@@ -91,7 +112,8 @@ def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, describe
     velocity, about = (_vector(system, name, getattr(described, name)) for name in ("velocity", "about"))
     rotation = _rotation(model, described)
     spinning = np.array([_spin(system, name) for name in described.rolling], dtype=int)
-    motion = SteadyMotion(velocity, rotation, about, spinning, np.zeros(len(spinning)))
+    found = described.speed == "found" and bool(np.any(velocity))
+    motion = SteadyMotion(velocity, rotation, about, spinning, np.zeros(len(spinning)), found)
     state.q[:] = start.q
     spins = start.u[spinning] - motion.carried(dynamics)[spinning]
     return replace(motion, spins=spins)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..solve.dynamics import Dynamics
-from ..solve.steady_motion import SteadyMotion
+from ..solve.equilibria.steady_motion import SteadyMotion
 from .state_space import state_matrix
 from .tangent_space import linearised
 

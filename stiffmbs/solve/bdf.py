@@ -230,7 +230,7 @@ class Integrator:
 
     def steps(self) -> int:
         """Taken so far."""
-        return int(self.engine.statistics()["steps"])
+        return self.engine.steps()
 
     def long_steps(self) -> tuple[LongSteps, ...]:
         """Steps far longer than those before them, as far as they are kept."""

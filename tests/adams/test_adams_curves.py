@@ -64,6 +64,7 @@ def ring(turn):
     return np.column_stack([300 * np.cos(angles), 0 * angles, 200 * np.sin(angles)])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("turn", [1, -1])
 def test_a_bead_goes_round_a_closed_wire(turn):
     points = ring(turn)

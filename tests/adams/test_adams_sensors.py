@@ -114,7 +114,7 @@ PIECES = [(0, 0, 0, 0), (1, 0.5, 1, 3), (2, 0.5, -1, -3), (2.5, 0.5, 1, 3), (3.5
 """Times at which the cart passes 0.5 m with the place, its speed, and what is evaluated."""
 
 
-@pytest.mark.parametrize(("relation", "last"), [("EQ", 5), ("GE", 2)])
+@pytest.mark.parametrize(("relation", "last"), [pytest.param("EQ", 5, marks=pytest.mark.long), ("GE", 2)])
 def test_what_a_sensor_evaluates_is_kept_until_it_counts_again(tmp_path, relation, last):
     """By GE the cart comes back once, beyond ERROR below VALUE it goes on down, so that the sensor counts no more."""
     (tmp_path / "model.adm").write_text(CART.format(relation=relation))
@@ -168,3 +168,14 @@ def test_a_sensor_that_is_true_at_once_is_told(run_with):
 def test_what_is_wrong_with_a_sensor_is_said(sensor, message):
     with pytest.raises(InputError, match=message):
         read_adams(PENDULUM.format(sensor=f"SENSOR/1, {sensor}"))
+
+
+@pytest.mark.long
+def test_a_kinematic_simulation_ends_at_a_sensor(run_with):
+    found = run_with(
+        "MOTION/1, ROTATIONAL, JOINT=1, FUNCTION=-1.5*TIME**2\nSENSOR/1, FUNCTION=DZ(21,11), VALUE=-500, LE, RETURN",
+        "SIM/KIN, END=1, STEPS=10\nDEACT/SENSOR, ID=1\nDEACT/MOTION, ID=1\nSIM/DYN, DURATION=0.2, STEPS=2\n",
+    )
+    t = np.sqrt(np.pi / 6 / 1.5)
+    np.testing.assert_allclose(found.time[[6, 7, 9]], [t, t, t + 0.2], atol=1e-7)
+    assert found["PART_2.wy"][7] == pytest.approx(3 * t, abs=1e-6) and not np.any(found["MOTION_1.ty"][7:])

@@ -122,6 +122,69 @@ def test_a_sled_at_the_speed_at_which_thrust_and_drag_balance(few_moves):
         stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(19, 0)))
 
 
+@pytest.mark.parametrize("first", [3, 20, 200])
+def test_a_speed_that_forces_tell(first):
+    """Thrust and drag balance at 20 m/s, from whatever speed that is sought."""
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(SLED), motion=SteadyMotion(velocity=(first, 0), speed="found"))
+    assert found.channels["sled.vx"] == pytest.approx(20, rel=1e-9)
+    assert found.channels["sled.x"] == pytest.approx(0, abs=1e-9)
+
+
+def test_a_speed_that_forces_tell_to_a_rolling_wheel():
+    """A disc of 2 kg rolls with v = r w, 3 N against 1.5 N s/m of air."""
+    scene = """
+gravity: [0, -9.81]
+bodies: {disc: {mass: 2, inertia: 0.1, position: [0, 0.3]}}
+joints:
+  floor: {type: point_on_line, i: disc, j: {body: ground, point: [0, 0.3]}}
+  rolling: {type: velocity_equation, i: disc, zero: "vx(disc) + 0.3*wz(disc)"}
+forces: {air: {type: force, i: disc, force: ["3 N - 1.5 N s/m*vx(disc)", 0]}}
+"""
+    motion = SteadyMotion(velocity=(1, 0), rolling=("disc",), speed="found")
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(scene), motion=motion)
+    assert found.channels["disc.vx"] == pytest.approx(2) and found.channels["disc.omega"] == pytest.approx(-2 / 0.3)
+
+
+WHEEL = """
+dimensions: 3
+gravity: [0, 0, -10]
+bodies:
+  car: {mass: 380, inertia: [50, 50, 50], position: [0, 0, 0.33], velocity: [10, 0, 0]}
+  wheel: {mass: 20, inertia: [0.6, 1, 0.6], position: [0, 0, 0.33], velocity: [10, 0, 0], omega: [0, 25, 0]}
+joints:
+  guide: {type: planar, i: {body: car, orientation: {z: [0, 1, 0]}}, j: {body: ground, orientation: {z: [0, 1, 0]}}}
+  level: {type: perpendicular, i: {body: car, orientation: {z: [1, 0, 0]}}, j: ground}
+  hub: {type: revolute, i: {body: wheel, orientation: {z: [0, 1, 0]}}, j: {body: car, orientation: {z: [0, 1, 0]}}}
+forces:
+  tyre: {type: fiala_tyre, i: wheel, radius: 0.35, stiffness: 2e5, damping: 800, slip_stiffness: 8e4, cornering_stiffness: 6e4,
+         mu_static: 1, mu_sliding: 0.8, rolling_resistance: 0.007 m%s}
+  air: {type: force, i: car, force: ["thrust - 0.5 N s^2/m^2*vx(car)^2", 0, 0]}
+parameters: {thrust: %s N}
+start: {velocity: [10, 0, 0], rolling: [wheel], speed: found}
+run: {duration: 2 s, rtol: 1e-8}
+"""
+
+
+@pytest.mark.parametrize("relaxation", ["", ", relaxation: [0.3, 0.5]"], ids=["steady", "lagging"])
+def test_a_wheel_spins_as_its_tyre_asks(relaxation):
+    """A load of 4 kN deflects by 20 mm; 28 N m of rolling resistance take Fx = -28/0.33 N, and so the slip Fx/80 kN; the rest is drag."""
+    resistance = 28 / 0.33
+    scene = stiffmbs.read_scene(WHEEL % (relaxation, 0.5 * 30**2 + resistance))
+    found = stiffmbs.equilibrium(scene)
+    assert found.channels["car.vx"] == pytest.approx(30, rel=1e-9)
+    spin = 30 * (1 - resistance / 8e4) / (0.35 - 0.02 / 3)
+    assert found.channels["wheel.wy"] == pytest.approx(spin, rel=1e-9)
+    run = stiffmbs.run(scene)
+    assert run["car.vx"] == pytest.approx(np.full(len(run.time), 30.0), abs=1e-6)
+    assert run["tyre.load"] == pytest.approx(np.full(len(run.time), 4000.0), abs=1e-3)
+
+
+def test_a_speed_that_no_force_tells_is_refused():
+    scene = stiffmbs.read_scene(SLED.replace("40 N - 2 N s/m*vx(sled)", "40 N"))
+    with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is left in sled\.fx"):
+        stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0), speed="found"))
+
+
 WRONG = [
     ({"rotation": (1, 0, 0)}, "the motion is not steady"),
     ({"velocity": (1, 0, 0)}, "joint 'hook' (equation x) does not let the mechanism move so"),

@@ -73,13 +73,13 @@ def test_steps_do_not_depend_on_speed():
 
 
 @pytest.mark.long
-def test_a_car_past_its_start_takes_steps_that_do_not_depend_on_speed(examples):
-    """Without the air, whose drag slows a fast car; the start itself shakes the bushings more the faster the wheels turn."""
+def test_a_car_takes_steps_that_do_not_depend_on_speed(examples):
+    """Straight ahead from steady motion, with the drag that the driver works against: nothing rings."""
     counts = []
     for speed in (5, 20, 80):
-        changes = (("V", f"{speed} m/s"), ("parts.air.parameters.density", "0 kg/m^3"))
-        scene = load_scene(examples / "car.yaml", changes)
-        counts.append(sum(run(scene, duration=4.5, solver="bdf").step_times > 0.5))
+        found = run(load_scene(examples / "car.yaml", (("V", f"{speed} m/s"),)), duration=4, solver="bdf")
+        counts.append(found.solver["steps"])
+        assert np.ptp(found["rear.left.tyre.load"]) < 1e-3
     assert max(counts) <= 1.2 * min(counts)
 
 

@@ -79,7 +79,7 @@ class OtherForces:
             return None
         content = {
             PARAMETERS: dict(self._content.get(PARAMETERS) or {}),
-            FORCES: {name: copy.deepcopy(self._content[FORCES][name]) for name in self._affected},
+            FORCES: {name: unshared(self._content[FORCES][name]) for name in self._affected},
         }
         try:
             for name, value in zip(self._names, values, strict=True):

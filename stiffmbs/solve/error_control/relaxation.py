@@ -31,10 +31,10 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
     state.evaluate("motion", t)
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
     C_q, J = state.values["motion"][positions.source], state.values["motion"][velocities.source]
-    weight = creep_of_velocities(dynamics, settings)
     of_positions = np.bincount(positions.row, C_q * C_q, minlength=system.n_c)
-    of_velocities = np.bincount(velocities.row, J * J * weight[velocities.column], minlength=system.n_c)
-    state.relax(creep_of_positions(settings) * of_positions, of_velocities)
+    of_velocities = np.bincount(velocities.row, J * J * lightness(dynamics)[velocities.column], minlength=system.n_c)
+    creep = creep_of_positions(settings), creep_of_velocities(settings, system)
+    state.relax(creep[0] * of_positions, creep[1] * of_velocities)
 
 
 def creep_of_positions(settings: RunSettings) -> float:
@@ -42,11 +42,14 @@ def creep_of_positions(settings: RunSettings) -> float:
     return POSITION_CREEP * _factor(settings)
 
 
-def creep_of_velocities(dynamics: Dynamics, settings: RunSettings) -> np.ndarray:
-    """E_lam for an entry 1 in each column of J, shape (n_u,)."""
-    lightness = dynamics.kept("relaxation", None, lambda: 1 / _heaviest(dynamics.system))
-    along = min(1.0, (SHORT / len(dynamics.system.bodies)) ** 2)
-    return VELOCITY_CREEP * _factor(settings) * along * lightness
+def creep_of_velocities(settings: RunSettings, system: System) -> float:
+    """E_lam for an entry 1 in a row of J, of a velocity of lightness 1."""
+    return VELOCITY_CREEP * _factor(settings) * min(1.0, (SHORT / len(system.bodies)) ** 2)
+
+
+def lightness(dynamics: Dynamics) -> np.ndarray:
+    """One over the mass and moment of inertia that velocities are taken for, shape (n_u,)."""
+    return dynamics.kept("relaxation", None, lambda: 1 / _heaviest(dynamics.system))
 
 
 def _factor(settings: RunSettings) -> float:

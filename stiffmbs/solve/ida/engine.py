@@ -70,6 +70,9 @@ class Engine(Protocol):
     def note(self) -> str:
         """What the user should know of the way it went; empty for nothing."""
 
+    def steps(self) -> int:
+        """Taken since the first start."""
+
     def statistics(self) -> dict[str, int | float | str]:
         """The linear solver, and counters since the first start."""
 

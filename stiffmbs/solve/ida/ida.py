@@ -150,7 +150,7 @@ class NativeIda:
     def samples(self) -> np.ndarray:
         """Every fourth of the last 64 steps since the beginning: time and reported unknowns, the earliest first."""
         newest = int(self._ida.cells["next_sample"])
-        rows: np.ndarray = np.roll(self._ida.samples, -newest, axis=0)
+        rows = np.concatenate([self._ida.samples[newest:], self._ida.samples[:newest]])
         return rows[~np.isnan(rows[:, 0])]
 
     def pause_after(self, steps: int) -> None:

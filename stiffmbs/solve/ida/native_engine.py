@@ -187,6 +187,10 @@ class NativeEngine:
         """What the user should know of the way it went."""
         return self._order.note(self._ida.history.count)
 
+    def steps(self) -> int:
+        """Taken since the first start."""
+        return self._ida.history.count
+
     def statistics(self) -> dict[str, int | float | str]:
         """The linear solver, and counters since the first start."""
         return {"linear_solver": self.matrix.sentence(), **self._ida.statistics()}

@@ -14,7 +14,7 @@ from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
 from ..error_control.newton import LOOSEST, NUMBERS_END, SOFT, TIGHTEST
-from ..error_control.relaxation import creep_of_positions, creep_of_velocities
+from ..error_control.relaxation import creep_of_positions, creep_of_velocities, lightness
 from .connection import Connection
 
 _RESTART = Routine("stiffmbs.solve.ida.native.restart", "restart", "int32(float64, float64, int64*)")
@@ -98,7 +98,9 @@ def _creeping(dynamics: Dynamics, equations: Equations, settings: RunSettings) -
     """The entries that relaxations follow from, and where these stand among the values."""
     system, formulation = dynamics.system, equations.formulation
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
-    weight = creep_of_velocities(dynamics, settings)[velocities.column] if system.n_c else np.empty(0)
+    weight = np.empty(0)
+    if system.n_c:
+        weight = creep_of_velocities(settings, system) * lightness(dynamics)[velocities.column]
     return {
         "n_position_entries": len(positions.row), "position_source": _integers(positions.source), "position_row": _integers(positions.row),
         "position_creep": creep_of_positions(settings),

@@ -264,6 +264,10 @@ class SundaeEngine:
         """Nothing: its orders are IDA's own affair."""
         return ""
 
+    def steps(self) -> int:
+        """Taken since the first start."""
+        return self.callbacks.steps
+
     def statistics(self) -> dict[str, int | float | str]:
         """The linear solver, and counters since the first start."""
         calls = {name: self._before[name] + self._since[name] for name in self._before}

@@ -20,8 +20,8 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array, hstack
 from scipy.sparse.linalg import splu
 
-from ..errors import SolverError
-from .dynamics import Dynamics
+from ...errors import SolverError
+from ..dynamics import Dynamics
 from .force_balance import Balance, balance_at, moved, way
 from .steady_motion import SteadyMotion, at_rest
 
@@ -50,6 +50,8 @@ class Equilibrium:
         That led there.
     imbalance : float
         Largest generalised force that is left, relative to the largest that acts.
+    motion : SteadyMotion
+        With the speeds that were found.
     """
 
     q: np.ndarray
@@ -58,6 +60,7 @@ class Equilibrium:
     lam: np.ndarray
     moves: int
     imbalance: float
+    motion: SteadyMotion
 
 
 def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None = None) -> Equilibrium:
@@ -78,19 +81,19 @@ def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None =
         Where none is found; names the body with the largest imbalance.
     """
     state = dynamics.state
-    motion = motion or at_rest(dynamics.system.of_body.dimensions)
-    shift, known, moves = 1.0, balance_at(dynamics, t, motion), 0
+    shift, moves = 1.0, 0
+    known = balance_at(dynamics, t, motion or at_rest(dynamics.system.of_body.dimensions))
     while moves < MOST_MOVES and shift < LARGEST_SHIFT:
         if known.balanced:
-            known, more = _polished(dynamics, t, motion, known)
-            return as_equilibrium(dynamics, t, motion, known, moves + more)
+            known, more = _polished(dynamics, t, known)
+            return as_equilibrium(dynamics, t, known, moves + more)
         before = state.q.copy()
-        step = _step(dynamics, t, motion, shift, known)
+        step = _step(dynamics, t, shift, known)
         moves += step.moves
         shift = max(LEAST_SHIFT, step.factor * shift)
         if step.known is None:
             state.q[:] = before
-            motion.put(dynamics, t)
+            known.motion.put(dynamics, t)
         else:
             known = step.known
     raise SolverError(unbalanced(dynamics, known))
@@ -105,17 +108,19 @@ class _Step:
     moves: int
 
 
-def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, known: Balance) -> _Step:
-    """An implicit step from the present pose; the pose is wherever it led."""
+def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
+    """An implicit step from the present pose and motion; the pose is wherever it led."""
     system, state = dynamics.system, dynamics.state
     of_states = np.maximum(system.state_scales, np.abs(state.q[system.first_state :]))
-    limits = np.append(system.per_velocity(TRANSLATION * system.size, ROTATION), of_states)
-    start, first = state.q.copy(), 0.0
+    of_speeds = np.zeros(0) if known.speeds is None else TRANSLATION * known.speeds.sizes
+    limits = np.concatenate([system.per_velocity(TRANSLATION * system.size, ROTATION), of_states, of_speeds])
+    start, first, n = state.q.copy(), 0.0, len(known.left)
+    faster = np.zeros(len(of_speeds))
     for count in range(1, MOST_CORRECTIONS + 1):
-        whole = way(system, start, state.q)
+        whole = np.append(way(system, start, state.q), faster)
         move = newton_move(dynamics, shift, known, whole)
         if (
-            count == 1 and not system.states and not known.left @ np.nan_to_num(move) >= 0
+            count == 1 and not system.states and not known.left @ np.nan_to_num(move[:n]) >= 0
         ):  # towards an unstable equilibrium
             break
         longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
@@ -123,10 +128,10 @@ def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, know
             return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
         if count > 1 and longest > DIVERGING_MOVE * longest_of_all:
             break
-        state.q[:] = moved(system, state.q, move)
-        if dynamics.assemble(t) < 0:
+        found = moved_on(dynamics, t, known, state.q, move)
+        if found is None:
             break
-        known, first = balance_at(dynamics, t, motion), first or longest
+        known, first, faster = found, first or longest, faster + move[n:]
         if known.balanced:
             return _Step(known, 1.0, count)
         if count > 1 and longest <= LAST_MOVE * longest_of_all:
@@ -136,8 +141,17 @@ def _step(dynamics: Dynamics, t: float, motion: SteadyMotion, shift: float, know
     return _Step(None, SHIFT_RISES, count)
 
 
+def moved_on(dynamics: Dynamics, t: float, known: Balance, q: np.ndarray, move: np.ndarray) -> Balance | None:
+    """The balance after a move of a pose and of the speeds that are found; None where it has no assembly."""
+    n = len(known.left)
+    dynamics.state.q[:] = moved(dynamics.system, q, move[:n])
+    if dynamics.assemble(t) < 0:
+        return None
+    return balance_at(dynamics, t, known.motion.faster(move[n:]) if known.speeds else known.motion)
+
+
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
-    """Newton's move in a step that has come so far as a whole; `shift` is the root of s."""
+    """Newton's move in a step that has come so far as a whole; `shift` is the root of s.  Changes of speeds come last."""
     system, jacobian, n = dynamics.system, known.jacobian, len(known.left)
     inertia = diags_array(np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift)))
     if system.states:
@@ -145,25 +159,29 @@ def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndar
             [[csc_array((system.n_u, n))], [hstack([known.dragged, csc_array((n - system.n_u,) * 2)])]]
         )
         inertia = csc_array(inertia - shift * dragged)
-    matrix = block_array([[inertia + known.stiffness, known.reactions], [jacobian, None]], format="csc")
-    right = np.concatenate([known.left - inertia @ whole, np.zeros(jacobian.shape[0])])
+    changes, held = inertia + known.stiffness, jacobian
+    if known.speeds is not None:
+        inertia = csc_array(hstack([inertia, shift * known.speeds.momentum]))
+        changes = hstack([changes, known.speeds.effect + shift * known.speeds.momentum])
+        held = block_array([[jacobian, None], [known.speeds.held, csc_array((len(known.speeds.sizes),) * 2)]])
+    matrix = block_array([[changes, known.reactions], [held, None]], format="csc")
+    right = np.concatenate([known.left - inertia @ whole, np.zeros(held.shape[0])])
     try:
-        found: np.ndarray = splu(matrix).solve(right)[:n]
+        found: np.ndarray = splu(matrix).solve(right)[: held.shape[1]]
     except RuntimeError:  # exactly singular: a larger shift ends it
-        return np.full(n, np.inf)
+        return np.full(held.shape[1], np.inf)
     return found
 
 
-def _polished(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance) -> tuple[Balance, int]:
+def _polished(dynamics: Dynamics, t: float, known: Balance) -> tuple[Balance, int]:
     """Newton's moves from a balanced pose as long as less and less is left, and their number."""
-    system, state = dynamics.system, dynamics.state
+    state = dynamics.state
     for count in range(MOST_CORRECTIONS):
         before = state.q.copy()
-        move = newton_move(dynamics, LEAST_SHIFT, known, np.zeros(len(known.left)))
+        move = newton_move(dynamics, LEAST_SHIFT, known, at_start(known))
         if not np.all(np.isfinite(move)):
             return known, count
-        state.q[:] = moved(system, before, move)
-        found = balance_at(dynamics, t, motion) if dynamics.assemble(t) >= 0 else None
+        found = moved_on(dynamics, t, known, before, move)
         if found is None or not np.max(np.abs(found.left)) < WORTH_ANOTHER_MOVE * np.max(np.abs(known.left)):
             state.q[:] = before
             return known, count
@@ -171,11 +189,17 @@ def _polished(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance
     return known, MOST_CORRECTIONS
 
 
-def as_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance, moves: int) -> Equilibrium:
+def at_start(known: Balance) -> np.ndarray:
+    """No move, and no changes of speeds."""
+    return np.zeros(len(known.left) + known.motion.n_found)
+
+
+def as_equilibrium(dynamics: Dynamics, t: float, known: Balance, moves: int) -> Equilibrium:
     """The present pose, which is balanced, with the motion's velocities."""
+    motion = known.motion
     motion.put(dynamics, t)
     q, u = dynamics.state.q.copy(), dynamics.state.u.copy()
-    return Equilibrium(q, u, motion.acceleration(dynamics), known.lam, moves, known.imbalance)
+    return Equilibrium(q, u, motion.acceleration(dynamics), known.lam, moves, known.imbalance, motion)
 
 
 def unbalanced(dynamics: Dynamics, known: Balance) -> str:

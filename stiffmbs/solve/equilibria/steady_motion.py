@@ -9,14 +9,14 @@ and a body the angular velocity W + s e, whose rate in its own axes is (W + s e)
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.sparse import block_diag, csc_array
 
-from ..compile.quaternions import CONJUGATE, rotated
-from ..compile.system import System
-from .dynamics import Dynamics
+from ...compile.quaternions import CONJUGATE, rotated
+from ...compile.system import System
+from ..dynamics import Dynamics
 
 NO_EFFECT = 1e-9
 """Part of a spin's effect on rolling constraints, relative to the largest, that counts as none."""
@@ -36,6 +36,10 @@ class SteadyMotion:
         The angular velocities, by number, that differ from those of W.
     spins : ndarray
         By how much, where no rolling constraint tells it, rad/s.
+    speed_is_found : bool
+        Whether forces tell how fast it goes along V.
+    found : ndarray of int
+        The spins, by their place in `spinning`, that forces tell.
     """
 
     velocity: np.ndarray
@@ -43,11 +47,64 @@ class SteadyMotion:
     about: np.ndarray
     spinning: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
     spins: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    speed_is_found: bool = False
+    found: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
     @property
     def is_rest(self) -> bool:
         """Whether nothing moves."""
         return not (np.any(self.velocity) or np.any(self.rotation) or np.any(self.spins))
+
+    @property
+    def n_found(self) -> int:
+        """How many speeds are found: that along V, and those of `found`."""
+        return int(self.speed_is_found) + len(self.found)
+
+    def faster(self, changes: np.ndarray) -> SteadyMotion:
+        """The motion with speeds that are found changed, that along V first."""
+        along, spins = np.split(changes, [int(self.speed_is_found)])
+        velocity = self.velocity + along.sum() * self._ahead()
+        changed = self.spins.copy()
+        changed[self.found] += spins
+        return replace(self, velocity=velocity, spins=changed)
+
+    def speed_sizes(self, size: float) -> np.ndarray:
+        """How large the speeds are that are found, in a mechanism of a size, m."""
+        speed = float(np.linalg.norm(self.velocity))
+        spins = np.maximum(np.abs(self.spins[self.found]), speed / size)
+        return np.append(np.full(int(self.speed_is_found), speed), spins)
+
+    def by_speeds(self, dynamics: Dynamics) -> np.ndarray:
+        """Derivatives of the velocities by the speeds that are found, shape (n_u, speeds)."""
+        of_body, n_u = dynamics.system.of_body, dynamics.system.n_u
+        by = np.zeros((n_u, self.n_found))
+        if self.speed_is_found:
+            by.reshape(-1, of_body.n_u, self.n_found)[:, : of_body.linear, 0] = self._ahead()
+            by[self.spinning, 0] += self._spins_with(dynamics, by[:, 0])
+        spins = np.arange(len(self.found))
+        by[self.spinning[self.found], int(self.speed_is_found) + spins] = 1.0
+        return by
+
+    def _spins_with(self, dynamics: Dynamics, by_speed: np.ndarray) -> np.ndarray:
+        """How the spins that rolling asks for change with velocities."""
+        rolling = np.flatnonzero(~dynamics.system.holonomic)
+        if not len(rolling) or not len(self.spinning):
+            return np.zeros(len(self.spinning))
+        rows = dynamics.state.matrix("motion", "J")[rolling]
+        found: np.ndarray = -np.linalg.lstsq(rows[:, self.spinning], rows @ by_speed, rcond=NO_EFFECT)[0]
+        return found
+
+    def _ahead(self) -> np.ndarray:
+        """The direction of V."""
+        direction: np.ndarray = self.velocity / np.linalg.norm(self.velocity)
+        return direction
+
+    def told_by_rolling(self, dynamics: Dynamics) -> np.ndarray:
+        """Which spins a rolling constraint tells."""
+        state = dynamics.state
+        rolling = np.flatnonzero(~dynamics.system.holonomic)
+        across = state.matrix("motion", "J")[np.ix_(rolling, self.spinning)]
+        return np.asarray(np.linalg.norm(across, axis=0) > NO_EFFECT)
 
     def carried(self, dynamics: Dynamics) -> np.ndarray:
         """The velocities of all bodies as parts of one rigid body, at the present pose."""
@@ -97,14 +154,12 @@ class SteadyMotion:
             q' of velocities.
         """
         system, u = dynamics.system, dynamics.state.u
-        linear = system.of_body.linear
-        turning = _matrix(self.rotation)
-        if linear == 2:
-            velocity = [block_diag([turning, np.zeros((1, 1))])] * len(system.bodies)
-            by_move = csc_array(block_diag(velocity))
+        turning, by_move = _matrix(self.rotation), self.by_move(dynamics)
+        if not np.any(self.rotation) and (np.all(system.holonomic) or not len(self.spinning)):
+            return by_move, by_move
+        if system.of_body.linear == 2:
             return by_move, csc_array(by_move @ by_move)
         own, whole = self._own(dynamics), u.reshape(-1, 6)[:, 3:]
-        by_move = csc_array(block_diag([part for w in own for part in (turning, _matrix(w))]))
         accelerated = csc_array(
             block_diag(
                 [p for w, v in zip(own, whole, strict=True) for p in (turning @ turning, _matrix(w - v) @ _matrix(w))]
@@ -116,6 +171,16 @@ class SteadyMotion:
         into = csc_array((np.ones(len(self.spinning)), (self.spinning, np.arange(len(self.spinning)))), (system.n_u, len(self.spinning)))  # fmt: skip
         gyroscopic = csc_array(block_diag([part for w in own for part in (np.zeros((3, 3)), _matrix(w))]))
         return csc_array(by_move + into @ spins), csc_array(accelerated + gyroscopic @ into @ spins)
+
+    def by_move(self, dynamics: Dynamics) -> csc_array:
+        """W x for displacements in ground axes and rotations in each body's own: derivatives of the velocities by moves without
+        those of spins, and of the accelerations by velocities; shape (n_u, n_u)."""
+        if not np.any(self.rotation):
+            return csc_array((dynamics.system.n_u,) * 2)
+        turning, own = _matrix(self.rotation), self._own(dynamics)
+        if dynamics.system.of_body.linear == 2:
+            return csc_array(block_diag([block_diag([turning, np.zeros((1, 1))])] * len(own)))
+        return csc_array(block_diag([part for w in own for part in (turning, _matrix(w))]))
 
     def _spins_by_move(self, dynamics: Dynamics, t: float, rates: csc_array, by_move: csc_array) -> csc_array:
         """How the spins that rolling asks for change with the pose."""

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, diags_array
+from scipy.sparse import block_array, csc_array, diags_array, vstack
 from scipy.sparse.linalg import splu
 
-from ..compile.system import System
-from ..compile.terms import TERM_AXES
-from ..errors import SolverError
-from .algebraic_states import failure
-from .dynamics import Dynamics
+from ...compile.system import System
+from ...compile.terms import TERM_AXES
+from ...errors import SolverError
+from ..algebraic_states import failure
+from ..dynamics import Dynamics
+from .found_speeds import FoundSpeeds, found_speeds
 from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
@@ -42,6 +43,12 @@ class Balance:
         How what is left falls with moves of the pose, and changes of states.
     jacobian, reactions : sparse arrays
         J of the equations that are not redundant, and how what is left falls with multipliers.
+    dragged : sparse array
+        How rates of states change with velocities.
+    motion : SteadyMotion
+        In which this is so.
+    speeds : FoundSpeeds, optional
+        Its speeds that forces tell.
     """
 
     left: np.ndarray
@@ -52,6 +59,8 @@ class Balance:
     jacobian: csc_array
     reactions: csc_array
     dragged: csc_array
+    motion: SteadyMotion
+    speeds: FoundSpeeds | None = None
 
     @property
     def imbalance(self) -> float:
@@ -102,8 +111,13 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
         jacobian,
         jacobian.T,
         csc_array((0, len(left))),
+        motion,
     )
-    return with_states(dynamics, found, rates, motion, t) if system.states else found
+    if system.states:
+        found = with_states(dynamics, found, rates, motion, t)
+    if not motion.n_found:
+        return found
+    return replace(found, speeds=found_speeds(dynamics, motion, forces_by_velocity(dynamics)))
 
 
 def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian: csc_array) -> np.ndarray:
@@ -139,8 +153,14 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     return Balance(
         np.append(known.left, rates), known.lam, known.largest, np.append(np.maximum(known.allowed, rounding), allowed),
         block_array(stiffness, format="csc"), block_array([[known.jacobian, by_states]], format="csc"),
-        block_array(reactions, format="csc"), csc_array(diags_array(np.where(system.algebraic, 0.0, 1.0)) @ of_velocities),
+        block_array(reactions, format="csc"), csc_array(diags_array(np.where(system.algebraic, 0.0, 1.0)) @ of_velocities), motion,
     )  # fmt: skip
+
+
+def forces_by_velocity(dynamics: Dynamics) -> csc_array:
+    """Derivatives of forces and of rates of states by velocities, shape (n_u + states, n_u), from the set ``tangent``."""
+    of_rates = sparse_term(dynamics, "rate_u")[slice(dynamics.system.first_state, None)]
+    return csc_array(vstack([sparse_term(dynamics, "f_u"), of_rates]))
 
 
 def _position_rates(dynamics: Dynamics) -> csc_array:

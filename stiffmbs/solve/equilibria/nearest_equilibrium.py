@@ -7,11 +7,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.system import System
-from ..errors import SolverError
-from .dynamics import Dynamics
-from .equilibrium import LEAST_SHIFT, ROTATION, TRANSLATION, Equilibrium, as_equilibrium, newton_move, unbalanced
-from .force_balance import Balance, balance_at, moved
+from ...compile.system import System
+from ...errors import SolverError
+from ..dynamics import Dynamics
+from .equilibrium import (
+    LEAST_SHIFT,
+    ROTATION,
+    TRANSLATION,
+    Equilibrium,
+    as_equilibrium,
+    at_start,
+    moved_on,
+    newton_move,
+    unbalanced,
+)
+from .force_balance import Balance, balance_at
 from .steady_motion import SteadyMotion
 
 MOST_MOVES, MOST_HALVINGS = 100, 12
@@ -24,25 +34,23 @@ def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> E
     known = balance_at(dynamics, t, motion)
     for count in range(MOST_MOVES):
         if known.balanced:
-            return as_equilibrium(dynamics, t, motion, known, count)
-        move = newton_move(dynamics, LEAST_SHIFT, known, np.zeros(len(known.left)))
+            return as_equilibrium(dynamics, t, known, count)
+        move = newton_move(dynamics, LEAST_SHIFT, known, at_start(known))
         part = 1.0 / max(1.0, float(np.max(np.abs(move[: system.n_u]) / limits)))
-        found = _along(dynamics, t, motion, known, part * move) if np.isfinite(part) else None
+        found = _along(dynamics, t, known, part * move) if np.isfinite(part) else None
         if found is None:
             break
         known = found
     raise SolverError(unbalanced(dynamics, known))
 
 
-def _along(dynamics: Dynamics, t: float, motion: SteadyMotion, known: Balance, move: np.ndarray) -> Balance | None:
+def _along(dynamics: Dynamics, t: float, known: Balance, move: np.ndarray) -> Balance | None:
     """What is known after the longest part of a move that leaves less; None where none does."""
-    system, state, before = dynamics.system, dynamics.state, dynamics.state.q.copy()
+    system, before = dynamics.system, dynamics.state.q.copy()
     for halving in range(MOST_HALVINGS):
-        state.q[:] = moved(system, before, 0.5**halving * move)
-        if dynamics.assemble(t) >= 0:
-            found = balance_at(dynamics, t, motion)
-            if _left(system, known, found) < _left(system, known, known):
-                return found
+        found = moved_on(dynamics, t, known, before, 0.5**halving * move)
+        if found is not None and _left(system, known, found) < _left(system, known, known):
+            return found
     return None
 
 

@@ -1,0 +1,1 @@
+"""Poses at rest and steady motions in which forces balance."""
