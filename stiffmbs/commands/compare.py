@@ -65,9 +65,9 @@ def compare(scene: str, output: Path | None, as_json: bool, **options: Any) -> N
 
     try:
         if output is not None:
-            from ..comparison.figure import check_figure
+            from ..show.figure import check_figure
 
-            check_figure(output)
+            check_figure("-o", output)
             refuse_own_input("-o", scene, output)
         with Telling() as tell:
             found = _found(scene, options, tell)

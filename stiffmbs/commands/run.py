@@ -59,7 +59,7 @@ def run(
             _files().check_output(output)
             refuse_own_input("-o", scene, output)
         if figure is not None:
-            _drawing().check_figure(figure)
+            _drawing().check_figure("--figure", figure)
             refuse_own_input("--figure", scene, figure)
         changes = changes_of(options)
         loaded = load_scene(scene, changes)

@@ -2,35 +2,19 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..bench.figure import NARROW, curve, finished
-from ..errors import InputError
-from ..results.files import refuse_path, written_whole
-from ..show.figure import ENDINGS
+from ..results.files import written_whole
 from .compare import Comparison
 from .comparison_over import ComparisonOver
 from .measures import MEASURES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
-
-
-def check_figure(path: Path) -> None:
-    """Refuse, before anything is measured, a figure that could not be drawn.
-
-    Raises
-    ------
-    InputError
-        For an unknown ending, a missing folder, or a missing matplotlib.
-    """
-    refuse_path("-o", path, ENDINGS)
-    if find_spec("matplotlib") is None:
-        raise InputError(f"-o {path}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
 
 
 def write_figure(path: Path, sheet: Sheet) -> None:

@@ -16,9 +16,7 @@ from ..describe.python_function import PythonFunction
 if TYPE_CHECKING:
     from .system import System
 
-_PROTOTYPE = ctypes.CFUNCTYPE(
-    ctypes.c_double, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p
-)
+_PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 DIFFERENCE, LEAST_ARGUMENT = 6e-6, 1e-3
 """Step of central differences, relative to an argument (the cube root of the rounding error), which counts as `LEAST_ARGUMENT` at least."""
 COMPLEX_STEP = 1e-30
@@ -30,28 +28,39 @@ class Callback:
     Attributes
     ----------
     address : int
-        Of a C function of the number of values, the value's index, the argument to differentiate by (-1 for none), the number
-        of arguments, and their address.
-    fault : BaseException or None
-        What the function raised.  Nothing is called any more from then on, and all values are nan.
+        Of two words: the address of a C function, and whether a call of it was left unanswered.  The function takes the number of
+        values, the value's index, the argument to differentiate by (-1 for none), the number of arguments, and their address; its
+        answer goes behind them, where nan stands.
     calls : int
     """
 
     def __init__(self, function: PythonFunction) -> None:
         self.name, self._function, self._way = function.name, function.function, function.derivatives
-        self.fault: BaseException | None = None
+        self._raised: BaseException | None = None
         self.calls = 0
         self._given = b""
         self._values: np.ndarray | None = None
         self._slopes: np.ndarray | None = None
         self._c_function = _PROTOTYPE(self._called)
-        self.address = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
+        self._words = np.array([ctypes.cast(self._c_function, ctypes.c_void_p).value or 0, 0], dtype=np.int64)
+        self.address = self._words.ctypes.data
+
+    @property
+    def fault(self) -> BaseException | None:
+        """What the function raised.  Nothing is called any more from then on, and all values are nan.
+
+        Ctrl-C may come before the first line of `_called`, and ctypes drops it: that call is then left unanswered.
+        """
+        return self._raised or (KeyboardInterrupt() if self._words[1] else None)
 
     def restart(self) -> None:
         """Call the function again after a fault."""
-        self.fault, self._values = None, None
+        self._raised, self._values, self._words[1] = None, None, 0
 
-    def _called(self, count: int, output: int, by: int, n: int, at: int) -> float:
+    def _called(self, count: int, output: int, by: int, n: int, at: int) -> None:
+        ctypes.c_double.from_address(at + 8 * n).value = self._answer(count, output, by, n, at)
+
+    def _answer(self, count: int, output: int, by: int, n: int, at: int) -> float:
         if self.fault is not None:
             return np.nan
         try:  # an exception cannot pass through compiled code
@@ -65,7 +74,7 @@ class Callback:
                 self._slopes = self._derivatives(np.frombuffer(given), count)
             return float(self._slopes[output, by])
         except BaseException as fault:
-            self.fault = fault
+            self._raised = fault
             return np.nan
 
     def _value(self, x: np.ndarray, count: int) -> np.ndarray:

@@ -6,8 +6,6 @@ refers to), so that a change of a number never changes a kernel.
 
 from __future__ import annotations
 
-import ast
-import copy
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -16,9 +14,6 @@ import numpy as np
 
 from ..describe.element import Component, Element, Force, Joint, JointName
 from ..describe.formula.formula import Formula
-from ..describe.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
-from ..describe.formula.text import UNIT
-from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference, PlacedMarkers
 from ..describe.python_function import PythonFunction
 from ..describe.states.name import StateName, own_state
@@ -26,19 +21,11 @@ from ..describe.states.state import StateValue
 from ..describe.table import Table
 from ..errors import InputError
 from .callbacks import callback_of
+from .formula_shape import FormulaShape, Shape
 from .table_values import spline_data
 
-Shape = tuple[Any, ...]
-REACTION = "reaction"
-"""Before the number of a joint's reaction in a formula's shape."""
 STATE_RATES = "state_rates"
 """The field of a joint's kind with the rates of the states in its equations."""
-STATE = "state"
-"""Before the slot of a state in a formula's shape."""
-TAKEN_OUT = "taken_out"
-"""Under which a formula keeps what stands in it in place of placeholders."""
-OWN = "own_"
-"""Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
 
 
 class Compilable(Protocol):
@@ -175,6 +162,12 @@ class ElementData:
             end += len(table)
         return np.concatenate(parts)
 
+    def marker_shape(self, marker: MarkerReference) -> Shape:
+        """The shape of a marker, whose place is appended to the numbers."""
+        body, numbers = self.places[marker]
+        self.numbers += numbers
+        return ("marker", self.slot(body))
+
 
 def sorted_out(
     name: str, element: Element, model: Compilable, places: PlacedMarkers | None = None
@@ -231,7 +224,7 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
     """The shape of a field's value; its data are appended to `data`."""
     match value:
         case MarkerReference():
-            return _marker_shape(value, data)
+            return data.marker_shape(value)
         case JointName():
             joint: Joint = model.joints[value.joint]
             fields = _fields(joint, model, data)
@@ -245,7 +238,7 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             data.numbers.append(float(value))
             return ("number",)
         case Formula():
-            return _FormulaShape(value, model, data).shape()
+            return FormulaShape(value, model, data, _shape).shape()
         case PythonFunction():
             data.numbers.append(float(callback_of(value).address))
             return ("python",)
@@ -262,138 +255,3 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
                 f"found a field with {type(value).__name__}, expected markers, joints' names, numbers, formulas, tables, "
                 "words or Python functions"
             )
-
-
-def _marker_shape(marker: MarkerReference, data: ElementData) -> Shape:
-    body, numbers = data.places[marker]
-    data.numbers += numbers
-    return ("marker", data.slot(body))
-
-
-class _FormulaShape(ast.NodeTransformer):
-    """Takes numbers, bodies, measures and tables out of a formula.
-
-    Bodies become ``b0.x``, states ``state0``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
-    constant one number ``p0``; whole exponents stay, as they decide about the derivatives.  What a formula repeats word
-    for word is the same once more, numbers included: the road's phase in a sine and in a cosine is then computed once.
-    """
-
-    def __init__(self, formula: Formula, model: Compilable, data: ElementData) -> None:
-        self.formula, self.model, self.data = formula, model, data
-        self.numbers: list[float] = []
-        self.measures: list[tuple[str, tuple[Any, ...]]] = []
-        self.tables: list[Table] = []
-        self.reactions: list[tuple[str, str]] = []
-        self._found: dict[str, ast.AST] = {}
-
-    def shape(self) -> Shape:
-        """The formula's shape; its numbers and markers are appended to the data."""
-        text = self._read() if self.formula.states else self._read_once()
-        self.data.numbers += self.numbers
-        measures = tuple(
-            (name, tuple(_marker_shape(marker, self.data) for marker in markers)) for name, markers in self.measures
-        )
-        first = len(self.data.numbers)
-        self.data.tables += [(first + k, spline_data(table)) for k, table in enumerate(self.tables)]
-        self.data.numbers += [0.0] * len(self.tables)
-        counts = len(self.formula.variables), len(self.numbers), len(self.tables)
-        joints = {
-            joint: _shape(JointName(joint), self.model, self.data)
-            for joint in dict.fromkeys(j for _, j in self.reactions)
-        }
-        reactions = tuple((name, joints[joint]) for name, joint in self.reactions)
-        return ("formula", text, counts, measures, *([reactions] if reactions else []))
-
-    def _read(self) -> str:
-        """What is left of the formula once numbers, markers and tables are taken out."""
-        return ast.unparse(self.visit(copy.deepcopy(self.formula.tree)))
-
-    def _read_once(self) -> str:
-        """The same of a formula without states, kept with it: studies compile the same formulas again and again.
-
-        The slots of bodies follow from those that an element has before.
-        """
-        kept, before = self.formula.kept, (TAKEN_OUT, tuple(self.data.bodies))
-        if before not in kept:
-            text = self._read()
-            kept[before] = text, list(self.data.bodies), self.numbers, self.measures, self.tables, self.reactions
-        text, self.data.bodies, self.numbers, self.measures, self.tables, self.reactions = map(copy.copy, kept[before])
-        return str(text)
-
-    def visit(self, node: ast.AST) -> Any:
-        """A placeholder for a number, and the number noted."""
-        constant = _constant_value(node, self.formula)
-        if constant is not None:
-            self.numbers.append(constant)
-            return ast.Name(f"p{len(self.numbers) - 1}")
-        text = ast.unparse(node)
-        if text not in self._found:
-            self._found[text] = super().visit(node)
-        return self._found[text]
-
-    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
-        match node:
-            case ast.BinOp(
-                base, ast.Pow(), ast.Constant(int()) | ast.UnaryOp(ast.USub(), ast.Constant(int())) as power
-            ):
-                return ast.BinOp(self.visit(base), ast.Pow(), power)
-        return ast.BinOp(self.visit(node.left), node.op, self.visit(node.right))
-
-    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.AST:
-        return ast.UnaryOp(node.op, self.visit(node.operand))
-
-    def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A placeholder for a measure, and the measure noted."""
-        if is_measure(node):
-            self.measures.append((node.func.id, measured_markers(node)))  # type: ignore[attr-defined]
-            return ast.Name(f"measure{len(self.measures) - 1}")
-        if is_reaction(node):
-            self.reactions.append((node.func.id, joint_of(node)))  # type: ignore[attr-defined]
-            return ast.Name(f"{REACTION}{len(self.reactions) - 1}")
-        arguments = [self.visit(argument) for argument in node.args]
-        table = self.formula.tables.get(node.func.id)  # type: ignore[attr-defined]
-        if table is None:
-            return ast.Call(node.func, arguments, [])
-        self.tables.append(table)
-        return ast.Call(ast.Name(f"table{len(self.tables) - 1}"), arguments, [])
-
-    def visit_Name(self, node: ast.Name) -> ast.AST:
-        if node.id in self.formula.states:
-            output = self.model.state_outputs().get(node.id)
-            if output is not None:
-                return self._inlined(output)
-            return ast.Name(f"{STATE}{self.data.state_slot(node.id)}")
-        return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
-
-    def _inlined(self, output: Formula) -> ast.AST:
-        """The shape of another formula that stands in this one."""
-        inner = _FormulaShape(output, self.model, self.data)
-        inner.numbers, inner.measures, inner.tables, inner.reactions = (
-            self.numbers,
-            self.measures,
-            self.tables,
-            self.reactions,
-        )
-        tree: ast.AST = inner.visit(copy.deepcopy(output.tree))
-        return tree
-
-    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        assert isinstance(node.value, ast.Name)
-        if self.model.dimensions == 3 and node.attr[0] in "qw":
-            self.measures.append((OWN + node.attr, (MarkerReference(body=node.value.id),)))
-            return ast.Name(f"measure{len(self.measures) - 1}")
-        return ast.Attribute(ast.Name(f"b{self.data.slot(node.value.id)}"), node.attr)
-
-
-def _constant_value(node: ast.AST, formula: Formula) -> float | None:
-    """The value of a part of a formula that holds neither time, coordinates, measures nor variables."""
-    if not isinstance(node, ast.expr):
-        return None
-    for part in ast.walk(node):
-        if is_named(part) or (
-            isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)
-        ):
-            return None
-        if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
-            return None
-    return formula_value(formula, node)

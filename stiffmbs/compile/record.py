@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..describe.element import Component, Element
-from .kind import Kind, Shape, with_place
+from .formula_shape import Shape
+from .kind import Kind, with_place
 from .machine import cache as store
 from .machine.description import Description
 from .terms import TERM_SETS

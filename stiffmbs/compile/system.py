@@ -149,6 +149,15 @@ class System:
         """The numbers of the coordinates that are parts of quaternions; none in the plane."""
         return np.setdiff1d(np.arange(self.n_pose), self.straight[0])
 
+    @cached_property
+    def mass_by_coordinate(self) -> np.ndarray:
+        """What the kinetic energy has for half the square of each coordinate's rate, at the least; 0 for those that are not of bodies, shape (n_q,)."""
+        of_bodies = self.mass.reshape(len(self.bodies), self.of_body.n_u)
+        linear, angular = np.split(of_bodies, [self.of_body.linear], axis=1)
+        flat = self.of_body.n_q == self.of_body.n_u
+        turning = angular if flat else 4 * angular.min(axis=1, keepdims=True) * np.ones(4)
+        return np.append(np.hstack([linear, turning]), np.zeros(self.n_q - self.n_pose))
+
     def per_velocity(self, linear: float, angular: float) -> np.ndarray:
         """One number for the velocities of every centre of mass, and another for angular ones, shape (n_u,)."""
         return self._per_body(self.of_body.n_u, linear, angular)

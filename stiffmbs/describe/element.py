@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
 
-from .fields import Described
-from .files.quoted import quoted
+from .fields import Described, typed
 from .formula.formula import Formula
 from .loads import Loads
 from .marker import MarkerReference
@@ -113,11 +112,7 @@ class Element(Described):
     @classmethod
     def _of_its_kind(cls, found: Any) -> Any:
         """Let the type be the class's kind."""
-        if not isinstance(found, dict):
-            return found
-        if found.get("type", cls.kind) != cls.kind:
-            raise ValueError(f"found the type '{quoted(found['type'])}', expected '{cls.kind}'")
-        return {**found, "type": cls.kind}
+        return typed(cls.kind, found)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:

@@ -206,3 +206,18 @@ def _reason(fault: Any) -> str:
             return f"found {written(found)}, expected a mapping of keys to values"
         case _:
             return f"found {written(found)}, expected {fault['msg'].removeprefix('Input should be ')}"
+
+
+def typed(kind: str, found: Any) -> Any:
+    """An entry as it was found, its type filled in.
+
+    Raises
+    ------
+    ValueError
+        When it has another type than this kind.
+    """
+    if not isinstance(found, dict):
+        return found
+    if found.get("type", kind) != kind:
+        raise ValueError(f"found the type '{quoted(found['type'])}', expected '{kind}'")
+    return {**found, "type": kind}

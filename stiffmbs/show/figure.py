@@ -27,17 +27,17 @@ LARGEST = 1e100
 """Beyond it matplotlib finds no ticks for an axis."""
 
 
-def check_figure(path: Path) -> None:
-    """Refuse, before anything is solved, a figure that could not be drawn.
+def check_figure(option: str, path: Path) -> None:
+    """Refuse, before anything is solved, a figure that could not be drawn to the path of an option.
 
     Raises
     ------
     InputError
         For an unknown ending, a missing folder, or a missing matplotlib.
     """
-    refuse_path("--figure", path, ENDINGS)
+    refuse_path(option, path, ENDINGS)
     if find_spec("matplotlib") is None:
-        raise InputError(f"--figure {path}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+        raise InputError(f"{option} {path}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
 
 
 def draw(path: Path, solution: Solution, figure: Figure | None) -> None:

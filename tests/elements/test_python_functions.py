@@ -1,5 +1,8 @@
 """Forces by Python functions: the same motion as by formulas with every solver, and exceptions that are told."""
 
+import itertools
+import sys
+
 import numpy as np
 import pytest
 
@@ -104,6 +107,32 @@ def test_ctrl_c_in_the_function_interrupts_the_run():
 
     solution = stiffmbs.run(model(interrupted), duration=1.0)
     assert solution.outcome.name == "INTERRUPTED" and len(solution.time) > 10
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize(("solver", "within"), [("bdf", 1e-9), ("projected", 5e-3)])
+def test_ctrl_c_before_the_function_interrupts_the_run_and_no_number_is_wrong(solver, within):
+    """ctypes drops what is raised at the first instruction of what it calls.
+
+    The last explicit step then lacks the stages of its interpolant, and is reported by a cubic.
+    """
+    calls = itertools.count()
+
+    def interrupt(frame, event, _):
+        if event == "call" and frame.f_code.co_name == "_called" and next(calls) == 300:
+            sys.setprofile(None)
+            raise KeyboardInterrupt
+
+    whole = stiffmbs.run(model(), duration=1.0, solver=solver)
+    sys.setprofile(interrupt)
+    try:
+        found = stiffmbs.run(model(), duration=1.0, solver=solver)
+    finally:
+        sys.setprofile(None)
+    assert found.outcome.name == "INTERRUPTED" and 1 < len(found.time) < len(whole.time)
+    for name, values in found.items():
+        np.testing.assert_allclose(values, whole[name][: len(found.time)], rtol=1e-6, atol=within)
+    assert stiffmbs.run(model(), duration=1.0, solver=solver).outcome.name == "DONE"
 
 
 @pytest.mark.parametrize(

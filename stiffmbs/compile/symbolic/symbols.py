@@ -13,7 +13,8 @@ import sympy as sp
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.nodes import TIME
 from ...describe.formula.text import evaluate
-from ..kind import OWN, REACTION, STATE, Kind, Shape
+from ..formula_shape import OWN, REACTION, STATE, Shape
+from ..kind import Kind
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives

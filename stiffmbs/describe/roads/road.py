@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, model_validator
 
 from ..element import Component, Symbolic
-from ..files.quoted import quoted
+from ..fields import typed
 from ..formula.field import FormulaOf
 from ..formula.formula import Formula
 
@@ -37,11 +37,7 @@ class Road(Component):
     @classmethod
     def _of_its_kind(cls, found: Any) -> Any:
         """Let the type be the class's kind."""
-        if not isinstance(found, dict):
-            return found
-        if found.get("type", cls.kind) != cls.kind:
-            raise ValueError(f"found the type '{quoted(found['type'])}', expected '{cls.kind}'")
-        return {**found, "type": cls.kind}
+        return typed(cls.kind, found)
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

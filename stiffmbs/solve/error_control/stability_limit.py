@@ -32,7 +32,7 @@ STUCK, STEADY = 0.5, 3.0
 FAINT, DAMPED_AWAY = 4.0, 100
 """Distance from it up to which so many steps of order 2 damp the vibration away.  The half car at 1e-7 takes 3445 steps with
 100 of them and errors of 3.4e-7, 3569 and 8.2e-7 with 300, 5079 and 1.2e-7 with none."""
-WITHIN_PERIODS = 30.0
+WITHIN_PERIODS = 12.0
 """Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
 start with longer ones would stir up vibrations that have long been damped."""
 FIRST_LOOK, LATER = 2000, 1.5

@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import math
+
 from ..translate.code import Code, constant
 from ..translate.values import Operand, builtin
 
 
 @builtin
 def python_call(code: Code, address: Operand, count: Operand, output: Operand, by: Operand, *arguments: Operand):
-    """A value of a Python function, or a derivative; its address is kept among the numbers of an element."""
-    array = code.array(len(arguments))
-    for k, argument in enumerate(arguments):
+    """A value of a Python function, or a derivative; nan where it does not answer, which is noted.
+
+    An element has the address of two words among its numbers: that of the C function, and whether a call was left unanswered.
+    """
+    array, answer_at = code.array(len(arguments) + 1), constant(len(arguments))
+    for k, argument in enumerate((*arguments, constant(math.nan))):
         code.store(code.item(array, constant(k)), argument)
     whole = code.put_value("int", f"fptosi {code.converted(address, 'float').typed} to i64")
-    function = code.put_value("ints", f"inttoptr {whole.typed} to ptr")
-    given = ", ".join(code.integer(part).typed for part in (count, output, by, constant(len(arguments))))
-    return code.put_value("float", f"call double {function.text}({given}, {array.typed})")
+    words = code.put_value("ints", f"inttoptr {whole.typed} to ptr")
+    function = code.put_value("ints", f"inttoptr {code.load(code.item(words, constant(0))).typed} to ptr")
+    given = ", ".join(code.integer(part).typed for part in (count, output, by, answer_at))
+    code.put(f"call void {function.text}({given}, {array.typed})")
+    answer = code.load(code.item(array, answer_at))
+    is_open = code.put_value("bool", f"fcmp uno {answer.typed}, 0.0")
+    unanswered = code.item(words, constant(1))
+    code.store(unanswered, code.put_value("int", f"or {code.load(unanswered).typed}, {code.integer(is_open).text}"))
+    return answer

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Symbolic
 from ...units import si
-from ..impact import Impact, Touch, seen_from
+from ..impact import seen_from
 from ..marker import Marker
-from ..outside import INSIDE, above, length, touch_of_sphere
+from ..outside import above
+from ..sphere_impact import SphereImpact
 
 
-class SphereBoxImpact(Impact):
+class SphereBoxImpact(SphereImpact):
     """A sphere about marker i that presses on a face, an edge or a corner of a solid box.
 
     The point of contact is the one of the box nearest to the sphere's centre.  The run stops where the centre enters the box.
@@ -22,15 +22,8 @@ class SphereBoxImpact(Impact):
     """
 
     kind: ClassVar[str] = "sphere_box_impact"
-    beyond: ClassVar[str] = INSIDE
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
-        {"radius": 0.1},
-        {"radius": 0.1, "friction": 0.2, "static_friction": 0.3},
-    )
 
-    i: Marker = Field(description="the sphere's centre")
     j: Marker = Field(description="the middle of the box, with its axes")
-    radius: si.PositiveLength = Field(description="of the sphere, m")
     x: si.PositiveLength = Field(description="size of the box along x of j, m")
     y: si.PositiveLength = Field(description="along y, m")
     z: si.PositiveLength = Field(description="along z, m")
@@ -44,11 +37,3 @@ class SphereBoxImpact(Impact):
         return e.named(
             [sign(part) * above(abs(part) - size / 2) for part, size in zip(at, (e.x, e.y, e.z), strict=True)]
         )
-
-    @classmethod
-    def touches(cls, e: Symbolic) -> list[Touch]:
-        return [touch_of_sphere(e, cls.way(e))]
-
-    @classmethod
-    def limits(cls, e: Symbolic) -> Any:
-        return (length(*cls.way(e)) - e.radius / 1000,)

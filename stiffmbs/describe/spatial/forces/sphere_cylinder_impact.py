@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Symbolic
 from ...units import si
-from ..impact import Impact, Touch, seen_from
+from ..impact import seen_from
 from ..marker import Marker
-from ..outside import INSIDE, above, length, touch_of_sphere
+from ..outside import above, length
+from ..sphere_impact import SphereImpact
 
 
-class SphereCylinderImpact(Impact):
+class SphereCylinderImpact(SphereImpact):
     """A sphere about marker i that presses on the mantle, an end or an edge of a solid cylinder.
 
     The point of contact is the one of the cylinder nearest to the sphere's centre.  The run stops where the centre enters the
@@ -22,15 +22,8 @@ class SphereCylinderImpact(Impact):
     """
 
     kind: ClassVar[str] = "sphere_cylinder_impact"
-    beyond: ClassVar[str] = INSIDE
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
-        {"radius": 0.1},
-        {"radius": 0.1, "friction": 0.2, "static_friction": 0.3},
-    )
 
-    i: Marker = Field(description="the sphere's centre")
     j: Marker = Field(description="the middle of the cylinder, its z along the axis")
-    radius: si.PositiveLength = Field(description="of the sphere, m")
     cylinder_radius: si.PositiveLength = Field(description="m")
     cylinder_length: si.PositiveLength = Field(description="m")
 
@@ -43,11 +36,3 @@ class SphereCylinderImpact(Impact):
         out = e.named(length(x, y))
         across = e.named(above(out - e.cylinder_radius) / out)
         return e.named([across * x, across * y, sign(z) * above(abs(z) - e.cylinder_length / 2)])
-
-    @classmethod
-    def touches(cls, e: Symbolic) -> list[Touch]:
-        return [touch_of_sphere(e, cls.way(e))]
-
-    @classmethod
-    def limits(cls, e: Symbolic) -> Any:
-        return (length(*cls.way(e)) - e.radius / 1000,)

@@ -9,12 +9,12 @@ from pydantic import Field
 
 from ...element import Symbolic
 from ...units import si
-from ..impact import Impact, Touch, seen_from
+from ..impact import Touch, seen_from
 from ..marker import Marker
-from ..outside import INSIDE, length, touch_of_sphere
+from ..sphere_impact import SphereImpact
 
 
-class SphereSphereImpact(Impact):
+class SphereSphereImpact(SphereImpact):
     """A sphere about marker i that presses on a sphere about marker j.
 
     The run stops where the centres come together.
@@ -22,22 +22,21 @@ class SphereSphereImpact(Impact):
     """
 
     kind: ClassVar[str] = "sphere_sphere_impact"
-    beyond: ClassVar[str] = INSIDE
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
         {"radius": 0.1, "other_radius": 0.2},
         {"radius": 0.1, "other_radius": 0.2, "friction": 0.2, "static_friction": 0.3},
     )
 
-    i: Marker = Field(description="the sphere's centre")
     j: Marker = Field(description="the other sphere's centre")
-    radius: si.PositiveLength = Field(description="of the sphere about i, m")
     other_radius: si.PositiveLength = Field(description="of the sphere about j, m")
 
     @classmethod
-    def touches(cls, e: Symbolic) -> list[Touch]:
-        touch = touch_of_sphere(e, e.named(seen_from(e.i.point, e.j)))
-        return [Touch(touch.gap - e.other_radius, touch.point, touch.normal)]
+    def way(cls, e: Symbolic) -> Any:
+        """From the other centre to the sphere's, along the axes of j."""
+        return e.named(seen_from(e.i.point, e.j))
 
     @classmethod
-    def limits(cls, e: Symbolic) -> Any:
-        return (length(*seen_from(e.i.point, e.j)) - e.radius / 1000,)
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        """One, so much nearer as the other sphere is wide."""
+        (touch,) = super().touches(e)
+        return [Touch(touch.gap - e.other_radius, touch.point, touch.normal)]

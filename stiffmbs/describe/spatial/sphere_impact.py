@@ -1,0 +1,51 @@
+"""Contact of a sphere with a solid that its centre stays outside of, shared by the shapes of that solid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ..element import Symbolic
+from ..units import si
+from .impact import Impact, Touch
+from .marker import Marker
+from .outside import length
+
+
+class SphereImpact(Impact):
+    """Base of contacts of a sphere about marker i with a solid about marker j (it has no kind: scenes name its subclasses).
+
+    The point of contact is the one of the solid nearest to the sphere's centre.  The run stops where the centre enters the solid.
+    """
+
+    beyond: ClassVar[str] = (
+        "found the centre of a sphere inside the solid that it meets, expected it outside: more stiffness, or a lower speed"
+    )
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {"radius": 0.1},
+        {"radius": 0.1, "friction": 0.2, "static_friction": 0.3},
+    )
+
+    i: Marker = Field(description="the sphere's centre")
+    radius: si.PositiveLength = Field(description="of the sphere, m")
+
+    @classmethod
+    def way(cls, e: Symbolic) -> Any:
+        """From the nearest point of the solid to the sphere's centre, along the axes of j."""
+        raise NotImplementedError
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        """One at the nearest point."""
+        way = cls.way(e)
+        distance = e.named(length(*way))
+        x, y, z = (part / distance for part in way)
+        normal = e.named(x * e.j.x + y * e.j.y + z * e.j.z)
+        return [Touch(distance - e.radius, e.i.point - e.radius * normal, normal)]
+
+    @classmethod
+    def limits(cls, e: Symbolic) -> Any:
+        """A thousandth of the radius before the centre enters the solid."""
+        return (length(*cls.way(e)) - e.radius / 1000,)
