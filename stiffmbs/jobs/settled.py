@@ -23,6 +23,10 @@ MOST_WITH_STATES = 1500
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
 MOST_BRANCHES = 3
+SAME_MOTION = 1e-8
+"""Singular value of free motions, relative to the largest, up to which they are the same."""
+LARGE_PART = 0.5
+"""Size of a velocity, relative to the largest in free motions, from which on the first such one gives them its name."""
 GROWING = 1e-6
 """Real part of an eigenvalue, relative to the largest of all, from which on a motion grows: double zeros are known to that."""
 
@@ -146,7 +150,21 @@ def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[s
     found = lowest(known.stiffness, known.jacobian, system.mass, scale, known.left)
     for shape in found.unstable.T:
         return shape / np.max(np.abs(shape / scale)), []
-    return None, list(dict.fromkeys(_name(dynamics, shape / scale) for shape in found.free.T))
+    return None, [system.name_of(k, system.of_body.velocities) for k in _independent(found.free / scale[:, None])]
+
+
+def _independent(shapes: np.ndarray) -> Iterator[int]:
+    """Numbers of velocities, one for each independent motion among some, that do not depend on how these are combined."""
+    basis, sizes, _ = np.linalg.svd(
+        shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny), full_matrices=False
+    )
+    rest = basis[:, sizes > SAME_MOTION * np.max(sizes, initial=0.0)]
+    for _ in range(rest.shape[1]):
+        size = np.linalg.norm(rest, axis=1)
+        k = int(np.argmax(size >= LARGE_PART * np.max(size)))
+        yield k
+        along = rest[k] / size[k]
+        rest = rest - np.outer(rest @ along, along)
 
 
 def _name(dynamics: Dynamics, shape: np.ndarray) -> str:

@@ -92,7 +92,12 @@ def _all(
     if not free.shape[1]:
         return np.zeros(0, dtype=complex), np.zeros((len(mass), 0))
     values, vectors = np.linalg.eig(np.linalg.solve(free.T @ (mass[:, None] * free), free.T @ (stiffness @ free)))
-    return values, (free @ vectors).real
+    return values, _real_shapes(values, free @ vectors)
+
+
+def _real_shapes(values: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """Real motions that span the same: real and imaginary part of a pair, as rounding makes of a double root."""
+    return np.where(values.imag < 0.0, shapes.imag, shapes.real)
 
 
 def _near(
@@ -119,7 +124,7 @@ def _near(
         found = 1.0 / of_inverse - shift
         kept = (found.real < -OWN * shift) | (shift == last)
         values.append(found[kept])
-        vectors.append(shapes[:, kept].real)
+        vectors.append(_real_shapes(found[kept], shapes[:, kept]))
     return np.concatenate(values), np.hstack(vectors)
 
 

@@ -98,7 +98,7 @@ joints:
   hinge: {type: revolute, i: {body: bob, point: [-0.4, 0]}, j: cart}
 """
     found = equilibrium(stiffmbs.read_scene(text))
-    assert found.free == ("cart.vx",) or found.free == ("bob.vx",)
+    assert found.free == ("cart.vx",)
     assert found.channels["bob.y"] == pytest.approx(0.1, abs=1e-9)
     assert 2.5 < found.channels["cart.x"] < 3.5
 
