@@ -6,7 +6,7 @@ from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, dynamics_view, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
-from stiffmbs.solve.native.event_search.within_step import event_search_view, noted, zone
+from stiffmbs.solve.native.event_search.bounds import event_search_view, noted, zone
 from stiffmbs.solve.native.stages import add_stages, load_state
 
 UNTRUSTED = 1e3

@@ -19,7 +19,7 @@ from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.native.calls import call_int, int32
 from stiffmbs.solve.native.dynamics import to_accelerations, to_position_constraints, to_velocity_constraints
 from stiffmbs.solve.native.error_norm import error_norm_view
-from stiffmbs.solve.native.event_search.within_step import event_search_view
+from stiffmbs.solve.native.event_search.bounds import event_search_view
 from stiffmbs.solve.native.ida_loop import stepped
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import iteration_view

@@ -15,17 +15,15 @@ from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import int32
 from stiffmbs.solve.native.dynamics import to_accelerations
 from stiffmbs.solve.native.error_estimate import UNTRUSTED, trusted_error
-from stiffmbs.solve.native.event_search.within_step import (
-    DIFFERENCE,
+from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
     event_search_view,
-    first_event,
-    keep_row,
     noted,
     noted_rates,
     shift_ends,
     suspicious,
 )
+from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
 from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state, weighted
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
 from stiffmbs.solve.native.calls import call_int, int32
-from stiffmbs.solve.native.event_search.within_step import (
-    DIFFERENCE,
+from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
     clear,
     event_search_view,
-    first_event,
-    keep_row,
     noted,
     noted_rates,
     shift_ends,
     suspicious,
 )
+from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK
 

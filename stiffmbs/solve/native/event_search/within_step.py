@@ -13,16 +13,23 @@ the edge, further than the zones overlap.
 
 from __future__ import annotations
 
-from math import floor, isfinite, sqrt
+from math import isfinite, sqrt
 
-from stiffmbs.compile.machine.layout import EVENT_SEARCH
-from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
+from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.solve.native.event_search.bounds import (
+    ALSO_AT,
+    LOOKED_AT,
+    TURNED,
+    beyond,
+    cubic,
+    left_out,
+    noted,
+    noted_rates,
+    reaches,
+    zone,
+)
 
-MARGIN = 0.1
-"""Part of the range of a function's bounds that is added to those between the ends."""
-LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
-"""Places within a part of a step where a cubic is compared with the function: no round fractions of a period."""
 FITS, NOISE = 0.02, 1e-9
 """Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
 state that rounding takes of values and rates."""
@@ -41,214 +48,6 @@ REFINED, REFINEMENTS = 0.02, 5
 """Part of a part of a step over which a parabola is laid at an extremum, and how often, each over a tenth of the one before."""
 BISECTIONS, BEHIND = 50, 1e-9
 """The event is put behind the change by this part of the step, so that the new law holds there."""
-UNKNOWN = 8.0
-"""Times that a function may be further from the cubic than where it was looked at."""
-STEEP = 8.0
-"""Times that a rate at an end must be larger than the change between the ends for the function to be one that turns round."""
-CLEAR = 4.0
-"""Times that a function must be further from zero than its change in a step to be taken for far from it."""
-WIDER = 2.0
-"""Times the change and the rates in a step that no bound lies further from its ends (those of `_bound` lie within 1.8 of them)."""
-TURNED, HARDLY_TURNED = 1.0, 0.3
-"""rad, by which a body may turn in a step without a look inside, or at rates: those at the ends tell nothing of whole turns."""
-
-event_search_view = view_of("EventSearch", EVENT_SEARCH)
-
-
-@compiled
-def zone(w, k, value):
-    """The number of edges of event function k below a value."""
-    first, end = w.first_edge[k], w.first_edge[k + 1]
-    turns = 0
-    if w.period[k] > 0.0:
-        around = floor((value - w.edges[first]) / w.period[k])
-        if not abs(around) < 1e15:
-            return 0
-        turns = int(around)
-        value -= around * w.period[k]
-    low = first
-    high = end
-    while low < high:
-        middle = (low + high) // 2
-        if w.edges[middle] < value:
-            low = middle + 1
-        else:
-            high = middle
-    return low - first + turns * (end - first)
-
-
-@compiled
-def _edge(w, k, number):
-    """The edge between the zones `number` and `number` + 1 of function k; the first or last one beyond those there are."""
-    first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
-    if w.period[k] > 0.0:
-        turns = number // count
-        return w.edges[first + number - turns * count] + turns * w.period[k]
-    return w.edges[first + min(max(number, 0), count - 1)]
-
-
-@compiled
-def _overlap(w, k, number):
-    """How far the zones `number` and `number` + 1 of function k, one beside the other, overlap."""
-    first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
-    return w.overlap[first + (number % count if w.period[k] > 0.0 else min(max(number, 0), count - 1))]
-
-
-@compiled
-def _beyond(w, k, value, one, other, least):
-    """Whether a function at a value is in a zone that is neither of two, further than it overlaps with these and than `least`."""
-    here, low, high = zone(w, k, value), min(one, other), max(one, other)
-    if here > high:
-        return value - _edge(w, k, high) > max(least, _overlap(w, k, high))
-    if here < low:
-        return _edge(w, k, low - 1) - value > max(least, _overlap(w, k, low - 1))
-    return False
-
-
-@compiled
-def noted(target, values, count):
-    """Keep the values of all event functions."""
-    for k in range(count):
-        target[k] = values[k]
-
-
-@compiled
-def noted_rates(rate, value, nearby, ahead, count):
-    """Rates from values and from those at another instant, so much later."""
-    for k in range(count):
-        rate[k] = (nearby[k] - value[k]) / ahead
-
-
-@compiled
-def _left_out(w, k):
-    """Whether a function is not looked at: it is masked, or has no number."""
-    if not isfinite(w.value_before[k] - w.value_after[k]):
-        return True
-    return k < w.n_event_functions and (w.masked[k] > 0 or w.value_before[k] == 0.0)
-
-
-@compiled
-def _bound(start, start_rate, end, end_rate, missed, side):
-    """A bound from below (`side` -1) or above (1) on what has these values and rates (times the length) at the ends of a part.
-
-    That of the cubic's Bezier points, and of the tangents' meeting point, beyond which no convex function goes.  Rates that
-    the change between the ends does not show belong to a function that turns round, maybe often: it may go either way.  So may
-    one that is `missed` by the cubic between the ends.
-    """
-    p, q = start + start_rate / 3.0, end - end_rate / 3.0
-    low, high = min(p, q), max(p, q)
-    if start_rate * end_rate < 0.0:
-        place = (end - end_rate - start) / (start_rate - end_rate)
-        if 0.0 < place < 1.0:
-            meeting = start + start_rate * place
-            low, high = min(low, meeting), max(high, meeting)
-    steepest = max(abs(start_rate), abs(end_rate))
-    if steepest > STEEP * abs(end - start):
-        low, high = min(low, start, end) - 0.5 * steepest, max(high, start, end) + 0.5 * steepest
-    margin = MARGIN * (max(high, start, end) - min(low, start, end)) + UNKNOWN * missed
-    return min(low - margin, start, end) if side < 0 else max(high + margin, start, end)
-
-
-@compiled
-def _reaches(w, k, start, start_rate, end, end_rate, missed):
-    """Whether an event function may leave its side, or another function come into a zone that is none of those at the ends of the step."""
-    one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
-    if abs(one - other) > 1:
-        return True
-    low, high = (
-        _bound(start, start_rate, end, end_rate, missed, -1),
-        _bound(start, start_rate, end, end_rate, missed, 1),
-    )
-    if k < w.n_event_functions:
-        return zone(w, k, low) != one or zone(w, k, high) != one
-    return _beyond(w, k, low, one, other, 0.0) or _beyond(w, k, high, one, other, 0.0)
-
-
-@compiled
-def _turned(w, q_before, q_after, most):
-    """Whether a body has turned by more than an angle."""
-    turned = 0.0
-    for k in range(w.n_angles):
-        turned = max(turned, abs(q_after[w.angle[k]] - q_before[w.angle[k]]))
-    return turned > most
-
-
-@compiled
-def clear(w, h, q_before, q_after):
-    """Whether all functions are so far from zero that rates need not be looked at; rates at the end are then those of the step."""
-    if w.n > w.n_event_functions or _turned(w, q_before, q_after, HARDLY_TURNED):
-        return False
-    for k in range(w.n):
-        change = w.value_after[k] - w.value_before[k]
-        nearest = min(abs(w.value_after[k]), abs(w.value_before[k]))
-        if not nearest > CLEAR * (abs(change) + h * abs(w.rate_before[k])):
-            return False
-    for k in range(w.n):
-        w.rate_after[k] = (w.value_after[k] - w.value_before[k]) / h
-    return True
-
-
-@compiled
-def shift_ends(w):
-    """The end of the last step is the start of the next."""
-    noted(w.value_before, w.value_after, w.n)
-    noted(w.rate_before, w.rate_after, w.n)
-
-
-@compiled
-def _cubic(start, start_rate, end, end_rate, x):
-    """The cubic with these values and rates (times the length) at 0 and 1."""
-    y = 1.0 - x
-    return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (y * start_rate - x * end_rate)
-
-
-@compiled
-def _note_zones(w):
-    """Keep the edges about the values at the start of the step."""
-    for k in range(w.n):
-        value = w.value_before[k]
-        if w.zone_low[k] < value <= w.zone_high[k]:
-            continue
-        number = zone(w, k, value)
-        endless = w.period[k] > 0.0
-        w.zone_low[k] = _edge(w, k, number - 1) if endless or number > 0 else -float("inf")
-        w.zone_high[k] = (
-            _edge(w, k, number) if endless or number < w.first_edge[k + 1] - w.first_edge[k] else float("inf")
-        )
-
-
-@compiled
-def _note_apart(w, h):
-    """Note how far each function stays from the edges of its zone, by bounds wider than those of `_bound`; no number above 0 where that is not known."""
-    for k in range(w.n):
-        start, end = w.value_before[k], w.value_after[k]
-        start_rate, end_rate = h * w.rate_before[k], h * w.rate_after[k]
-        missed = abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT))
-        beyond = WIDER * (abs(end - start) + abs(start_rate) + abs(end_rate)) + UNKNOWN * missed
-        below, above = min(start, end) - beyond - w.zone_low[k], w.zone_high[k] - max(start, end) - beyond
-        w.apart[k] = min(below, above)
-
-
-@compiled
-def suspicious(w, h, q_before, q_after):
-    """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, allow an event."""
-    if _turned(w, q_before, q_after, TURNED):
-        return True
-    _note_zones(w)
-    _note_apart(w, h)
-    for k in range(w.n):
-        if w.apart[k] > 0.0:
-            continue
-        start, start_rate, end, end_rate = (
-            w.value_before[k],
-            h * w.rate_before[k],
-            w.value_after[k],
-            h * w.rate_after[k],
-        )
-        missed = abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT))
-        if not _left_out(w, k) and _reaches(w, k, start, start_rate, end, end_rate, missed):
-            return True
-    return False
 
 
 @compiled
@@ -294,12 +93,12 @@ def _mismatch(w, part, noise):
     """By how much cubics miss the functions that may have an event within a part of the step, relative to what is allowed."""
     worst = 0.0
     for k in range(w.n):
-        if _left_out(w, k):
+        if left_out(w, k):
             continue
         start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
-        first = abs(w.m[k] - _cubic(start, start_rate, end, end_rate, LOOKED_AT))
-        second = abs(w.m2[k] - _cubic(start, start_rate, end, end_rate, ALSO_AT))
-        if not _reaches(w, k, start, start_rate, end, end_rate, max(first, second)):
+        first = abs(w.m[k] - cubic(start, start_rate, end, end_rate, LOOKED_AT))
+        second = abs(w.m2[k] - cubic(start, start_rate, end, end_rate, ALSO_AT))
+        if not reaches(w, k, start, start_rate, end, end_rate, max(first, second)):
             continue
         seen = max(start, end, w.m[k], w.m2[k]) - min(start, end, w.m[k], w.m2[k])
         missed = max(first, second) / (FITS * seen + noise + w.noise[k])
@@ -344,7 +143,7 @@ def _visits(w, k, value, low, high):
         return here != one and abs(value) > w.depth
     if abs(one - other) > 1:
         return here != one
-    return _beyond(w, k, value, one, other, w.depth)
+    return beyond(w, k, value, one, other, w.depth)
 
 
 @compiled
@@ -377,11 +176,11 @@ def _first_within(w, s, begun, h, low, part):
     """The first event of all functions within a part of the step, as a place in the step; 2 for none."""
     first = 2.0
     for k in range(w.n):
-        if _left_out(w, k):
+        if left_out(w, k):
             continue
         start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
         there = _visits(w, k, w.m[k], low, low + LOOKED_AT * part) or _visits(w, k, w.m2[k], low, low + ALSO_AT * part)
-        if not there and _reaches(w, k, start, start_rate, end, end_rate, 0.0):
+        if not there and reaches(w, k, start, start_rate, end, end_rate, 0.0):
             for which in range(2):
                 place = _extremum(start, start_rate, end, end_rate, which)
                 if place < 1.0 and not there:
