@@ -116,7 +116,9 @@ class _Rubbing:
         parts = [f"({f.ball!r}*{self._turning(axis)})" for axis in "XYZ"]
         speed = self._speed(*parts)
         load = self._sum(("REACTION_FORCE", f"{f.ball!r}*{self._whole('F')}"))
-        size = f"(({self._of_magnitude(speed)})*({load}) + {self._preload(f.torque)}*({self._direction(speed)}))/{speed}"
+        size = (
+            f"(({self._of_magnitude(speed)})*({load}) + {self._preload(f.torque)}*({self._direction(speed)}))/{speed}"
+        )
         return self._torque([f"-{part}*{size}" for part in parts], f.name)
 
     def _sum(self, *loads: tuple[str, str]) -> str:
