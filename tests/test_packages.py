@@ -14,7 +14,7 @@ import stiffmbs
 
 ROOT = Path(stiffmbs.__file__).parent
 ORDER = (
-    "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
+    "cache", "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
     "bench", "comparison", "stress", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
