@@ -1,4 +1,4 @@
-"""The command while it is being loaded and as it ends: Ctrl-C, and the garbage collector."""
+"""The command while it is being loaded and as it ends: Ctrl-C, the garbage collector, and what is looked for."""
 
 from __future__ import annotations
 
@@ -19,10 +19,12 @@ INTERRUPTED = 130
 def quiet_while_loading() -> None:
     """Let Ctrl-C end the command ``stiffmbs`` without a traceback while it is being loaded, and nothing be collected.
 
+    Nor does pydantic look through all installed packages for plugins, of which none serves here.
     Programs that import the package keep their own ways.
     """
     if not _is_the_command():
         return
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     gc.disable()  # modules and classes stay: looking through them again and again takes 5 % of a short run
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)
