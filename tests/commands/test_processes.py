@@ -89,12 +89,6 @@ sys.argv[0] = "stiffmbs"
 from stiffmbs import __main__
 from stiffmbs.commands import main
 
-class Held:
-    def __del__(self):
-        print("taken apart", flush=True)
-
-held = Held()
-
 def command():
     atexit.register(print, "registered later")
     print("printed")
@@ -106,6 +100,6 @@ __main__.start()
 
 
 @pytest.mark.parametrize(("end", "status"), [("sys.exit(3)", 3), ("raise ValueError", 1)])
-def test_the_command_ends_at_once_with_its_status_when_all_that_was_registered_has_run(end, status):
+def test_the_command_ends_with_its_status_when_all_that_was_registered_has_run_and_is_printed(end, status):
     done = subprocess.run([sys.executable, "-c", ENDING.format(end=end)], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (status, "printed\nregistered later\n"), done.stderr
