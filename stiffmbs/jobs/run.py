@@ -37,6 +37,7 @@ from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 from ..structure.messages.of_run import StructureNotes, structure_notes
 from ..structure.redundancy import Redundancy, examine
+from .exact_constraints import on_exact_constraints
 from .given_inputs import Given, with_inputs
 from .load_scene import load_scene
 from .python_faults import told_faults, up_to_a_fault
@@ -255,7 +256,7 @@ def run(
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
+    computed, overlooked = seen_through(job, lambda job: on_exact_constraints(job, lambda job: _computed(job, watch)))
     trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
         raise AssemblyError(
