@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.describe.model import FORCES
 from stiffmbs.jobs import exact_constraints
 from stiffmbs.jobs.run import prepare, solved
 from stiffmbs.solve.trajectory import Outcome
@@ -56,7 +57,7 @@ def test_an_interrupted_run_is_not_taken_again():
 @pytest.mark.parametrize("restarted", [False, True])
 def test_steps_of_a_simulation_go_on_with_exact_constraints(restarted):
     model = pulled(1e6)
-    model.add("nudge", stiffmbs.Torque(i="bar", j="ground", torque=0.0))
+    model.add("nudge", FORCES["torque"](i="bar", j="ground", torque=0.0))
     simulation = stiffmbs.simulation(model, inputs={"forces.nudge.torque": 0.0}, rtol=1e-7, duration=2.0)
     times, angles = 0.02 * np.arange(1, 101), []
     for number in range(100):
