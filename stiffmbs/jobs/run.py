@@ -37,12 +37,11 @@ from ..solve.suspect import suspect
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 from ..structure.messages.of_run import StructureNotes, structure_notes
 from ..structure.redundancy import Redundancy, examine
-from .exact_constraints import on_exact_constraints
 from .given_inputs import Given, with_inputs
 from .load_scene import load_scene
 from .python_faults import told_faults, up_to_a_fault
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
-from .taken_again import Computed, seen_through
+from .taken_again import Computed, on_exact_constraints, seen_through
 
 LOGGER = logging.getLogger(__name__)
 

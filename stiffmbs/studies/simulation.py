@@ -9,14 +9,14 @@ from typing import Any, Unpack
 import numpy as np
 
 from ..describe.settings import RunSettings, Settings, takes_settings
-from ..diagnostics.creep import creep_at
 from ..errors import AssemblyError, InputError
-from ..jobs.exact_constraints import CREPT, exactly, relaxed
 from ..jobs.run import Job, Runnable, data_of, prepare
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
+from ..jobs.taken_again import CREPT, exactly, relaxed
 from ..results.channels import channels_of, turns_of
 from ..results.saved_state import TURNS, SavedState
 from ..solve.algebraic_states import failure
+from ..solve.error_control.relaxation import creep_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene

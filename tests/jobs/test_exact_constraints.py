@@ -9,7 +9,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.describe.model import FORCES
-from stiffmbs.jobs import exact_constraints
+from stiffmbs.jobs import taken_again
 from stiffmbs.jobs.run import prepare, solved
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.stress.families.structure.large_multipliers import barely_held, pulled, swing_error
@@ -35,7 +35,7 @@ def test_nothing_is_taken_again_where_multipliers_are_as_large_as_weights():
 def test_a_run_that_exact_constraints_do_not_bring_as_far_is_kept_and_doubted(monkeypatch):
     job = prepare(pulled(1e6), **HOW)
     monkeypatch.setattr(
-        exact_constraints, "exactly", lambda job: replace(job, grid=replace(job.grid, times=job.grid.times[:2]))
+        taken_again, "exactly", lambda job: replace(job, grid=replace(job.grid, times=job.grid.times[:2]))
     )
     solution = solved(job)
     assert len(solution.t) == 101
