@@ -83,7 +83,7 @@ class Statements(Trial):
         wire = [np.polynomial.Polynomial([0, 1]), *bends]
         u = rng.uniform(-0.5, 0.5)
         at = place + seat @ [own(u) for own in wire]
-        base, turning = self.moving(on, at)
+        base, _ = self.moving(on, at)
         spin = rng.uniform(-2, 2, 3)
         velocity = base + rng.uniform(-1, 1) * seat @ [own.deriv()(u) for own in wire]
         center = at + rng.uniform(-0.4, 0.4, 3)
