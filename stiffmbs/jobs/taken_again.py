@@ -112,6 +112,8 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
         ):  # jumps of velocities that no breakpoint tells
             return found
         return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
+    if stopped:
+        return found
     return _noted(
         found,
         f"{creep.sentence()}; the results may be wrong by that, and formulation {EXACT} does not come as far: "
