@@ -15,6 +15,7 @@ from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
 from ..error_control.newton import NUMBERS_END, Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
+from ..events.restart import just_after
 from ..storage import allocated, blocks, release
 from ..trajectory import History
 from .engine import Reached
@@ -92,14 +93,18 @@ class NativeEngine:
         self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
+        self._ida.look_after(self._order.wait(self._ida.history.count))
 
-    def _adapt(self) -> None:
+    def _adapt(self, stop: float) -> None:
         """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
+        if just_after(self._ida.t) >= stop:
+            return  # IDA does not start where it is to stop
         self._ease_newton()
         ida = self._ida
         if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
             self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
-        ida.look_after(self._order.wait(ida.history.count))
+        else:
+            ida.look_after(self._order.wait(ida.history.count))
 
     def _ease_newton(self) -> None:
         """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""
@@ -126,7 +131,7 @@ class NativeEngine:
                 release(rows)
             yield self._reached(times[last], rows[last], status)
             if status is Status.GOING:
-                self._adapt()
+                self._adapt(stop)
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
@@ -136,7 +141,7 @@ class NativeEngine:
             served, status = self._ida.steps(stop, times, rows)
             yield self._reached(times[:served], rows[:served], status)
             if status is Status.GOING:
-                self._adapt()
+                self._adapt(stop)
 
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
         failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
