@@ -35,9 +35,9 @@ FAINT, DAMPED_AWAY = 4.0, 100
 WITHIN_PERIODS = 12.0
 """Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
 start with longer ones would stir up vibrations that have long been damped."""
-FIRST_LOOK, LATER = 1000, 1.5
+FIRST_LOOK, LATER = 2048, 1.5
 """Steps before the first look, and how many times as many before each later one."""
-FEW, SOONER = 50, 5
+FEW, SOONER = 50, 10
 """Unknowns from which on looks are the more frequent the more there are, and how many times as frequent at the most: a step
 then costs more and more, a look hardly so.  It stays below 2 % of the steps."""
 MOST_BETWEEN = 2
@@ -98,6 +98,11 @@ class StabilityLimitDetection:
         """Whether the order is held down."""
         return self.order < self._highest
 
+    @property
+    def looks_often(self) -> bool:
+        """Whether a look costs little beside a step."""
+        return self._first < FIRST_LOOK
+
     def begin(self, t: float, steps: int, fastest: float) -> None:
         """The integrator starts, or starts anew, where vibrations have rates up to `fastest`, 1/s."""
         self._mark, self._fastest = (t, steps), fastest
@@ -108,7 +113,7 @@ class StabilityLimitDetection:
 
     def wait(self, steps: int) -> int:
         """How many steps from now on the next look is due."""
-        if self.held:
+        if self.held and self.looks_often:
             return max(self._next - steps, 1)
         return self._next - steps if self._watches and self._next > steps else self._first
 
@@ -132,7 +137,7 @@ class StabilityLimitDetection:
         steady = pace < STEADY * local and local * self._fastest < WITHIN_PERIODS
         distance, longer = self._fit(samples) if steady else (0.0, 0.0)
         faint = distance < FAINT
-        holds = self._holds and steps >= STRETCH
+        holds = self._holds and steps >= FIRST_LOOK
         creeping = STUCK < distance < NEGLIGIBLE and (longer > (NO_LOSS if faint else GAIN)) and (faint or holds)
         if not creeping:
             self._next = steps + min(int((LATER - 1) * steps), MOST_BETWEEN * self._first)

@@ -72,6 +72,7 @@ class NativeEngine:
         """Forget counters, history and pivots of an earlier run."""
         self._ida.forget()
         self._order.forget()
+        self._ida.look_after(self._order.wait(0))
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
@@ -93,7 +94,8 @@ class NativeEngine:
         self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
-        self._ida.look_after(self._order.wait(self._ida.history.count))
+        if self._order.looks_often:
+            self._ida.look_after(self._order.wait(self._ida.history.count))
 
     def _adapt(self, stop: float) -> None:
         """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
@@ -103,8 +105,7 @@ class NativeEngine:
         ida = self._ida
         if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
             self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
-        else:
-            ida.look_after(self._order.wait(ida.history.count))
+        ida.look_after(self._order.wait(ida.history.count))
 
     def _ease_newton(self) -> None:
         """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""
