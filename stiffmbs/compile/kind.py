@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..describe.element import Component, Element, Force, Joint, JointName
+from ..describe.files.followed import Followed
 from ..describe.formula.formula import Formula
 from ..describe.marker import MarkerReference, PlacedMarkers
 from ..describe.python_function import PythonFunction
@@ -122,7 +123,7 @@ class ElementData:
         Where markers sit.
     bodies : list of str
         By slot; the first is the one on which the reaction is reported.
-    numbers : list of float
+    numbers : list of float or Followed
         Kernel parameters, in the order in which the kind's equations meet them.
     tables : list of (int, ndarray)
         Which of the numbers stands for a table, by its offset in `flat`, and the table's spline data.
@@ -134,7 +135,7 @@ class ElementData:
 
     places: PlacedMarkers
     bodies: list[str] = field(default_factory=list)
-    numbers: list[float] = field(default_factory=list)
+    numbers: list[Any] = field(default_factory=list)
     tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
     joints: list[str] = field(default_factory=list)
     states: list[str] = field(default_factory=list)
@@ -236,6 +237,9 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             return ("choice", value)
         case int() | float():
             data.numbers.append(float(value))
+            return ("number",)
+        case Followed():
+            data.numbers.append(value)
             return ("number",)
         case Formula():
             return FormulaShape(value, model, data, _shape).shape()

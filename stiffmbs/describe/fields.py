@@ -7,7 +7,7 @@ messages all come from the one place where an element names its fields.
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,10 +24,11 @@ from pydantic import ValidationError as PydanticError
 from pydantic_core import core_schema
 
 from ..errors import InputError
+from .files.followed import FOLLOWED
 from .files.quoted import quoted, written
 from .formula.text import FormulaError
 from .units.quantity import in_si
-from .units.units import DIMENSIONS, one
+from .units.units import DIMENSIONS, Quantity, one
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 DOTTED_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
@@ -139,9 +140,23 @@ class Measured:
     at_most: float | None = None
     other_than: float | None = None
 
-    def read(self, found: object, info: ValidationInfo) -> float:
-        """The SI value of what stands in the scene."""
-        value = in_si(found, self.dimension, (info.context or {}).get("parameters"))
+    def read(self, found: object, info: ValidationInfo) -> Any:
+        """The SI value of what stands in the scene, or what follows it through other values (`stiffmbs.describe.files.followed`)."""
+        context = info.context or {}
+        record = context.get(FOLLOWED)
+        if record is not None and record.follows(found):
+            return record.read(self, found)
+        return self.si_value(found, context.get("parameters"))
+
+    def si_value(self, found: object, parameters: Mapping[str, Quantity] | None) -> float:
+        """The SI value of what stands in the scene.
+
+        Raises
+        ------
+        FormulaError
+            When it is no number of the dimension, or out of its bounds.
+        """
+        value = in_si(found, self.dimension, parameters)
         unit = DIMENSIONS[self.dimension][1].removeprefix("1").removeprefix("SI units")
         for bound, holds, words in (
             (self.above, operator.gt, "greater than {}"),

@@ -65,8 +65,7 @@ def write_numbers(job: Job, data: ModelData) -> bool:
 def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     """The forces of another model with other numbers than those of a job; None where it must be prepared anew."""
     system = job.dynamics.system
-    apart = job.dynamics.kept("apart", None, lambda: may_be_apart(system))
-    if job.subsystems or apart or not _same_structure(job.data, data):
+    if not renumberable(job) or not _same_structure(job.data, data):
         return None
     written = []
     for name, element in (*_changed(job.data, data), *_changed_by_states(job.data, data)):
@@ -80,6 +79,12 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     ):
         return None  # tolerances follow from the size
     return written
+
+
+def renumberable(job: Job) -> bool:
+    """Whether other numbers may be put into a job: the presolve has not solved mechanisms apart, nor could it with others."""
+    system = job.dynamics.system
+    return not job.subsystems and not job.dynamics.kept("apart", None, lambda: may_be_apart(system))
 
 
 def _moved(before: Element, after: Element) -> bool:
@@ -135,7 +140,7 @@ def _changed(before: ModelData, after: ModelData) -> Iterator[tuple[str, Element
             yield name, force.at_initial_pose(after)
 
 
-def _may_be_input(element: Element) -> bool:
+def may_be_input(element: Element) -> bool:
     """Whether an element has a table, or a formula with time in it."""
     if next(element.parts(Table), None):
         return True
@@ -165,7 +170,7 @@ class Change:
     @property
     def of_inputs(self) -> bool:
         """Whether the element, as it is or as it becomes, may have a formula or a table of time."""
-        return _may_be_input(self.element) or _may_be_input(self.group.elements[self.number])
+        return may_be_input(self.element) or may_be_input(self.group.elements[self.number])
 
     def write(self) -> None:
         self.group.numbers[self.first : self.first + len(self.values)] = self.values

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from ..describe.files.followed import NotFollowed
 from ..describe.files.other_forces import OtherForces
 from ..describe.files.unchanged import Unchanged
 from ..describe.files.written_scene import WrittenScene
 from ..describe.scene import Scene, made_scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
+from ..jobs.number_plan import NumberPlan, number_plan
 from ..jobs.renumber import renumbered
 from ..jobs.run import Job, prepare, solved
 from ..results.channels import channels_of
@@ -84,6 +86,8 @@ class CaseSolver:
         self._unchanged = Unchanged()
         self._other_forces: OtherForces | None = None
         self._jobs: list[Job] = []
+        self._plan: NumberPlan | None = None
+        self._may_plan = True
         self._of_scene = self._changed = RunSettings()
 
     def scene(self, values: Sequence[Any]) -> Scene:
@@ -119,15 +123,31 @@ class CaseSolver:
     def row(self, case: int, values: Sequence[Any]) -> Row:
         """A case with its outputs, or with what went wrong."""
         try:
-            solution = self.solution(values)
+            solution = solved(self._job_of_case(values))
             done = solution.outcome is Outcome.DONE
             outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
+        except NotFollowed:  # something looks at the described forces after all
+            self._plan = None
+            return self.row(case, values)
         except StiffmbsError as error:
             return Row(case, "error", str(error)[:MOST_WORDS], (np.nan,) * len(self._task.outputs))
         if solution.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         told = "; ".join([*([] if done else [solution.message]), *self._undefined(outputs, done), *solution.notes])
         return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs)
+
+    def _job_of_case(self, values: Sequence[Any]) -> Job:
+        """The job of a case whose data may be those of another one, as only its compiled numbers are looked at."""
+        if self._plan is None:
+            job = self.job(self.scene(values))
+            if self._may_plan and self._other_forces:
+                self._plan, self._may_plan = number_plan(job, self._other_forces, values), False
+            return job
+        found = self._plan.with_values(values)
+        if found is None:
+            return self.job(self.scene(values))
+        self._jobs = [found, *(job for job in self._jobs if job.dynamics is not found.dynamics)]
+        return found
 
     def _undefined(self, outputs: Sequence[float | np.ndarray], done: bool) -> Iterator[str]:
         """A sentence for each number of a whole run that is none, as of a logarithm of what is not positive."""

@@ -123,15 +123,21 @@ def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) 
             raise InputError(f"parameters: found the name {written(name)}, expected letters, digits and _")
         if name in CONSTANTS or name in IN_NUMBERS or name in (TIME, UNIT):
             raise InputError(f"parameters.{name}: found the name of a constant or function, expected another")
-        try:
-            parameters[name] = (
-                quantity(value, parameters) if isinstance(value, str) else Quantity(in_si(value, "number"))
-            )
-        except FormulaError as error:
-            raise InputError(f"parameters.{name}: {error}") from None
-        if replaced and name in replaced and parameters[name].dimension is None:
-            parameters[name] = Quantity(parameters[name].value, replaced[name].dimension)
+        parameters[name] = read_parameter(name, value, parameters, replaced)
     return parameters
+
+
+def read_parameter(
+    name: str, value: Any, above: Mapping[str, Quantity], replaced: Mapping[str, Quantity] | None = None
+) -> Quantity:
+    """One parameter, with those above it; errors as for `read_parameters`."""
+    try:
+        found = quantity(value, above) if isinstance(value, str) else Quantity(in_si(value, "number"))
+    except FormulaError as error:
+        raise InputError(f"parameters.{name}: {error}") from None
+    if replaced and name in replaced and found.dimension is None:
+        return Quantity(found.value, replaced[name].dimension)
+    return found
 
 
 def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]]) -> dict[str, Quantity]:

@@ -7,15 +7,18 @@ setting names is left to `stiffmbs.describe.scene.made_scene`, and so is whateve
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
 from ...errors import InputError
+from ..element import Force
 from ..parts.options import CHOOSE, OPTIONS
 from ..scene import Scene
-from .expand import read_parameters, replaced_parameters, set_value, unshared
+from ..units.units import Quantity
+from .expand import read_parameter, replaced_parameters, set_value, unshared
+from .followed import FOLLOWED, Given, NotFollowed, Record
 from .unchanged import Unchanged, names_in
 from .written_scene import WrittenScene
 
@@ -41,6 +44,7 @@ class OtherForces:
         self._content = unshared(copy.deepcopy(dict(written.content)))
         replaced = [(name, None) for name in (*(path for path, _ in written.changes), *names)]
         self._replaced = replaced_parameters(self._content, replaced)
+        self._changed: frozenset[str] = frozenset()
         self._affected = self._found(written)
 
     def _found(self, written: WrittenScene) -> frozenset[str] | None:
@@ -62,6 +66,7 @@ class OtherForces:
             else:
                 return None
         changed |= _following(parameters, changed)
+        self._changed = frozenset(changed)
         if any(names_in({key: entry}) & changed for key, entry in content.items() if key not in (PARAMETERS, FORCES)):
             return None
         forces = content.get(FORCES) or {}
@@ -77,23 +82,13 @@ class OtherForces:
         before = self._unchanged.scene
         if self._affected is None or before is None or any(isinstance(value, str) for value in values):
             return None
-        content = {
-            PARAMETERS: dict(self._content.get(PARAMETERS) or {}),
-            FORCES: {name: unshared(self._content[FORCES][name]) for name in self._affected},
-        }
         try:
-            for name, value in zip(self._names, values, strict=True):
-                set_value(content, name, value)
-            parameters = read_parameters(content[PARAMETERS], self._replaced)
-            context = {**self._unchanged.context, PARAMETERS: parameters}
-            forces = {
-                name: type(before.forces[name]).model_validate(entry, context=context)
-                for name, entry in content[FORCES].items()
-            }
+            parameters = self.parameters(values)
+            forces = self._forces(values, {**self._unchanged.context, PARAMETERS: parameters})
             scene = before.model_copy(
                 update={
                     PARAMETERS: {name: quantity.value for name, quantity in parameters.items()},
-                    FORCES: {name: forces.get(name, force) for name, force in before.forces.items()},
+                    FORCES: {**before.forces, **forces},
                 }
             )
             scene.check_elements({f"{FORCES}.{name}": force for name, force in forces.items()})
@@ -101,6 +96,63 @@ class OtherForces:
             return None
         scene._quantities = parameters
         return scene
+
+    def followed(self, values: Sequence[Any]) -> tuple[Record, Scene] | None:
+        """The scene with numbers that are followed in the forces that such values stand in; None where they cannot be."""
+        before = self._unchanged.scene
+        if self._affected is None or before is None:
+            return None
+        given = [_given(k, value) for k, value in enumerate(values)]
+        try:
+            parameters = self.parameters(values)
+            record = Record(self._changed, values, parameters)
+            others = {name: found for name, found in parameters.items() if name not in self._changed}
+            forces = self._forces(given, {**self._unchanged.context, PARAMETERS: others, FOLLOWED: record})
+            scene = before.model_copy(update={FORCES: {**before.forces, **forces}})
+            scene.check_elements({f"{FORCES}.{name}": force for name, force in forces.items()})
+        except (NotFollowed, InputError, PydanticError, ValueError, TypeError):
+            return None
+        return record, scene
+
+    @property
+    def affected(self) -> Collection[str]:
+        """The forces that the values stand in."""
+        return self._affected or ()
+
+    def parameters(self, values: Sequence[Any]) -> dict[str, Quantity]:
+        """The scene's parameters with such values.
+
+        Raises
+        ------
+        InputError
+            When one cannot be read.
+        """
+        content = self._content.get(PARAMETERS) or {}
+        given = {name.removeprefix(f"{PARAMETERS}."): value for name, value in zip(self._names, values, strict=True)}
+        found: dict[str, Quantity] = dict(self._unchanged.context[PARAMETERS])
+        for name in content:
+            if name in self._changed:
+                found[name] = read_parameter(name, given.get(name, content[name]), found, self._replaced)
+        return found
+
+    def _forces(self, values: Sequence[Any], context: Mapping[str, Any]) -> dict[str, Force]:
+        """The forces that such values stand in."""
+        assert self._unchanged.scene is not None and self._affected is not None
+        content = {FORCES: {name: unshared(self._content[FORCES][name]) for name in self._affected}}
+        for name, value in zip(self._names, values, strict=True):
+            if name.startswith(f"{FORCES}."):
+                set_value(content, name, value)
+        forces = self._unchanged.scene.forces
+        return {
+            name: type(forces[name]).model_validate(entry, context=context) for name, entry in content[FORCES].items()
+        }
+
+
+def _given(variation: int, value: Any, index: tuple[int, ...] = ()) -> Any:
+    """What stands in a scene for a value that is varied."""
+    if isinstance(value, list | tuple):
+        return [_given(variation, part, (*index, k)) for k, part in enumerate(value)]
+    return Given(variation, index)
 
 
 def _following(parameters: Mapping[str, Any], changed: set[str]) -> set[str]:
