@@ -108,7 +108,7 @@ def _failure(integrator: Integrator, reached: Reached) -> str:
     """Why a run ends where it has come; empty where it goes on."""
     q, u = integrator.split(reached.y)
     if governed_by_rounding(integrator.statistics()):
-        reason = too_fine(integrator.dynamics.system, integrator.settings, q)
+        reason = too_fine(integrator.dynamics, integrator.settings, reached.t, q)
         if reason:
             return reason
     if not reached.failure:

@@ -8,6 +8,7 @@ from click.testing import CliRunner
 from stiffmbs.commands.main import main
 from stiffmbs.stress import child, fuzz
 from stiffmbs.stress.case import Outcome
+from stiffmbs.stress.fuzzers import constraints
 
 TOY = "tests.stress.toy_fuzzer"
 
@@ -76,3 +77,11 @@ def test_what_does_not_fit_is_refused(toy, arguments, sentence):
 def test_every_fuzzer_says_what_it_tries():
     assert all(fuzz.module_of(name) for name in fuzz.fuzzers())
     assert stress("--fuzz").exit_code == 2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [430003, 450727])
+def test_constraints_that_hold_by_a_slope_alone(seed):
+    """Slopes of 5e-5 and 1.4e-12: relaxed constraints lost energy without a word there, or took 14 million steps."""
+    verdict = constraints.trial(seed)
+    assert verdict.outcome is Outcome.RIGHT

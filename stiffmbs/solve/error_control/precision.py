@@ -9,6 +9,7 @@ import numpy as np
 
 from ...compile.system import System
 from ...describe.settings import RunSettings
+from ..dynamics import Dynamics
 
 NOISE = 1e-3, 0.05
 """Rounding of a coordinate, relative to the absolute tolerance, from which on differences of the order 5 hold nothing but
@@ -17,26 +18,62 @@ SLOW, FAILED = 20_000, 0.2
 """Steps after which a run is looked at, and the part of them that fails the error test where rounding governs it."""
 
 
-def too_fine(system: System, settings: RunSettings, q: np.ndarray) -> str:
+def too_fine(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray) -> str:
     """Why the tolerance cannot be met at a state, as a sentence; empty where it can.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    settings : RunSettings
+    t : float
+        s.
+    q : ndarray, shape (n_q,)
+        Coordinates, m and rad.
+    """
+    return _known_too_little(dynamics.system, settings, q) or _held_too_little(dynamics, settings, t, q)
+
+
+def _held_too_little(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray) -> str:
+    """A sentence on the constraint that changes so little with coordinates that its own rounding moves them by more than the
+    tolerance; empty where there is none."""
+    system, state = dynamics.system, dynamics.state
+    state.q[:] = q
+    state.evaluate("motion", t)
+    jacobian = system.term("motion", "C_q")
+    entries = state.values["motion"][jacobian.source]
+    slopes = np.sqrt(np.bincount(jacobian.row, entries**2, minlength=system.n_c))
+    slopes[~(system.active & system.holonomic)] = np.inf
+    row = int(np.argmin(slopes))
+    rounding = np.finfo(float).eps * max(1.0, float(np.abs(q[: system.n_pose]).max()))
+    name, tolerance = _tolerance(settings)
+    moved = rounding / slopes[row] if slopes[row] > 0.0 else np.inf
+    if not moved > tolerance:
+        return ""
+    return (
+        f"{name} = {tolerance:g} asks for more digits than rounding leaves: '{system.equations[row][0]}' changes by "
+        f"{slopes[row]:.1g} where coordinates change by 1, so that its rounding moves these by {moved:.1g}; expected "
+        "an equation of a larger slope, or solver projected with scheme dop853"
+    )
+
+
+def _tolerance(settings: RunSettings) -> tuple[str, float]:
+    """The setting that governs coordinates near zero, and its value."""
+    return ("rtol", settings.rtol) if settings.atol is None else ("atol", settings.atol)
+
+
+def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> str:
+    """A sentence on the coordinate whose own rounding is more than the tolerance; empty where there is none.
 
     Joints carry the rounding of an angle, times an arm, and of a position to all coordinates they hold, so that it is
     compared with the tolerance of a coordinate near zero.  BDF estimates its errors by differences of order k + 1, which
     multiply rounding by up to 2^(k+1).
-
-    Parameters
-    ----------
-    system : System
-    settings : RunSettings
-    q : ndarray, shape (n_q,)
-        Coordinates, m and rad.
     """
     of_body = system.of_body
     own = q[: of_body.n_q * len(system.bodies)].reshape(-1, of_body.n_q)
     straight, turning = own[:, : of_body.linear], own[:, of_body.linear : of_body.n_u]
     if of_body.dimensions == 3:
         turning = turning[:, :0]  # quaternions stay of length 1
-    name, tolerance = ("rtol", settings.rtol) if settings.atol is None else ("atol", settings.atol)
+    name, tolerance = _tolerance(settings)
     of_positions = np.spacing(np.abs(straight)) / 2 / (NOISE[1] * tolerance * min(1.0, system.size))
     of_angles = np.spacing(np.abs(turning)) / 2 / (NOISE[0] * tolerance)
     excess = np.hstack([of_positions, of_angles])

@@ -47,9 +47,10 @@ class Creep:
 
     def sentence(self) -> str:
         """A clause on it."""
+        seen = self.mean >= self.at_end
         return (
-            f"under the forces in '{self.joint}' relaxed constraints (formulation SI2) let {self.velocity} creep by "
-            f"{max(self.mean, self.at_end):.2g} tolerances"
+            f"under the forces in '{self.joint}' relaxed constraints (formulation SI2) let "
+            f"{self.velocity if seen else 'velocities'} creep by {max(self.mean, self.at_end):.2g} tolerances"
         )
 
 
