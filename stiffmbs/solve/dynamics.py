@@ -16,6 +16,7 @@ from ..compile.machine.layout import DYNAMICS, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
+from .examined_rows import write_energies
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
 from .storage import all_finite, allocated, blocks, release
@@ -113,10 +114,13 @@ class Dynamics:
         moving = ~np.isin(row, algebraic)
         self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
         self._n_output = system.n_values("output")
-        self._potential = system.term("output", "potential").source
-        self._power = system.term("output", "power").source
+        self._potential, self._power = (
+            system.term("output", name).source.astype(np.int64) for name in ("potential", "power")
+        )
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
+        turned = {name: system.turned(name) for name in ("acceleration", "output")}
+        self._turned_for_output = np.setdiff1d(turned["output"], turned["acceleration"]).astype(np.int64)
         self.table = packed(
             DYNAMICS,
             {
@@ -133,6 +137,8 @@ class Dynamics:
                 "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
                 "n_algebraic": len(algebraic),
                 **self._algebraic,
+                "n_turned_for_output": len(self._turned_for_output),
+                "turned_for_output": self._turned_for_output,
             },
         )
         self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]
@@ -263,9 +269,11 @@ class Dynamics:
             done = block.start + OUTPUT_POINTS.call(
                 len(times), times.ctypes.data, project, POSITION_TOLERANCE, n_output, *addresses, self._at
             )
-            kinetic[block] = 0.5 * rows[1][block] ** 2 @ system.mass
-            potential[block] = rows[4][block][:, self._potential].sum(axis=1)
-            power[block] = rows[4][block][:, self._power].sum(axis=1)
+            write_energies(
+                (rows[1][block], system.mass),
+                (rows[4][block], self._potential, self._power),
+                (kinetic[block], potential[block], power[block]),
+            )
             release(*rows, kinetic, potential, power, q, u)
             if done < block.stop:
                 break
