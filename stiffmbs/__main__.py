@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import sys
 
-from .interrupts import collect_from_now_on
+from .interrupts import QuickEnd, collect_from_now_on
 
 
 def start() -> None:
     """The command ``stiffmbs``; also where there is too little memory to load it."""
+    end = QuickEnd.of_the_command()
     try:
         from .commands.main import main
     except (MemoryError, ImportError, OSError) as error:
         print(f"stiffmbs: the program cannot be loaded ({type(error).__name__}: {error})", file=sys.stderr)
         sys.exit(1)
     collect_from_now_on()
-    main()
+    with end.noted():
+        main()
 
 
 if __name__ == "__main__":

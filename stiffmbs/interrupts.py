@@ -1,12 +1,15 @@
-"""The command while it is being loaded: Ctrl-C, and the garbage collector."""
+"""The command while it is being loaded and as it ends: Ctrl-C, the garbage collector, and what is looked for."""
 
 from __future__ import annotations
 
+import atexit
+import contextlib
 import gc
 import itertools
 import os
 import signal
 import sys
+from collections.abc import Iterator
 from typing import Any, NoReturn
 
 INTERRUPTED = 130
@@ -16,10 +19,12 @@ INTERRUPTED = 130
 def quiet_while_loading() -> None:
     """Let Ctrl-C end the command ``stiffmbs`` without a traceback while it is being loaded, and nothing be collected.
 
+    Nor does pydantic look through all installed packages for plugins, of which none serves here.
     Programs that import the package keep their own ways.
     """
     if not _is_the_command():
         return
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     gc.disable()  # modules and classes stay: looking through them again and again takes 5 % of a short run
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)
@@ -29,6 +34,39 @@ def collect_from_now_on() -> None:
     """Have the garbage collector look at what is made from now on."""
     gc.freeze()
     gc.enable()
+
+
+class QuickEnd:
+    """Lets the process of a command end without taking its modules apart, which takes longer than many a run."""
+
+    def __init__(self) -> None:
+        self.status: int | None = None
+
+    @classmethod
+    def of_the_command(cls) -> QuickEnd:
+        """One that is called as the process ends, after all that is registered later; other programs end in their own ways."""
+        end = cls()
+        if _is_the_command():
+            atexit.register(end)
+        return end
+
+    @contextlib.contextmanager
+    def noted(self) -> Iterator[None]:
+        """Take note of the exit status that the command asks for."""
+        try:
+            yield
+        except SystemExit as asked:
+            self.status = asked.code if isinstance(asked.code, int) else None
+            raise
+
+    def __call__(self) -> None:
+        """End at once; in the usual way after a traceback, and for a debugger or a tracer of lines."""
+        if self.status is None or sys.gettrace() is not None:
+            return
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError, AttributeError):
+                stream.flush()
+        os._exit(self.status)
 
 
 def _is_the_command() -> bool:

@@ -44,6 +44,7 @@ from stiffmbs.describe.spatial.joints.revolute_spherical import RevoluteSpherica
 from stiffmbs.describe.spatial.joints.screw import Screw as _Screw
 from stiffmbs.describe.spatial.joints.shared import Distance as _Distance
 from stiffmbs.describe.spatial.joints.spherical import Spherical as _Spherical
+from stiffmbs.describe.spatial.joints.tangent_to_curve import TangentToCurve as _TangentToCurve
 from stiffmbs.describe.spatial.joints.thread import Thread as _Thread
 from stiffmbs.describe.spatial.joints.universal import Universal as _Universal
 
@@ -358,6 +359,7 @@ class PointOnCurve(_PointOnCurve):
         j: given.Marker,
         y: given.Curve | None = ...,
         radius: given.Curve | None = ...,
+        z: given.Curve | None = ...,
         type: Literal["point_on_curve"] = ...,
     ) -> None: ...
 
@@ -520,6 +522,18 @@ class SpringDamper(_SpringDamper):
         spring_law: given.Curve | None = ...,
         damper_law: given.Curve | None = ...,
         type: Literal["spring_damper"] = ...,
+    ) -> None: ...
+
+class TangentToCurve(_TangentToCurve):
+    """Follower with a direction: the point of marker i stays on a curve, its x axis along the tangent there."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        y: given.Curve | None = ...,
+        radius: given.Curve | None = ...,
+        type: Literal["tangent_to_curve"] = ...,
     ) -> None: ...
 
 class Thread(_Thread):

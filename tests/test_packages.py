@@ -14,7 +14,7 @@ import stiffmbs
 
 ROOT = Path(stiffmbs.__file__).parent
 ORDER = (
-    "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
+    "cache", "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
     "bench", "comparison", "stress", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
@@ -116,3 +116,15 @@ def test_a_warm_run_changes_package_rarely(monkeypatch):
 
     calls = warm_run(str(ROOT.parent / "examples" / "cart_pendulum.yaml"))
     assert len(calls.files) < 93 and len(calls.changes) < 265 / 2
+
+
+def test_a_scene_loads_few_kinds_of_elements_that_it_does_not_use():
+    """A torque and a drive stand in files of other names."""
+    program = (
+        "import sys, stiffmbs;"
+        "text = '{dimensions: 3, bodies: {a: {mass: 1, inertia: [1, 1, 1]}}, forces: {f: {type: torque, i: a, torque: [0, 0, 1]}}}';"
+        "stiffmbs.read_scene(text);"
+        "print(*[name for name in sys.modules if name.startswith('stiffmbs.describe.spatial.forces.')])"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert {name.rpartition(".")[2] for name in found.stdout.split()} == {"applied", "gyroscopic_torque"}

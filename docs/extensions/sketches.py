@@ -27,6 +27,7 @@ FIELDS: dict[str, dict[str, Any]] = {
     "gear": {"ratio": 2},
     "rack_and_pinion": {"pitch_radius": 0.3},
     "point_on_curve": {"radius": "0.5 m*(1 + 0.2*cos(2*angle))"},
+    "tangent_to_curve": {"radius": "0.5 m*(1 + 0.2*cos(2*angle))"},
 }
 """Fields with which a sketch tells more."""
 TURNED = {"universal": {"z": (0, 1, 0)}, "perpendicular": {"z": (0, 1, 0)}, "planar": {"z": (0, 0, 1)}}

@@ -11,6 +11,7 @@ WORDS = {
     "record": "derived kinds",
     "kernel": "kernels",
     "routine": "routines",
+    "file": "read files",
     "other": "of other versions or machines",
 }
 
@@ -27,7 +28,7 @@ def cache() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def show(as_json: bool) -> None:
     """Say where the cache lies and what it holds."""
-    from ..compile.machine.cache import DIRECTORY_VARIABLE, cache_directory
+    from ..cache.entries import DIRECTORY_VARIABLE, cache_directory
     from ..compile.machine.cache_contents import stored
 
     found = stored()
@@ -43,7 +44,7 @@ def show(as_json: bool) -> None:
 @cache.command()
 def clear() -> None:
     """Remove all entries; the next runs compile anew."""
-    from ..compile.machine.cache import cache_directory
+    from ..cache.entries import cache_directory
     from ..compile.machine.cache_contents import clear as cleared
 
     try:
@@ -57,7 +58,8 @@ def clear() -> None:
 @cache.command(short_help="Compile all usual elements and all solvers ahead.")
 def warm() -> None:
     """Compile all kinds of elements in their usual forms and all solvers, so that first runs need not wait."""
-    from ..compile.machine.cache import KERNEL, RECORD, ROUTINE, cache_directory
+    from ..cache.entries import cache_directory
+    from ..compile.machine.cache import KERNEL, RECORD, ROUTINE
     from ..compile.machine.cache_contents import stored
     from ..jobs.warm import warm as fill
 

@@ -10,6 +10,7 @@ import pkgutil
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any
 
@@ -37,6 +38,7 @@ class Kinds(Mapping[str, type[Any]]):
 
     def __init__(self, package: ModuleType, base: type[Element], dimensions: int) -> None:
         self.base, self.dimensions, self._package = base, dimensions, package.__name__
+        self._folder = Path(package.__path__[0])
         self._files = [module.name for module in pkgutil.iter_modules(package.__path__)]
         self._loaded: dict[str, dict[str, type[Any]]] = {}
 
@@ -77,10 +79,25 @@ class Kinds(Mapping[str, type[Any]]):
         return REGISTRY.kinds(self.base, self.dimensions)
 
     def __getitem__(self, kind: str) -> type[Any]:
-        for file in sorted(self._files, key=lambda file: file != kind):  # most files are named as their kinds
+        for file in self._likely_first(kind):
             if kind in self._in_file(file):
                 return self._in_file(file)[kind]
         return self.own()[kind]
+
+    def _likely_first(self, kind: str) -> Iterator[str]:
+        """All files, so that few are loaded: loaded ones, that which is named as a kind, those that write its name."""
+        yield from tuple(self._loaded)
+        if kind in self._files:
+            yield kind
+        yield from sorted(self._files, key=lambda file: self._strangeness(file, kind))
+
+    def _strangeness(self, file: str, kind: str) -> int:
+        """How little of a kind is written in a file."""
+        try:
+            text = (self._folder / f"{file}.py").read_text(encoding="utf-8")
+        except OSError:  # installed without its source
+            return 0
+        return next((k for k, name in enumerate((f'"{kind}"', kind)) if name in text), 2)
 
     def __iter__(self) -> Iterator[str]:
         yield from {**self.shipped, **self.own()}

@@ -41,7 +41,7 @@ from .given_inputs import Given, with_inputs
 from .load_scene import load_scene
 from .python_faults import told_faults, up_to_a_fault
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
-from .taken_again import Computed, seen_through
+from .taken_again import Computed, on_exact_constraints, seen_through
 
 LOGGER = logging.getLogger(__name__)
 
@@ -261,7 +261,7 @@ def run(
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
 def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     """Integrate what was prepared, and turn it into channels; errors as for `run`."""
-    computed, overlooked = seen_through(job, lambda job: _computed(job, watch))
+    computed, overlooked = seen_through(job, lambda job: on_exact_constraints(job, lambda job: _computed(job, watch)))
     trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
         raise AssemblyError(

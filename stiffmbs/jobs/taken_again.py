@@ -1,6 +1,9 @@
-"""Runs whose steps passed over something are taken again, with a start at each instant that shows it.
+"""Runs that are taken again, as their results contradict the equations.
 
-The step that ends there sees the force, so that its error estimate makes it as short as it has to be.
+Where steps passed over something, with a start at each instant that shows it: the step that ends there sees the force, so that
+its error estimate makes it as short as it has to be.  Where relaxed constraints crept beyond the tolerance, with exact ones:
+SI2 holds J u + C_t = E_lam lam, with an E_lam so small that forces of usual size change nothing.  Where equations are nearly
+dependent, or forces are huge for the masses, lam is not: velocities creep, and energy is lost.
 """
 
 from __future__ import annotations
@@ -13,7 +16,10 @@ import numpy as np
 
 from ..diagnostics.overlooked import Overlooked, overlooked, together
 from ..diagnostics.within_long_steps import overlooked_in_long_steps
+from ..solve import traits_of
 from ..solve.dynamics import OutputRows
+from ..solve.error_control.relaxation import creep_of
+from ..solve.settings import changed
 from ..solve.trajectory import Outcome, Trajectory
 
 if TYPE_CHECKING:
@@ -23,6 +29,11 @@ ROUNDS, STARTS = 3, 1000
 """How often a run is taken again, and with how many starts at the most."""
 AGAIN = "the run was taken again with a start there; what neither output instants nor long steps show, max_step or more output points do"
 LEFT = "the results may be wrong from there on; set max_step to far less than that"
+
+RELAXED, EXACT = "SI2", "SI2_exact"
+CREPT = 10.0
+"""Tolerances of a velocity, as a mean over the run, up to which creep is left alone: with 25 a pendulum's error is that many
+tolerances too.  The examples have 0 to 5."""
 
 
 @dataclass(frozen=True)
@@ -72,3 +83,46 @@ def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
         *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
     ]
     return together([each for each in found if each is not None])
+
+
+def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Computed:
+    """Compute a job, and once more by SI2_exact where its constraints crept; of that the result has a note.
+
+    Parameters
+    ----------
+    job : Job
+    compute : callable
+        Integrates a job and reports it.
+    """
+    found = compute(job)
+    if not relaxed(job) or not len(found.rows.t):
+        return found
+    creep = creep_of(job.dynamics.system, found.rows, found.trajectory, job.settings)
+    stopped = found.trajectory.outcome is Outcome.STOPPED
+    if not (creep.mean > CREPT or (stopped and creep.at_end > CREPT)):
+        return found
+    if found.trajectory.outcome is Outcome.INTERRUPTED:
+        return _noted(found, f"{creep.sentence()}; the results may be wrong by that")
+    again = compute(exactly(job))
+    if len(again.rows.t) >= len(found.rows.t):
+        return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
+    return _noted(
+        found,
+        f"{creep.sentence()}; the results may be wrong by that, and formulation {EXACT} does not come as far: "
+        f"{again.trajectory.message}",
+    )
+
+
+def relaxed(job: Job) -> bool:
+    """Whether a run follows relaxed constraints."""
+    chosen = job.settings.formulation == RELAXED and "formulation" in traits_of(job.settings).reads
+    return chosen and job.on_constraints and job.dynamics.system.n_c > 0
+
+
+def exactly(job: Job) -> Job:
+    """The job with exact constraints."""
+    return replace(job, settings=changed(job.settings, {"formulation": EXACT}))
+
+
+def _noted(computed: Computed, note: str) -> Computed:
+    return replace(computed, left_out=[*computed.left_out, note])

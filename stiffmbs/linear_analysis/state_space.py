@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import qr, solve_triangular
 
 from ..errors import SolverError
 from .tangent_space import Linearised
@@ -157,6 +156,8 @@ class _Constraints:
         self._rows = np.flatnonzero(self._norms > 0)
         self._q, self._r, self._order = np.eye(matrix.shape[1]), np.zeros((0, 0)), np.zeros(0, dtype=int)
         if len(self._rows):
+            from scipy.linalg import qr
+
             self._q, self._r, self._order = qr((matrix[self._rows] / self._norms[self._rows, None]).T, pivoting=True)
         pivots = np.abs(np.diag(self._r))
         self._rank = int(np.sum(pivots > DEPENDENT * pivots[0])) if len(pivots) else 0
@@ -168,6 +169,8 @@ class _Constraints:
 
     def smallest(self, right: np.ndarray) -> np.ndarray:
         """The smallest x with A x = b for columns b that agree with each other where equations depend on others."""
+        from scipy.linalg import solve_triangular
+
         first = self._rows[self._order[: self._rank]]
         inner = solve_triangular(
             self._r[: self._rank, : self._rank], right[first] / self._norms[first, None], trans="T"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 from .solution import Solution
 
@@ -16,6 +15,8 @@ def write_adams_results(path: Path, solution: Solution) -> None:
 
     An entity is what stands before the last dot of a channel's name, a component what stands behind it.
     """
+    from xml.sax.saxutils import quoteattr
+
     with path.open("w", encoding="utf-8") as file:
         file.write('<?xml version="1.0" encoding="UTF-8"?>\n')
         file.write(f'<Results xmlns="{NAMESPACE}">\n<Analysis name={quoteattr(solution.name or "run")}>\n')
@@ -30,6 +31,8 @@ def write_adams_results(path: Path, solution: Solution) -> None:
 
 
 def _entities(solution: Solution) -> Iterator[str]:
+    from xml.sax.saxutils import quoteattr
+
     for number, channel in enumerate(solution.channels, start=2):
         entity, _, component = channel.rpartition(".")
         yield (

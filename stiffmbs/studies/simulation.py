@@ -12,9 +12,12 @@ from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, InputError
 from ..jobs.run import Job, Runnable, data_of, prepare
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
+from ..jobs.taken_again import CREPT, exactly, relaxed
 from ..results.channels import channels_of, turns_of
 from ..results.saved_state import TURNS, SavedState
 from ..solve.algebraic_states import failure
+from ..solve.error_control.relaxation import creep_at
+from ..solve.events.restart import restarted
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers
@@ -24,6 +27,8 @@ OWN_INPUTS = "inputs"
 """The section of a scene with its inputs."""
 INPUT = "simulation/input/"
 """Before the names of inputs in files of saved simulations."""
+LOOK = 64
+"""Steps between two looks for creep of relaxed constraints, besides steps 1, 2, 4, 8, ..."""
 
 
 @takes_settings
@@ -93,6 +98,7 @@ class Simulation:
         job.dynamics.forget_pivots()
         self.t = job.grid.start
         self._stepper = stepper_of(job, job.start, self.t)
+        self._steps, self._relaxed = 0, relaxed(job)
         self._places = self._places_of_bodies()
         self._known: dict[str, float] | None = None
 
@@ -135,8 +141,26 @@ class Simulation:
         if inputs:
             self.set_inputs(inputs)
         end = self.t + dt
-        self._stepper.advance(end)
+        self._steps += 1
+        if self._relaxed and (self._steps % LOOK == 0 or self._steps & (self._steps - 1) == 0):
+            self._advance_without_creep(end)
+        else:
+            self._stepper.advance(end)
         self.t, self._known = end, None
+
+    def _advance_without_creep(self, end: float) -> None:
+        """Go on to a later time; once more from here and with exact constraints, now and later, where the relaxed ones creep."""
+        q, u = self.q, self.u
+        self._stepper.advance(end)
+        dynamics, settings = self._job.dynamics, self._job.settings
+        with dynamics.state.unchanged():
+            dynamics.state.q[:] = self._stepper.q
+            creep = creep_at(dynamics, end, self._stepper.u, settings)
+        if creep > CREPT:
+            self._relaxed = False
+            self._stepper = stepper_of(exactly(self._job), restarted(dynamics, self.t, q, u), self.t)
+            self._places = self._places_of_bodies()
+            self._stepper.advance(end)
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
         """Values of inputs from now on; those of others stay.

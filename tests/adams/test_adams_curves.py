@@ -75,10 +75,24 @@ def test_a_bead_goes_round_a_closed_wire(turn):
     np.testing.assert_allclose(found["energy.total"], found["energy.total"][0], atol=1e-6)
 
 
+def test_a_bead_slides_along_a_wire_that_is_bent_in_space():
+    points = np.column_stack([X, 60 * np.sin(X / 150), Z])
+    found = stiffmbs.run(read_adams(dataset(points, first=points[2])), duration=0.5, points=26, rtol=1e-10)
+    wire = CubicSpline(X / 1000, points[:, 1:] / 1000)
+
+    def rates(t, y):
+        slope, bend = wire(y[0], 1), wire(y[0], 2)
+        return [y[1], -(slope @ bend * y[1] ** 2 + G * slope[1]) / (1 + slope @ slope)]
+
+    own = solve_ivp(rates, (0, 0.5), [X[2] / 1000, 0], t_eval=found.time, rtol=1e-12, atol=1e-12).y[0]
+    place = (np.column_stack([found[f"PART_2.{axis}"] for axis in "xyz"]) - [0.1, 0.2, 0.3]) @ TURN
+    np.testing.assert_allclose(place, np.column_stack([own, wire(own)]), atol=1e-4)
+
+
 @pytest.mark.parametrize(
     ("points", "sort", "message"),
     [
-        (np.column_stack([X, np.abs(X) ** 1.5 / 99, Z]), "OPEN", "found a curve that leaves its plane by"),
+        (ring(1) + [[0, 9 * (-1) ** k, 0] for k in range(25)], "CLOSED", "found a closed curve that leaves its plane by"),
         (np.column_stack([X[[0, 5, 3, 8, 9]], 0 * X[:5], X[:5]]), "OPEN", "found an open curve that turns back"),
         (ring(1)[:-1], "CLOSED", "found a first and a last point .* m apart in the closed CURVE/7, expected one point"),
         (ring(1)[:3], "OPEN", "found MATRIX = 8 of CURVE/7, expected 4 rows or more of x, y and z"),

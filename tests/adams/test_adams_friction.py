@@ -217,10 +217,12 @@ def test_without_its_joint_there_is_no_friction(tmp_path):
     assert not stiffmbs.load_scene(tmp_path / "trial.adm").forces
 
 
-def test_friction_arguments_of_old_joints_are_named():
-    text = PENDULUM.replace("JOINT/1, REVOLUTE", "JOINT/1, REVOLUTE, MUSTAT=0.1, DELTA_V=1, INNER_RADIUS=2")
-    with pytest.raises(InputError, match="JOINT/1: found MUSTATIC, friction of old versions, expected a FRICTION"):
-        read_adams(f"a\nPART/1, GROUND\n{text}END\n")
+def test_friction_of_old_joints_is_refused_where_it_acts():
+    text = PENDULUM.replace("JOINT/1, REVOLUTE", "JOINT/1, REVOLUTE, {}DELTA_V=1, INNER_RADIUS=2, MAXIMUM_DEF=0.01")
+    with pytest.raises(InputError, match=r"JOINT/1: found MU_STAT_ROT = 0\.1, friction of old versions whose law"):
+        read_adams("a\nPART/1, GROUND\n" + text.format("MU_STAT_R=0.1, MU_DYN_ROT=0, ") + "END\n")
+    for off in ("MU_STAT_ROT=0, MU_DYN_ROT=0, ", "FRICTION=OFF, MU_STAT_ROT=0.1, "):
+        assert not read_adams("a\nPART/1, GROUND\n" + text.format(off) + "END\n").forces
 
 
 @pytest.mark.long

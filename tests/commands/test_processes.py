@@ -81,3 +81,25 @@ def test_a_thousand_seconds_of_the_pendulum_keep_to_the_constraints(examples):
     solution = stiffmbs.run(scene, duration=1000, points=2001, rtol=1e-8)
     assert solution["constraint.position"].max() < 1e-10
     assert solution.energy_drift() < 1e-2
+
+
+ENDING = """
+import atexit, sys
+sys.argv[0] = "stiffmbs"
+from stiffmbs import __main__
+from stiffmbs.commands import main
+
+def command():
+    atexit.register(print, "registered later")
+    print("printed")
+    {end}
+
+main.main = command
+__main__.start()
+"""
+
+
+@pytest.mark.parametrize(("end", "status"), [("sys.exit(3)", 3), ("raise ValueError", 1)])
+def test_the_command_ends_with_its_status_when_all_that_was_registered_has_run_and_is_printed(end, status):
+    done = subprocess.run([sys.executable, "-c", ENDING.format(end=end)], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (status, "printed\nregistered later\n"), done.stderr

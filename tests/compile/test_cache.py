@@ -12,6 +12,7 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import spatial
+from stiffmbs.cache import entries as kept
 from stiffmbs.commands.main import main
 from stiffmbs.compile import record
 from stiffmbs.compile.kind import sorted_out
@@ -31,7 +32,7 @@ SOURCE = "def twice(x):\n    return 2.0*x\n"
 
 @pytest.fixture
 def directory(tmp_path, monkeypatch):
-    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(tmp_path))
     return tmp_path
 
 
@@ -54,7 +55,7 @@ def test_a_damaged_entry_is_none(directory):
 @pytest.mark.parametrize("place", ["/dev/null/nowhere", "a file"])
 def test_where_nothing_can_be_written_all_works_but_nothing_is_kept(directory, monkeypatch, place):
     (directory / "a file").write_text("of the user's")
-    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(directory / place))
+    monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(directory / place))
     cache.write(NAME, b"content")
     assert cache.read(NAME) is None
     machine._compiled_source.cache_clear()
@@ -113,7 +114,7 @@ def test_clearing_removes_entries_of_all_versions_and_nothing_else(directory):
     cache.write(f"record-{'1' * 40}", b"{}")
     other = directory / f"entries-{'0' * 12}"
     other.mkdir()
-    for entry in (other / NAME, directory / ("a" * 40), cache.own_directory() / f"{cache.PART}x"):
+    for entry in (other / NAME, directory / ("a" * 40), cache.own_directory() / f"{kept.PART}x"):
         entry.write_bytes(b"of another version, or left half written")
     of_the_user = directory / "notes.txt"
     of_the_user.write_text("keep")
@@ -168,7 +169,7 @@ def loaded_by_a_run(scene, solver, directory, tmp_path):
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path, solver):
     stiffmbs.run(examples / "cart_pendulum.yaml", duration=0.1, solver=solver)
-    assert loaded_by_a_run(examples / "cart_pendulum.yaml", solver, cache.cache_directory(), tmp_path) == "[]"
+    assert loaded_by_a_run(examples / "cart_pendulum.yaml", solver, kept.cache_directory(), tmp_path) == "[]"
 
 
 @pytest.mark.long

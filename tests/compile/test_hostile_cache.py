@@ -8,9 +8,10 @@ import sys
 
 import pytest
 
+from stiffmbs.cache import entries as kept
+from stiffmbs.cache.own_files import NotOwnError, check_folder, read_own
 from stiffmbs.compile.machine import cache
 from stiffmbs.compile.machine import compiler as machine
-from stiffmbs.compile.machine.own_files import NotOwnError, check_folder, read_own
 
 NAME, OTHER = f"kernel-{'0' * 40}", f"kernel-{'1' * 40}"
 TWICE, THRICE = "def f(x):\n    return 2.0*x\n", "def f(x):\n    return 3.0*x\n"
@@ -18,10 +19,10 @@ TWICE, THRICE = "def f(x):\n    return 2.0*x\n", "def f(x):\n    return 3.0*x\n"
 
 @pytest.fixture
 def directory(tmp_path, monkeypatch):
-    monkeypatch.setenv(cache.DIRECTORY_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(tmp_path / "cache"))
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
-    cache._tell.cache_clear()
+    kept._tell.cache_clear()
     return tmp_path / "cache"
 
 
@@ -40,7 +41,7 @@ def test_an_entry_counts_in_its_own_place_alone(directory):
 def test_an_entry_of_another_user_s_secret_does_not_count(directory):
     cache.write(NAME, b"content")
     entry = (cache.own_directory() / NAME).read_bytes()
-    (directory / cache.SECRET).unlink()
+    (directory / kept.SECRET).unlink()
     cache.write(OTHER, b"content")
     (cache.own_directory() / NAME).write_bytes(entry)
     assert cache.read(NAME) is None
@@ -52,7 +53,7 @@ def test_the_secret_is_for_the_user_alone(directory, monkeypatch):
         cache.write(NAME, b"content")
     finally:
         os.umask(before)
-    secret = directory / cache.SECRET
+    secret = directory / kept.SECRET
     assert secret.stat().st_mode & 0o077 == 0
     assert directory.stat().st_mode & 0o077 == 0
     secret.chmod(0o644)

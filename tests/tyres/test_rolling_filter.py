@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from stiffmbs import InputError
-from stiffmbs.describe.roads.rolling_filter import rolled
+from stiffmbs.describe.roads.rolling_filter import heights_of, rolled
 from stiffmbs.describe.table import Table
-from stiffmbs.roads import TableRoad
+from stiffmbs.roads import CosineBump, FlatRoad, FormulaRoad, Iso8608Road, Road, SineSweep, StepRoad, TableRoad
+from stiffmbs.spatial import VerticalTyre
+
+from .wheels import reported, wheel
 
 RADIUS = 0.3
 
@@ -52,5 +55,67 @@ def test_a_road_has_the_filter():
 
 
 def test_a_road_of_too_many_radii_is_refused():
-    with pytest.raises(InputError, match="expected a road of at most 800 radii"):
+    with pytest.raises(InputError, match="expected a road of at most 2000 radii"):
         rolled(Table(table=((0, 0), (1000, 0))), 0.3)
+
+
+def rolled_height(road, x):
+    """What a wheel sees of a road with the filter, and the largest over a fine profile by the definition."""
+    at, found = np.array(road.in_equations()["rolled"].table).T
+    s = np.linspace(-RADIUS, RADIUS, 60001)
+    return np.interp(x, at, found), np.max(road.profile_heights(x + s) + np.sqrt(RADIUS**2 - s**2)) - RADIUS
+
+
+@pytest.mark.parametrize(
+    "road",
+    [
+        StepRoad(start=5, length=0.05, rise=0.1, filter_radius=RADIUS),
+        StepRoad(start=5, length=0.05, rise=-0.1, filter_radius=RADIUS),
+        CosineBump(start=5, length=0.2, crest=-0.05, filter_radius=RADIUS),
+        SineSweep(start=4.5, length=2, amplitude=0.02, first_wavelength=1, last_wavelength=0.2, filter_radius=RADIUS),
+        FormulaRoad(z="0.03*sin(20*x) + step(x, 4.9, 0, 5, 0.02)", first=3, last=8, filter_radius=RADIUS),
+    ],
+    ids=lambda road: road.kind,
+)
+def test_roads_by_equations_have_the_filter(road):
+    for x in (4.0, 4.85, 4.95, 5.1, 5.3, 6.9):
+        found, expected = rolled_height(road, x)
+        assert found == pytest.approx(expected, abs=6e-5)
+
+
+def test_tracks_of_a_random_road_have_the_filter():
+    road, plain = (Iso8608Road(roughness="E", length=20, filter_radius=r).in_equations() for r in (RADIUS, None))
+    at, found = np.array(road["left"].table).T
+    profile = Table.model_construct(table=plain["left"].table, ends="periodic", lines=False, akima=False)
+    s = np.linspace(-RADIUS, RADIUS, 20001)
+    expected = np.max(heights_of(profile, 7.3 + s) + np.sqrt(RADIUS**2 - s**2)) - RADIUS
+    assert np.interp(7.3, at, found) == pytest.approx(expected, abs=2e-5)
+    assert "rolled" not in FlatRoad(filter_radius=RADIUS).in_equations()
+
+
+@pytest.mark.parametrize(
+    ("road", "said"),
+    [
+        (lambda: FormulaRoad(z="0.1*x", filter_radius=0.3), "expected all three or none"),
+        (lambda: FormulaRoad(z="0.1*y", first=0, last=1, filter_radius=0.3), "expected a formula of x alone"),
+        (lambda: FormulaRoad(z="x", first=2, last=1, filter_radius=0.3), "expected it behind first = 2 m"),
+        (lambda: Dunes(filter_radius=0.3), "without an extent"),
+    ],
+)
+def test_what_the_filter_needs_to_know(road, said):
+    with pytest.raises(InputError, match=said):
+        road()
+
+
+class Dunes(Road):
+    """A road of the user's own, that goes on for ever."""
+
+    kind = "endless_dunes"
+
+
+def test_a_wheel_climbs_a_filtered_kerb():
+    """It stands a hand before the kerb, on the circle about its edge."""
+    kerb = StepRoad(start=0.1, length=0.001, rise=0.05, filter_radius=RADIUS)
+    rise = 0.05 + math.sqrt(RADIUS**2 - 0.1**2) - RADIUS
+    found = reported(wheel(VerticalTyre(i="wheel", radius=0.3, stiffness=1e5, road=kerb), 0.3))
+    assert found["deflection"] == pytest.approx(rise, rel=0.15)  # along the slope's normal

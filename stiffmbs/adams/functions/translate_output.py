@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
 from ..statements.constraints import GeneralConstraint, Numbered
-from ..statements.curves import PointOnCurve
+from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
@@ -21,7 +21,7 @@ ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX"
 ANGLES = ("PSI", "THETA", "PHI")
 ELEMENTS = {
     **{name: name for name in (
-        "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR", "PTCV",
+        "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR", "PTCV", "CVCV",
     )},
     "VTORQ": "VTORQUE", "SPDP": "SPRINGDAMPER", "BUSH": "BUSHING",
 }  # fmt: skip
@@ -128,7 +128,7 @@ class OutputTranslation(Translation):
         if isinstance(found, GeneralConstraint):
             first, *others = (*markers_of(found, self.mechanism), None)
             return first, tuple(others)
-        if isinstance(found, VectorForce | PointOnCurve):
+        if isinstance(found, VectorForce | PointOnCurve | CurveOnCurve):
             return found.i, (found.floating,)
         if isinstance(found, Numbered) and found.keyword != "REQUEST":
             return getattr(found, "i", None), (getattr(found, "j", None),)
@@ -151,7 +151,7 @@ class OutputTranslation(Translation):
     @staticmethod
     def _term(component: str, found: Numbered, element: str, on_j: bool, way: str) -> ast.expr:
         """What one element does to marker I or J; a floating marker is always where I is."""
-        floats = isinstance(found, VectorForce | PointOnCurve) and on_j
+        floats = isinstance(found, VectorForce | PointOnCurve | CurveOnCurve) and on_j
         owner = name_of(element + (".j" if on_j and not floats else ""))
         value = call(component.lower(), owner, *([name_of(way)] if way else []))
         return times(value, -1.0) if floats and component[1] != "M" else value

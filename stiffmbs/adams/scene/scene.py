@@ -16,7 +16,7 @@ from ..statements.fault import of_each
 from .bodies import bodies, ground_markers
 from .bodies import notes as body_notes
 from .contacts import contacts
-from .curves import curves
+from .curves import curves, touching_bodies
 from .curves import notes as curve_notes
 from .forces import Forces
 from .friction import frictions
@@ -89,7 +89,10 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             *requests.notes,
         ],
     }
-    found |= {"bodies": bodies(mechanism), "markers": ground_markers(mechanism)}  # with the markers that formulas need
+    found |= {
+        "bodies": bodies(mechanism) | touching_bodies(mechanism),
+        "markers": ground_markers(mechanism),
+    }  # with the markers that formulas need
     found["tables"] = mechanism.tables
     found["stages"] = [{"until": conditions(dataset, mechanism.inputs)}] if dataset.sensors else []
     return {key: value for key, value in found.items() if value or key == "bodies"}

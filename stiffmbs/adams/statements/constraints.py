@@ -16,11 +16,12 @@ JOINT_KINDS = (
     "RACKPIN",
 )  # fmt: skip
 PRIMITIVES = ("ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
-OF_FRICTION = (
-    "MUSTATIC", "MUDYNAMIC", "DELTA_V", "MAXDEFORMATION", "INNER_RADIUS", "OUTER_RADIUS", "HEIGHT", "WIDTH", "PRELOAD_RADIAL",
-    "PRELOAD_AXIAL", "PRELOAD_X", "PRELOAD_Y",
+COEFFICIENTS = ("MU_DYN_ROT", "MU_STAT_ROT", "MU_DYN_TRANS", "MU_STAT_TRANS", "MUDYNAMIC", "MUSTATIC")
+WITHOUT_FRICTION = (
+    *COEFFICIENTS, "FRICTION", "DELTA_V", "MAXIMUM_DEFORMATION", "MAXDEFORMATION", "MAX_FRIC_ROT", "INNER_RADIUS",
+    "OUTER_RADIUS", "HEIGHT", "WIDTH", "PRELOAD_RADIAL", "PRELOAD_AXIAL", "PRELOAD_X", "PRELOAD_Y",
 )  # fmt: skip
-"""Arguments of a JOINT for friction in old versions of Adams, whose law is not published; FRICTION has taken their place."""
+"""Arguments of a JOINT for friction in old versions of Adams, which do nothing where it is off or its coefficients are zero."""
 COMPONENTS = ("X", "Y", "Z", "B1", "B2", "B3")
 ROTATIONAL, TRANSLATIONAL = "ROTATIONAL", "TRANSLATIONAL"
 Start = tuple[str, float | None, float | None]
@@ -131,13 +132,9 @@ class Gear(Numbered):
 
 def read_joint(statement: Statement, units: Units) -> Joint:
     """A joint between two markers."""
-    names = (*JOINT_KINDS, "I", "J", "PITCH", "PD", "IC", "ICROT", "ICTRAN", *OF_FRICTION)
+    names = (*JOINT_KINDS, "I", "J", "PITCH", "PD", "IC", "ICROT", "ICTRAN", *WITHOUT_FRICTION)
     found = Arguments(statement, "JOINT", names)
-    for name in OF_FRICTION:
-        if name in found:
-            raise found.fault(
-                f"found {name}, friction of old versions, expected a FRICTION statement", found.line(name)
-            )
+    _refuse_friction(found)
     kind = found.one_of(*JOINT_KINDS)
     if kind is None:
         raise found.fault(f"found no kind of joint, expected one of {', '.join(JOINT_KINDS)}")
@@ -149,6 +146,19 @@ def read_joint(statement: Statement, units: Units) -> Joint:
         found.ident(), statement.line, statement.alias, "JOINT", kind, found.required("I"), found.required("J"),
         (pitch or 0.0) * units.length, (diameter or 0.0) * units.length, tuple(_starts(found, kind, units)),
     )  # fmt: skip
+
+
+def _refuse_friction(found: Arguments) -> None:
+    """Refuse friction of old versions, whose law is not published."""
+    if (found.text("FRICTION") or "").strip().upper() == "OFF":
+        return
+    for name in COEFFICIENTS:
+        if found.number(name):
+            raise found.fault(
+                f"found {name} = {found.text(name)}, friction of old versions whose law is not published, expected a "
+                "FRICTION statement",
+                found.line(name),
+            )
 
 
 _STARTS = {

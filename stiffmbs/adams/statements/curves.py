@@ -1,4 +1,4 @@
-"""Curves by points, and points that stay on them.  MSC Adams/Solver, CURVE and PTCV statements."""
+"""Curves by points, points that stay on them, and curves that touch.  MSC Adams/Solver, CURVE, PTCV and CVCV statements."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from .units import Units
 
 CUBIC = 4
 """The usual ORDER of a curve: one more than the degree of its pieces."""
-WITHOUT_EFFECT = ("DISPLACEMENT", "NODISPLACEMENT", "NOVELOCITY")
+WITHOUT_EFFECT = ("DISPLACEMENT", "NODISPLACEMENT", "NOVELOCITY", "ICM")
+PAIR_WITHOUT_EFFECT = ("IDISPLACEMENT", "JDISPLACEMENT", "IICM", "JICM")
 _VELOCITIES = ("VELOCITY", "VX", "VY", "VZ")
+_PAIR_VELOCITIES = tuple(side + name for side in "IJ" for name in _VELOCITIES)
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,16 @@ class PointOnCurve(Numbered):
     i: int
     floating: int
     axes: int
+
+
+@dataclass(frozen=True)
+class CurveOnCurve(Numbered):
+    """Two curves in the axes of a marker each touch; `i` and `floating` are the floating markers where they do."""
+
+    curves: tuple[int, int]
+    axes: tuple[int, int]
+    i: int
+    floating: int
 
 
 def read_curve(statement: Statement, units: Units) -> SpaceCurve:
@@ -66,10 +78,23 @@ def _unread(found: Arguments) -> str:
 def read_point_on_curve(statement: Statement, units: Units) -> PointOnCurve:
     """A point that stays on a curve."""
     found = Arguments(statement, "PTCV", ("CURVE", "I", "JFLOAT", "RM", *WITHOUT_EFFECT, *_VELOCITIES))
-    for name in _VELOCITIES:
-        if name in found:
-            raise found.fault(f"found {name}, expected the velocities of the parts instead", found.line(name))
+    _refuse(found, _VELOCITIES)
     return PointOnCurve(
         found.ident(), statement.line, statement.alias, "PTCV", found.required("CURVE"), found.required("I"),
         found.required("JFLOAT"), found.required("RM"),
     )  # fmt: skip
+
+
+def read_curve_on_curve(statement: Statement, units: Units) -> CurveOnCurve:
+    """Two curves that touch."""
+    names = tuple(side + name for name in ("CURVE", "FLOAT", "RM") for side in "IJ")
+    found = Arguments(statement, "CVCV", (*names, *PAIR_WITHOUT_EFFECT, *_PAIR_VELOCITIES))
+    _refuse(found, _PAIR_VELOCITIES)
+    first, second, i, j, own, other = (found.required(name) for name in names)
+    return CurveOnCurve(found.ident(), statement.line, statement.alias, "CVCV", (first, second), (own, other), i, j)
+
+
+def _refuse(found: Arguments, names: tuple[str, ...]) -> None:
+    for name in names:
+        if name in found:
+            raise found.fault(f"found {name}, expected the velocities of the parts instead", found.line(name))

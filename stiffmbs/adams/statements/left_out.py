@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from .constraints import WITHOUT_FRICTION
+from .curves import PAIR_WITHOUT_EFFECT as PAIR_STARTS
 from .curves import WITHOUT_EFFECT as CURVE_STARTS
 from .sensor import WITHOUT_EFFECT
 
@@ -11,6 +13,7 @@ _NO_STATICS = "in statics states find their own equilibrium"
 LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     "PART": {"MATERIAL": "masses are given", "EXACT": "assembly may move every part"},
     "POINT_MASS": {"EXACT": "assembly may move every part"},
+    "JOINT": dict.fromkeys(WITHOUT_FRICTION, "of friction of old versions, which is off"),
     "REQUEST": {
         "COMMENT": "text", "TITLE": "text", "CUNITS": "text", "CLABELS": "text", "RESULTS_NAME": "text",
         "ROUTINE": "a user's own subroutine",
@@ -22,6 +25,7 @@ LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     },
     "CURVE": {"MINPAR": "of a subroutine", "MAXPAR": "of a subroutine"},
     "PTCV": dict.fromkeys(CURVE_STARTS, "parts start where they are drawn"),
+    "CVCV": dict.fromkeys(PAIR_STARTS, "curves touch where they are drawn nearest"),
     "SENSOR": dict.fromkeys(WITHOUT_EFFECT, "no effect on results"),
     "DIFF": {"STATIC_HOLD": _NO_STATICS},
     "LSE": {"STATIC_HOLD": _NO_STATICS},

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...cache.entries import DIRECTORY_VARIABLE
 from ...compile.compile_model import compile_model
 from ...compile.group import Group
 from ...compile.kernels import compile_usual
 from ...compile.kind import sorted_out
-from ...compile.machine.cache import DIRECTORY_VARIABLE
 from ...compile.state import State
 from ...compile.system import System
 from ...jobs.usual_elements import usual_elements

@@ -1,84 +1,30 @@
 """What was derived and compiled, kept on disk: written once per source and machine, read back without a compiler.
 
-An entry is one file: a message authentication code, then the content.  It is written beside its place and moved there in
-one step, so that a crash or a second process can leave no half of it.  The code is an HMAC (RFC 2104) of the entry's name,
-its content, and what all entries depend on, under a secret of the user's: an entry that is damaged, stands in another's
-place, or was made by someone else does not match, and is made again.  Folders and files that others may write are refused
-with a note.  Entries of one version of the package on one kind of machine share a directory of their own.
+Entries of one version of the package on one kind of machine share a folder of their own.
 """
 
 from __future__ import annotations
 
-import hashlib
-import hmac
-import logging
-import os
-import secrets
-import tempfile
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from .own_files import NotOwnError, check_folder, read_own
+from ...cache.entries import Folder, digest, tag_of
 
 FORMAT = "6"
 """Changed whenever the meaning of an entry's content changes."""
-DIRECTORY_VARIABLE = "STIFFMBS_CACHE"
 RECORD, KERNEL, ROUTINE = "record", "kernel", "routine"
 """Kinds of entries: what was derived of a kind of element, its machine code, and that of solvers."""
-PART = ".part-"
-"""How the name of a file begins that is still being written."""
-SECRET = "secret"
-"""The file that holds the user's secret."""
-SECRET_SIZE = CODE_SIZE = 32
-NOWHERE = Path(os.devnull) / "nowhere"
-"""A directory in which nothing can be kept."""
-
-
-def cache_directory() -> Path:
-    """Where compiled kernels are kept: the variable STIFFMBS_CACHE, or the user's cache directory.
-
-    A directory that others may write to is refused with a note, and the user's cache directory serves in its place.
-    """
-    chosen = os.environ.get(DIRECTORY_VARIABLE)
-    if chosen:
-        if not (fault := _fault(Path(chosen))):
-            return Path(chosen)
-        _tell(
-            f"{DIRECTORY_VARIABLE}: the cache {chosen} is not used, as {fault}; expected a folder of your own (chmod go-w)"
-        )
-    from platformdirs import user_cache_path
-
-    usual = user_cache_path("stiffmbs", appauthor=False)
-    if not (fault := _fault(usual)):
-        return usual
-    _tell(f"the cache {usual} is not used, as {fault}; expected a folder of your own (chmod go-w)")
-    return NOWHERE
-
-
-def _fault(directory: Path) -> str:
-    """Why the files in a directory cannot be trusted; nothing where they can."""
-    try:
-        check_folder(directory)
-    except NotOwnError as fault:
-        return str(fault)
-    return ""
-
-
-@cache
-def _tell(note: str) -> None:
-    """Say once, on standard error where the caller has set up no logging, why something is compiled anew."""
-    logging.getLogger(__name__).warning("stiffmbs: note: %s", note)
+FOLDER = "entries"
 
 
 def own_directory() -> Path:
     """The entries of this version of the package on this machine."""
-    return cache_directory() / f"entries-{_own_tag()}"
+    return _own().path
 
 
 @cache
-def _own_tag() -> str:
-    """A name for what all entries depend on besides their sources: the package, processor and LLVM."""
+def _own() -> Folder:
+    """The folder of all that depends on the package, processor and LLVM besides its source."""
     from importlib.metadata import version
 
     import llvmlite.binding as llvm
@@ -91,83 +37,19 @@ def _own_tag() -> str:
         llvm.get_host_cpu_features().flatten(),
         version("llvmlite"),
     )
-    return _digest(*parts)[:12]
+    return Folder(FOLDER, tag_of(*parts))
 
 
 def name_of(kind: str, *parts: str) -> str:
     """The name of the entry for a source."""
-    return f"{kind}-{_digest(*parts)}"
-
-
-def _digest(*parts: str) -> str:
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:40]
+    return f"{kind}-{digest(*parts)}"
 
 
 def read(name: str) -> bytes | None:
-    """The content of an entry, or None where there is none that is whole, the user's own, and of this name."""
-    directory = own_directory()
-    if (fault := _fault(directory)) or (secret := _secret(directory.parent)) is None:
-        if fault:
-            _tell(f"the cache {directory} is not used, as {fault}; expected a folder of your own (chmod go-w)")
-        return None
-    try:
-        stored = read_own(directory / name)
-    except NotOwnError as fault:
-        _tell(f"the cache's entry {directory / name} is made anew, as {fault}; expected a file of your own")
-        return None
-    if stored is None:
-        return None
-    code, content = stored[:CODE_SIZE], stored[CODE_SIZE:]
-    return content if hmac.compare_digest(_code(secret, name, content), code) else None
+    """The content of an entry; see `Folder.read`."""
+    return _own().read(name)
 
 
 def write(name: str, content: bytes) -> None:
-    """Keep an entry; a directory that cannot be written to costs a compilation at the next run and nothing else."""
-    directory = own_directory()
-    with suppress(OSError):
-        directory.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        directory.mkdir(mode=0o700, exist_ok=True)
-        secret = None if _fault(directory) else _secret(directory.parent) or _new_secret(directory.parent)
-        if secret is not None:
-            _put(directory / name, _code(secret, name, content) + content)
-
-
-def _code(secret: bytes, name: str, content: bytes) -> bytes:
-    return hmac.digest(secret, b"\0".join((_own_tag().encode(), name.encode(), content)), "sha256")
-
-
-def _secret(directory: Path) -> bytes | None:
-    """The user's secret; None where there is none that only the user can read."""
-    try:
-        found = read_own(directory / SECRET, secret=True)
-    except NotOwnError as fault:
-        _tell(f"the entries of the cache are made anew, as of its file {directory / SECRET} {fault}")
-        return None
-    return found if found is not None and len(found) == SECRET_SIZE else None
-
-
-def _new_secret(directory: Path) -> bytes | None:
-    """A new secret, or that of another process which was faster."""
-    with suppress(FileNotFoundError, IsADirectoryError):
-        (directory / SECRET).unlink()
-    handle, part = tempfile.mkstemp(dir=directory, prefix=PART)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(secrets.token_bytes(SECRET_SIZE))
-        with suppress(FileExistsError):
-            os.link(part, directory / SECRET)
-    finally:
-        os.unlink(part)
-    return _secret(directory)
-
-
-def _put(path: Path, content: bytes) -> None:
-    """Write a file beside its place, for the user alone, and move it there."""
-    handle, part = tempfile.mkstemp(dir=path.parent, prefix=PART)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.replace(part, path)
-    except BaseException:
-        os.unlink(part)
-        raise
+    """Keep an entry; see `Folder.write`."""
+    _own().write(name, content)

@@ -7,13 +7,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from .cache import KERNEL, PART, RECORD, ROUTINE, SECRET, cache_directory, own_directory
+from ...cache.entries import PART, SECRET, cache_directory
+from ...describe.files.read_before import FILE, folder_of_files
+from .cache import FOLDER, KERNEL, RECORD, ROUTINE, own_directory
 
-KINDS = (RECORD, KERNEL, ROUTINE)
+KINDS = (RECORD, KERNEL, ROUTINE, FILE)
 OTHERS = "other"
 _ENTRY = re.compile(rf"({'|'.join(KINDS)})-[0-9a-f]{{40}}|{re.escape(PART)}.*|[0-9a-f]{{40}}")
 """Names of entries, of files that a process left half written, and of the entries of earlier versions."""
-_DIRECTORY = re.compile(r"entries-[0-9a-f]{12}")
+_DIRECTORY = re.compile(rf"({FOLDER}|{folder_of_files().kind})-[0-9a-f]{{12}}")
 
 
 @dataclass(frozen=True)
@@ -26,10 +28,11 @@ class Stored:
 
 def stored() -> dict[str, Stored]:
     """What is kept, by kind; under `OTHERS` what this version on this machine does not use."""
+    folders = (own_directory(), folder_of_files().path)
     sizes: dict[str, list[int]] = {kind: [] for kind in (*KINDS, OTHERS)}
     for path in _files():
         kind = path.name.partition("-")[0]
-        own = path.parent == own_directory() and kind in KINDS
+        own = path.parent in folders and kind in KINDS
         sizes[kind if own else OTHERS].append(_size(path))
     return {kind: Stored(len(found), sum(found)) for kind, found in sizes.items()}
 

@@ -9,8 +9,9 @@ from typing import Any
 
 from ...errors import InputError
 from .quoted import quoted, written
+from .read_before import read_yaml_file
 from .text_file import STANDARD_INPUT, file_text
-from .yaml_text import line_and_depth, line_of, read_yaml
+from .yaml_text import line_and_depth, line_of
 
 INCLUDE, PARTS = "include", "parts"
 MOST_FILES = 100
@@ -68,7 +69,7 @@ def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Call
         For a file that cannot be read, that includes itself, or that has a name twice.
     """
     sources = Sources([(source, text, ())])
-    found = read_yaml(text, source)
+    found = read_yaml_file(text, source, file)
     if isinstance(found, dict):
         own = (file.resolve(),) if file else ()
         found = _Including(sources).whole(found, source, file.parent if file else Path(), own, ())
@@ -115,7 +116,7 @@ class _Including:
         _check_file(file, where)
         text = file_text(file)
         self.sources.texts.append((str(file), text, path))
-        found = read_yaml(text, str(file))
+        found = read_yaml_file(text, str(file), file)
         if not isinstance(found, dict):
             raise InputError(
                 f"{file}: found {'nothing' if found is None else written(found)}, expected a mapping of sections"

@@ -10,6 +10,8 @@ from ...errors import InputError
 from .quoted import quoted
 from .yaml_content import check_content
 
+_DECIMAL = re.compile(r"-?(0|[1-9][0-9]{0,14})(\.[0-9]{1,15})?")
+"""Numbers that are read alike by YAML and Python."""
 _OTHER_ENDS = re.compile("[\x85\u2028\u2029]")
 """What ended a line in YAML 1.1; since 1.2 that is LF and CR alone."""
 
@@ -28,6 +30,8 @@ def read_yaml(text: str, source: str) -> Any:
     InputError
         When it is not YAML, holds a name twice, or is too large to be a scene; names the line.
     """
+    if _DECIMAL.fullmatch(text):
+        return float(text) if "." in text else int(text)
     from ruamel.yaml import YAML
     from ruamel.yaml.error import MarkedYAMLError
 

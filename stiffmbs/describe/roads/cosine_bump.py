@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field
 
 from ..element import Symbolic
 from ..units import si
-from .road import Road, ramp
+from .road import Road, ramp, ramp_at
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class CosineBump(Road):
@@ -25,3 +28,11 @@ class CosineBump(Road):
         from sympy import Rational, cos, pi
 
         return r.crest * (1 - cos(2 * pi * ramp(x, r.start, r.length))) * Rational(1, 2)
+
+    def extent(self) -> tuple[float, float]:
+        return self.start, self.start + self.length
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        from numpy import cos, pi
+
+        return self.crest * (1 - cos(2 * pi * ramp_at(x, self.start, self.length))) / 2

@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ..element import Symbolic
-from ..units import si
 from .grid_file import AnyGrid
 from .road import Road, clipped
 from .rolling_filter import through_filter
@@ -24,9 +23,9 @@ class GridRoad(Road):
 
     file: AnyGrid = Field(description="the name of a file of heights, beside the scene")
 
-    filter_radius: si.PositiveLength | None = Field(
-        None, description="of a disc, m: the heights are those that it rolls on; those of the profile by default"
-    )
+    def extent(self) -> tuple[float, float]:
+        points = self.file.tables[0].table
+        return points[0][0], points[-1][0]
 
     def in_equations(self) -> dict[str, Any]:
         tables = tuple(through_filter(table, self.filter_radius) for table in self.file.tables)

@@ -13,6 +13,7 @@ from ..table import Table
 from ..units import si
 from .profile import two_tracks
 from .road import Road
+from .rolling_filter import through_filter
 
 if TYPE_CHECKING:
     import numpy as np
@@ -65,6 +66,9 @@ class Iso8608Road(Road):
             )
         return self
 
+    def extent(self) -> tuple[float, float]:
+        return 0.0, self.length
+
     def in_equations(self) -> dict[str, Any]:
         left, right = _tables(
             CLASSES.index(self.roughness),
@@ -76,6 +80,7 @@ class Iso8608Road(Road):
             self.coherence,
         )
         own = {name: getattr(self, name) for name in ("friction", "track", "start", "entry")}
+        left, right = (through_filter(table, self.filter_radius) for table in (left, right))
         return {**own, "left": left, "right": right}
 
     @staticmethod

@@ -26,9 +26,6 @@ class TableRoad(Road):
     left: Table | None = Field(None, description="height over x at y = track/2 and beyond")
     right: Table | None = Field(None, description="height over x at y = -track/2 and beyond")
     track: si.PositiveLength | None = Field(None, description="distance of the tracks left and right, m")
-    filter_radius: si.PositiveLength | None = Field(
-        None, description="of a disc, m: the heights are those that it rolls on; those of the profile by default"
-    )
 
     @field_validator("profile", "left", "right", mode="before")
     @classmethod
@@ -48,10 +45,14 @@ class TableRoad(Road):
             raise ValueError("found neither or both, expected a 'profile', or 'left', 'right' and 'track'")
         return self
 
+    def extent(self) -> tuple[float, float]:
+        tables = [table.table for table in (self.profile, self.left, self.right) if table is not None]
+        return min(table[0][0] for table in tables), max(table[-1][0] for table in tables)
+
     def in_equations(self) -> dict[str, Any]:
-        own = dict(super().in_equations())
-        filtered = {name: own[name] for name in ("profile", "left", "right") if own[name] is not None}
-        return {**own, **{name: through_filter(table, own["filter_radius"]) for name, table in filtered.items()}}
+        tables = {name: getattr(self, name) for name in ("profile", "left", "right")}
+        filtered = {name: table and through_filter(table, self.filter_radius) for name, table in tables.items()}
+        return {"friction": self.friction, "track": self.track, **filtered}
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -10,6 +10,11 @@ from ..element import Component, Symbolic
 from ..fields import typed
 from ..formula.field import FormulaOf
 from ..formula.formula import Formula
+from ..table import Table
+from ..units import si
+
+if TYPE_CHECKING:
+    import numpy as np
 
 OF_PLACE = ("x", "y"), ("length", "length")
 """The variables of a road's formulas: along and across, m."""
@@ -30,8 +35,13 @@ class Road(Component):
     kind: ClassVar[str] = ""
     level: ClassVar[bool] = False
 
+    rolled: ClassVar[Table | None] = None
+
     type: str = ""
     friction: Factor | None = Field(None, description="factor on the tyre's friction, of x and y; 1 by default")
+    filter_radius: si.PositiveLength | None = Field(
+        None, description="of a disc, m: the heights are those that it rolls on; those of the road by default"
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -39,15 +49,51 @@ class Road(Component):
         """Let the type be the class's kind."""
         return typed(cls.kind, found)
 
+    @model_validator(mode="after")
+    def _may_be_filtered(self) -> Road:
+        if self.filter_radius is not None and not self.level and self.extent() is None:
+            raise ValueError(
+                f"found filter_radius on a road '{self.kind}' without an extent, expected a road that states one"
+            )
+        return self
+
+    def extent(self) -> tuple[float, float] | None:
+        """The stretch of x, m, outside which the road goes on straight, for the rolling-radius filter; None: no such one."""
+        return None
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """Its heights, m, at places x, m, the same for all y, for the rolling-radius filter."""
+        raise NotImplementedError
+
+    def in_equations(self) -> dict[str, Any]:
+        """Its fields, and with `filter_radius` the table ``rolled`` of the heights that a disc rolls on."""
+        own = dict(super().in_equations())
+        radius, extent = own.pop("filter_radius"), self.extent()
+        if radius is None or extent is None:
+            return own
+        from .rolling_filter import rolled_profile
+
+        return {"friction": self.friction, "rolled": rolled_profile(self.profile_heights, extent, radius)}
+
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
         """The height of the road at x along and y across, m."""
         raise NotImplementedError
 
     @staticmethod
+    def surface(r: Symbolic, x: Any, y: Any) -> Any:
+        """The height that a wheel sees there, m: through the filter where the road has one."""
+        return r.height(x, y) if r.rolled is None else r.rolled(x)
+
+    @staticmethod
     def factor(r: Symbolic, x: Any, y: Any) -> Any:
         """The factor on friction there."""
         return 1 if r.friction is None else r.friction(x, y)
+
+
+def ramp_at(x: np.ndarray, start: float, length: float) -> np.ndarray:
+    """`ramp` of numbers."""
+    return ((x - start) / length).clip(0.0, 1.0)
 
 
 def ramp(x: Any, start: Any, length: Any) -> Any:

@@ -7,7 +7,8 @@ Captain, Boghani, Wormley, Analytical tire models for dynamic vehicle simulation
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 from ...errors import InputError
@@ -16,10 +17,14 @@ from ..table import Table
 if TYPE_CHECKING:
     import numpy as np
 
-FINE = 50
-"""Points on a radius: the heights are then exact to R/20000."""
+FINE, COARSE = 50, 20
+"""Points on a radius, and the fewest on a long road: the heights are then exact to R/20000 and R/3200."""
+BETWEEN = 8
+"""Parts of a step in which the profile of a short road is looked at, which its edges need."""
 MOST = 40000
 """Points of a profile."""
+BESIDE = 1.5
+"""Radii beside a profile from which on the disc doesn't touch it, and is on the straight road."""
 
 
 def through_filter(table: Table, radius: float | None) -> Table:
@@ -34,34 +39,55 @@ def rolled(table: Table, radius: float) -> Table:
     Raises
     ------
     InputError
-        When the profile is longer than 800 radii.
+        When the profile is longer than 2000 radii.
     """
     import numpy as np
-    from scipy.ndimage import grey_dilation
 
-    first, last = table.table[0][0], table.table[-1][0]
-    count = int(np.ceil((last - first) / radius * FINE))
-    if count > MOST:
-        raise InputError(
-            f"found a road of {last - first:g} m and a filter's radius of {radius:g} m, expected a road of at most "
-            f"{MOST // FINE} radii"
-        )
-    x, step = np.linspace(first, last, max(count, 2) + 1, retstep=True)
-    margin = int(np.floor(radius / step))
-    beside = step * np.arange(1, margin + 1)
-    heights = _heights(table, np.concatenate([first - beside[::-1], x, last + beside]))
-    disc = _disc(step * np.arange(-margin, margin + 1), radius)
-    centre = grey_dilation(heights, footprint=np.ones(len(disc)), structure=disc, mode="nearest")[
-        margin : margin + len(x)
-    ]
-    _take_in(centre, x, np.array(table.table), radius)
+    points = np.array(table.table)
+    x, centre = _centres(partial(heights_of, table), (points[0, 0], points[-1, 0]), radius)
+    _take_in(centre, x, points, radius)
     if table.ends == "periodic":
         centre[-1] = centre[0]
-    rows = zip(x.tolist(), (centre - radius).tolist(), strict=True)
-    periodic = table.ends == "periodic"
+    return _table(x, centre - radius, table.ends == "periodic")
+
+
+def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float) -> Table:
+    """The same of a profile given by a function, which goes on level beside its extent; errors as `rolled`."""
+    beside = BESIDE * radius
+    x, centre = _centres(heights, (extent[0] - beside, extent[1] + beside), radius)
+    return _table(x, centre - radius, periodic=False)
+
+
+def _table(x: np.ndarray, heights: np.ndarray, periodic: bool) -> Table:
+    rows = zip(x.tolist(), heights.tolist(), strict=True)
     return Table.model_construct(
         table=tuple(rows), ends="periodic" if periodic else "natural", lines=False, akima=not periodic
     )
+
+
+def _centres(
+    heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Places along an extent, and the height of the disc's centre there."""
+    import numpy as np
+    from scipy.ndimage import grey_dilation
+
+    first, last = extent
+    radii = (last - first) / radius
+    if radii * COARSE > MOST:
+        raise InputError(
+            f"found a road of {last - first:g} m and a filter's radius of {radius:g} m, expected a road of at most "
+            f"{MOST // COARSE} radii"
+        )
+    count = max(int(np.ceil(min(radii * FINE, MOST))), 2)
+    parts = min(max(MOST // count, 1), BETWEEN)
+    x, step = np.linspace(first, last, count * parts + 1, retstep=True)
+    margin = int(np.floor(radius / step))
+    beside = step * np.arange(1, margin + 1)
+    around = heights(np.concatenate([first - beside[::-1], x, last + beside]))
+    disc = _disc(step * np.arange(-margin, margin + 1), radius)
+    centre = grey_dilation(around, footprint=np.ones(len(disc)), structure=disc, mode="nearest")
+    return x[::parts], centre[margin : margin + len(x) : parts]
 
 
 def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, radius: float) -> None:
@@ -73,7 +99,7 @@ def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, radius: floa
         np.maximum(centre[begin:end], height + _disc(x[begin:end] - at, radius), out=centre[begin:end])
 
 
-def _heights(table: Table, x: np.ndarray) -> np.ndarray:
+def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     """The profile, which goes on straight or repeats as in the equations."""
     import numpy as np
     from scipy.interpolate import Akima1DInterpolator, CubicSpline

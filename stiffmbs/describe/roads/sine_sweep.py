@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field
 
 from ..element import Symbolic
 from ..units import si
-from .road import Road, ramp
+from .road import Road, ramp, ramp_at
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class SineSweep(Road):
@@ -34,3 +37,13 @@ class SineSweep(Road):
         s = ramp(x, r.start, r.length)
         first, last = 1 / r.first_wavelength, 1 / r.last_wavelength
         return r.amplitude * sin(2 * pi * r.length * (first * s + (last - first) * s**2 * Rational(1, 2)))
+
+    def extent(self) -> tuple[float, float]:
+        return self.start, self.start + self.length
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        from numpy import pi, sin
+
+        s = ramp_at(x, self.start, self.length)
+        first, last = 1 / self.first_wavelength, 1 / self.last_wavelength
+        return self.amplitude * sin(2 * pi * self.length * (first * s + (last - first) * s**2 / 2))

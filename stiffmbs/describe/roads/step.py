@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field
 
 from ..element import Symbolic
 from ..units import si
-from .road import Road, ramp
+from .road import Road, ramp, ramp_at
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class StepRoad(Road):
@@ -24,3 +27,10 @@ class StepRoad(Road):
     def height(r: Symbolic, x: Any, y: Any) -> Any:
         s = ramp(x, r.start, r.length)
         return r.rise * s**2 * (3 - 2 * s)
+
+    def extent(self) -> tuple[float, float]:
+        return self.start, self.start + self.length
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        s = ramp_at(x, self.start, self.length)
+        return self.rise * s**2 * (3 - 2 * s)

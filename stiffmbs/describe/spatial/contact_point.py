@@ -77,7 +77,7 @@ def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
 
     local = point if e.j is None else Matrix([(point - e.j.point).dot(axis) for axis in e.j.axes])
     x, y = e.variable(local[0]), e.variable(local[1])
-    height = e.named(e.road.height(x, y))
+    height = e.named(e.road.surface(x, y))
     slopes = e.named([e.slope(height, x), e.slope(height, y)])
     upright = e.named(1 / sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2))
     components = Matrix([-slopes[0] * upright, -slopes[1] * upright, upright])

@@ -1,12 +1,17 @@
-"""How far the relaxed formulation lets constraints creep."""
+"""How far the relaxed formulation, J u + C_t = E_lam lam, lets constraints creep: what is set for a run, and what a run shows."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...compile.system import System
 from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
+from ..dynamics import Dynamics, OutputRows
+from ..storage import blocks, release
+from ..trajectory import Trajectory
+from .tolerances import absolute_tolerances
 
 POSITION_CREEP, VELOCITY_CREEP = 1e-9, 1e-12
 """Seconds; measured on mechanisms of 1 kg and 1 m, where lam is 10 to 100 N: no effect on steps and errors."""
@@ -15,6 +20,36 @@ SHORT = 100
 (A chain of 1000 rods at rtol 1e-6: off by 4e-4 m without this, by the tolerance's own 1e-5 with it.)"""
 TIGHTEST, LOOSEST = 1e-3, 1e3
 """Bounds of the factor by which a tolerance other than 1e-8 changes the creep."""
+
+
+@dataclass(frozen=True)
+class Creep:
+    """What the projection takes off the velocities of a run, in tolerances of each.
+
+    Attributes
+    ----------
+    mean : float
+        Over the reported instants, of the largest at each: what reaches the motion grows with it.  A singular pose that is
+        passed raises it for an instant alone.
+    at_end : float
+        What the multipliers of the last instant let creep, by their size: a run may stop before its steps have followed.
+    velocity : str
+        The velocity that creeps most.
+    joint : str
+        The joint with the largest multiplier there.
+    """
+
+    mean: float
+    at_end: float
+    velocity: str
+    joint: str
+
+    def sentence(self) -> str:
+        """A clause on it."""
+        return (
+            f"under the forces in '{self.joint}' relaxed constraints (formulation SI2) let {self.velocity} creep by "
+            f"{max(self.mean, self.at_end):.2g} tolerances"
+        )
 
 
 def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
@@ -62,3 +97,47 @@ def _heaviest(system: System) -> np.ndarray:
     largest = system.mass.reshape(-1, of_body.n_u).max(axis=0)
     mass, inertia = largest[0], largest[of_body.linear :].max()
     return system.per_velocity(mass, inertia + mass * system.size**2)
+
+
+def creep_of(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings) -> Creep:
+    """The creep of a run whose reported states were brought back to the constraints.
+
+    Parameters
+    ----------
+    system : System
+    rows : OutputRows
+    trajectory : Trajectory
+        As integrated, at the instants of the rows and maybe later.
+    settings : RunSettings
+    """
+    count = len(rows.t)
+    absolute = absolute_tolerances(system, settings)[system.n_q :]
+    largest, total, row, velocity = 0.0, 0.0, 0, 0
+    for block in blocks(count):
+        off = _in_tolerances(trajectory.u[:count][block], rows.u[block], absolute, settings.rtol)
+        of_rows = off.max(axis=1)
+        total += float(of_rows.sum())
+        k = int(of_rows.argmax())
+        if of_rows[k] > largest:
+            largest, row, velocity = float(of_rows[k]), block.start + k, int(off[k].argmax())
+        release(rows.u, trajectory.u)
+    joint = system.equations[int(np.abs(rows.lam[row]).argmax())][0]
+    slip = creep_of_velocities(settings, system) * float(np.abs(rows.lam[-1]).max()) / float(system.mass.max())
+    return Creep(
+        total / count, slip / float(absolute.min()), system.name_of(velocity, system.of_body.velocities), joint
+    )
+
+
+def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings) -> float:
+    """What the projection takes off velocities u, in tolerances, at a state of the dynamics that it leaves on the constraints."""
+    state, system = dynamics.state, dynamics.system
+    state.u[:] = u
+    if dynamics.correct_velocities(t) < 0:
+        return 0.0
+    absolute = absolute_tolerances(system, settings)[system.n_q :]
+    return float(_in_tolerances(u, state.u, absolute, settings.rtol).max())
+
+
+def _in_tolerances(before: np.ndarray, after: np.ndarray, absolute: np.ndarray, rtol: float) -> np.ndarray:
+    size: np.ndarray = np.abs(after - before) / (absolute + rtol * np.abs(after))
+    return size

@@ -1,11 +1,17 @@
-"""Point on a smooth curve of a plane in space: a curved slot, or a cam with a pointed follower."""
+"""Point on a smooth curve in space: a curved slot or wire, or a cam with a pointed follower."""
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import Field, model_validator
 
 from ...element import Symbolic
+from ...formula.field import FormulaOf
+from ...formula.formula import Formula
 from ...joints.point_on_curve import Curve
+from ...table import Table
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
 
@@ -17,18 +23,34 @@ class PointOnCurve(Curve[Marker]):
     direction theta from x; a slot ``y`` = Y(x) has y - Y(x) = 0, a cam ``radius`` = R(theta) has rho - R(theta) = 0, R
     repeating after every turn.  Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
+    A slot may leave the plane by ``z`` = Z(x), as a bent wire does; else z = 0.
+
     The curve should have no breakpoints.  The reaction is across the curve, without friction, and may pull: the point
-    cannot lift off.  Of Adams' PTCV it covers the flat curves.
+    cannot lift off.  This is Adams' PTCV.
     """
 
     equations: ClassVar[tuple[str, ...]] = (*Curve.equations, *IN_PLANE)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        *Curve.forms,
+        {"y": {"table": [[0, 0], [1, 0.1], [2, 0]]}, "z": {"table": [[0, 0], [1, 0.2], [2, 0.1]]}},
+    )
+
+    z: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
+        None, description="Z(x), m, of a slot: a formula of x or a table; in the plane without it"
+    )
+
+    @model_validator(mode="after")
+    def _of_a_slot(self) -> Self:
+        if self.z is not None and self.y is None:
+            raise ValueError("found z of a curve by its radius, expected it with y")
+        return self
 
     @staticmethod
     def position(e: Symbolic) -> Any:
         """y - Y(x) of a slot, rho - R(theta) of a cam, and the distance from the plane."""
         x, y, z = e.named([along(e.i, e.j, axis) for axis in (e.j.x, e.j.y, e.j.z)])
         if e.y is not None:
-            return [y - e.y(x), z]
+            return [y - e.y(x), z if e.z is None else z - e.z(x)]
         from sympy import atan2, sqrt
 
         return [sqrt(x**2 + y**2) - e.radius(atan2(y, x)), z]

@@ -170,7 +170,8 @@ def drive(d: Draft) -> None:
 SYMBOLS: Mapping[str, Callable[[Draft], None]] = {
     "revolute": revolute, "spherical": spherical, "universal": universal, "constant_velocity": constant_velocity,
     "prismatic": prismatic, "cylindrical": cylindrical, "screw": screw, "thread": screw, "planar": planar,
-    "point_on_plane": point_on_plane, "point_on_line": point_on_line, "point_on_curve": point_on_curve, "fixed": fixed,
+    "point_on_plane": point_on_plane, "point_on_line": point_on_line, "point_on_curve": point_on_curve, "tangent_to_curve": point_on_curve,
+    "fixed": fixed,
     "parallel": directions, "perpendicular": directions, "orientation": directions, "distance": distance,
     "revolute_spherical": revolute_spherical, "coupler": coupling, "gear": gear, "rack_and_pinion": rack_and_pinion, "drive": drive, "spring_damper": spring_damper,
     "torsion_spring": spiral, "bushing": bushing, "beam": beam, "field": elastic, "contact": contact,

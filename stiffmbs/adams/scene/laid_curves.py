@@ -1,0 +1,164 @@
+"""Curves of a dataset as a scene knows them: y and z over x, or the radius over the angle of a closed one in a plane.
+
+The curve goes through the points of its MATRIX as a cubic spline.  Adams' goes through the same points by its own parameter, so that
+the two differ between them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...describe.spatial.number_format import plain, quaternion, vector
+from ..statements.constraints import Numbered
+from ..statements.geometry import IDENTITY, Frame
+from .mechanism import Mechanism, Place
+
+FLAT = 1e-6
+"""Part of a curve's size by which its points may leave a plane."""
+FEWEST = 4
+
+
+@dataclass(frozen=True, eq=False)
+class LaidCurve:
+    """A curve on a body.
+
+    Attributes
+    ----------
+    owner : Place
+        The marker RM in whose axes the points are given.
+    frame : Frame
+        Axes in those of RM, x and y in the curve's plane.
+    closed : bool
+    arguments, values : ndarray
+        x and y, or angle and radius, of the points.
+    off : ndarray or None
+        Their distances from the plane; None for a flat curve.
+    """
+
+    owner: Place
+    frame: Frame
+    closed: bool
+    arguments: np.ndarray
+    values: np.ndarray
+    off: np.ndarray | None = None
+
+    @property
+    def marker(self) -> dict[str, Any]:
+        """The marker of the scene in whose axes the curve is given."""
+        on_body = self.frame.within(self.owner.on_body)
+        return {"body": self.owner.body, "point": vector(on_body.point), "orientation": quaternion(on_body.axes)}
+
+    @property
+    def initial(self) -> Frame:
+        """The axes of the curve in ground axes, at the start."""
+        return self.frame.within(self.owner.initial)
+
+    @property
+    def ends(self) -> str:
+        """The end condition of the spline."""
+        return "periodic" if self.closed else "not-a-knot"
+
+    @property
+    def law(self) -> dict[str, Any]:
+        """The fields of the joint that say the curve."""
+        found = {"radius" if self.closed else "y": self._table(self.values)}
+        return found if self.off is None else found | {"z": self._table(self.off)}
+
+    def _table(self, values: np.ndarray) -> dict[str, Any]:
+        table = [[plain(a), plain(b)] for a, b in zip(self.arguments, values, strict=True)]
+        return {"table": table, "ends": self.ends}
+
+
+def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) -> LaidCurve:
+    """The curve that a constraint names, in the axes of a marker.
+
+    Raises
+    ------
+    DatasetFault
+        When there is none of that number, or a scene cannot say it.
+    """
+    points, closed = _points(user, number, mechanism)
+    frame = _plane(points, closed)
+    seen = (points - frame.point) @ frame.axes
+    off = seen[:, 2]
+    flat = np.max(np.abs(off)) <= FLAT * np.max(np.ptp(points, axis=0))
+    if closed and not flat:
+        raise user.fault(
+            f"found a closed curve that leaves its plane by {np.max(np.abs(off)):.6g} m, expected a flat one"
+        )
+    return LaidCurve(
+        owner, frame, closed, *(_radius(user, seen) if closed else _height(user, seen)), None if flat else off
+    )
+
+
+def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarray, bool]:
+    """The points of a curve in the axes of marker RM, m; the last of a closed one is the first again."""
+    statements = mechanism.dataset.statements
+    curve = statements.get("CURVE", {}).get(number)
+    if curve is None:
+        raise user.fault(f"found CURVE = {number}, expected the number of a CURVE")
+    if curve.unread:
+        raise user.fault(f"{curve.label}: {curve.unread}; expected CURVE_POINTS of order 4 in a MATRIX")
+    matrix = statements.get("MATRIX", {}).get(curve.matrix)
+    points = np.array(matrix.rows if matrix else []) * mechanism.dataset.units.length
+    if points.ndim != 2 or points.shape[1] != 3 or len(points) < FEWEST:
+        raise user.fault(
+            f"found MATRIX = {curve.matrix} of {curve.label}, expected {FEWEST} rows or more of x, y and z"
+        )
+    size = float(np.max(np.ptp(points, axis=0)))
+    ends = float(np.max(np.abs(points[0] - points[-1])))
+    if curve.closed and ends > FLAT * size:
+        raise user.fault(
+            f"found a first and a last point {ends:.6g} m apart in the closed {curve.label}, expected one point"
+        )
+    return points, curve.closed
+
+
+def _plane(points: np.ndarray, closed: bool) -> Frame:
+    """Axes whose x and y are in the curve's plane: about its middle for a closed one, else from its first point to its last."""
+    own = points[:-1] if closed else points
+    middle = own.mean(axis=0)
+    _, sizes, ways = np.linalg.svd(own - middle)
+    x = ways[0] if closed else (points[-1] - points[0]) / (np.linalg.norm(points[-1] - points[0]) or 1.0)
+    if np.max(np.abs(own[:, 2] - middle[2])) <= FLAT * np.max(np.ptp(points, axis=0)):
+        normal = IDENTITY[2]
+    else:
+        normal = ways[2] if sizes[1] > FLAT * sizes[0] else _across(x)
+    y = np.cross(normal, x)
+    y /= np.linalg.norm(y)
+    x = np.cross(y, normal) if closed else x
+    return Frame(middle if closed else points[0], np.column_stack([x, y, np.cross(x, y)]))
+
+
+def _across(x: np.ndarray) -> np.ndarray:
+    """A direction across another one."""
+    across = np.cross(x, IDENTITY[int(np.argmin(np.abs(x)))])
+    found: np.ndarray = across / np.linalg.norm(across)
+    return found
+
+
+def _height(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """x and y."""
+    if np.any(np.diff(seen[:, 0]) <= 0):
+        raise user.fault(
+            "found an open curve that turns back on the way from its first point to its last, expected none"
+        )
+    return seen[:, 0], seen[:, 1]
+
+
+def _radius(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The angle, anticlockwise, over one turn, and the distance from the middle."""
+    angles = np.unwrap(np.arctan2(seen[:, 1], seen[:, 0]))
+    radii = np.hypot(seen[:, 0], seen[:, 1])
+    if angles[-1] < angles[0]:
+        angles, radii = angles[::-1], radii[::-1]
+    turned = angles[-1] - angles[0]
+    if np.any(np.diff(angles) <= 0) or abs(turned - 2 * np.pi) > 1e-6:
+        raise user.fault(
+            "found a closed curve that a line from its middle meets more than once, expected a convex or nearly convex one"
+        )
+    angles[-1], radii[-1] = angles[0] + 2 * np.pi, radii[0]
+    return angles, radii

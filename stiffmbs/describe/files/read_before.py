@@ -1,0 +1,61 @@
+"""YAML files that were read before: their content is kept on disk, as reading it takes longer than much else of a short run.
+
+There is one entry for a file, which a change of the file replaces.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ...cache.entries import Folder, digest, tag_of
+from .yaml_text import read_yaml
+
+FORMAT = "1"
+"""Changed whenever YAML is read in another way."""
+FILE = "file"
+"""How the names of the entries begin."""
+LARGEST = 1_000_000
+"""Characters of what is kept of a file: aliases can stand for much."""
+
+
+def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
+    """What stands in the text of a file; see `read_yaml`.
+
+    Parameters
+    ----------
+    text : str
+    source : str
+        What messages call it.
+    file : Path or None
+        Nothing is kept of a text that is of no file.
+    """
+    if file is None:
+        return read_yaml(text, source)
+    name, version = f"{FILE}-{digest(str(file.resolve()))}", digest(text)
+    stored = folder_of_files().read(name)
+    if stored is not None and stored.startswith(version.encode()):
+        return json.loads(stored[len(version) :])
+    found = read_yaml(text, source)
+    if _is_plain(found) and len(content := json.dumps(found)) <= LARGEST:
+        folder_of_files().write(name, f"{version}{content}".encode())
+    return found
+
+
+@cache
+def folder_of_files() -> Folder:
+    """The entries that this version of the package and of the reader of YAML make."""
+    from importlib.metadata import version
+
+    return Folder("files", tag_of(FORMAT, version("stiffmbs"), version("ruamel.yaml")))
+
+
+def _is_plain(found: Any) -> bool:
+    """Whether JSON gives back exactly what was found: not so for dates, sets, and names that are numbers."""
+    if type(found) is dict:
+        return all(type(name) is str for name in found) and all(map(_is_plain, found.values()))
+    if type(found) is list:
+        return all(map(_is_plain, found))
+    return found is None or type(found) in (str, int, float, bool)

@@ -1,0 +1,41 @@
+"""Point and direction on a smooth curve of a plane in space: half of two curves that touch."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from ...element import Symbolic
+from ...joints.point_on_curve import Curve
+from ..marker import Marker
+from ..primitives import IN_PLANE, along, perpendicular
+
+
+class TangentToCurve(Curve[Marker]):
+    """Follower with a direction: the point of marker i stays on a curve, its x axis along the tangent there.
+
+    The curve is in the xy plane of marker j, as in `point_on_curve`: a slot ``y`` = Y(x), or a cam ``radius`` =
+    R(theta).  With n the normal of the curve at the point, the further equation is x_i . n = 0, satisfied by either
+    sense of the x axis.  Two such joints of one slight body make two curves touch, as Adams' CVCV.
+
+    The curve should have no breakpoints.  The reaction has a force across the curve, and a torque.
+    """
+
+    kind: ClassVar[str] = "tangent_to_curve"
+    equations: ClassVar[tuple[str, ...]] = (*Curve.equations, *IN_PLANE, "tangent")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        """y - Y(x) or rho - R(theta), the distance from the plane, and the x axis along the gradient of the first."""
+        x, y = (e.variable(along(e.i, e.j, axis)) for axis in (e.j.x, e.j.y))
+        curve = e.named(_curve(e, x, y))
+        gradient = e.slope(curve, x) * e.j.x + e.slope(curve, y) * e.j.y
+        return [curve, along(e.i, e.j, e.j.z), perpendicular(e.i.x, gradient)]
+
+
+def _curve(e: Symbolic, x: Any, y: Any) -> Any:
+    """What is zero on the curve."""
+    if e.y is not None:
+        return y - e.y(x)
+    from sympy import atan2, sqrt
+
+    return sqrt(x**2 + y**2) - e.radius(atan2(y, x))
