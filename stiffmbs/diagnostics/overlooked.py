@@ -14,14 +14,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..compile.machine.routines import Routine
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.settings import RunSettings
 from ..results.energy_balance_notes import within_steps
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
-from ..solve.examined_rows import contradicting_rows
 from ..solve.trajectory import Trajectory
+
+CONTRADICTING_ROWS = Routine(
+    "stiffmbs.diagnostics.native.contradictions",
+    "contradicting_rows",
+    "int64(int64, int64, float64*, float64*, float64*, float64*, float64, int64*)",
+)
 
 OVERLOOKED_TOLERANCES = 3e5
 """Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
@@ -104,6 +110,27 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     at, k = (pairs + (second_size > first_size))[found], found[0]
     velocity = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities)
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
+
+
+def contradicting_rows(
+    t: np.ndarray, u: np.ndarray, acceleration: np.ndarray, mass: np.ndarray, part: float
+) -> np.ndarray:
+    """Numbers of the rows of which the change of velocities until the next differs from the mean of their accelerations.
+
+    Parameters
+    ----------
+    t, u, acceleration : ndarrays, shapes (n,), (n, n_u), (n, n_u)
+    mass : ndarray, shape (n_u,)
+        Weights.
+    part : float
+        Of the larger acceleration, that is exceeded.
+    """
+    found = np.empty(len(t), dtype=np.int64)
+    arrays = [np.ascontiguousarray(array) for array in (t, u, acceleration, mass)]
+    count = CONTRADICTING_ROWS.call(
+        len(t), len(mass), *(array.ctypes.data for array in arrays), part, found.ctypes.data
+    )
+    return found[:count]
 
 
 def _contradictions(rows: OutputRows, pairs: np.ndarray) -> np.ndarray:

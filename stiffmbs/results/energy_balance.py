@@ -4,7 +4,7 @@ Along a motion T + V changes by the work of dampers, drives, friction, applied f
 (`stiffmbs.compile.symbolic.losses` has their power).  Both are computed from the states that a run reports, so their difference
 tells how well these satisfy the equations of motion, whatever the integrator believes of its own error.
 
-The work is integrated by the trapezoidal rule with end corrections, of order 4 (`stiffmbs.solve.examined_rows`); the same rule on every other instant tells how well these resolve the power.
+The work is integrated by the trapezoidal rule with end corrections, of order 4; the same rule on every other instant tells how well these resolve the power.
 """
 
 from __future__ import annotations
@@ -13,10 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.machine.routines import together
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..solve.dynamics import OutputRows
-from ..solve.examined_rows import steps_inside, work_since_start
+
+WORK, STEPS_INSIDE = together(
+    "stiffmbs.results.native.work",
+    work="float64(int64, float64*, float64*, float64*, float64*)",
+    steps_inside="void(int64, float64*, int64, float64*, int64*)",
+)
 
 MOST_INSTANTS = 100_000
 """Instants that a balance is made of at the most; of more every other one counts, or fewer."""
@@ -121,6 +127,39 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
         scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
     inside = steps_inside(t, steps)
     return Balance(t, total - total[0], work, within, inside, resolved, scale, keeps_energy)
+
+
+def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """The integral of a power by the trapezoidal rule with end corrections.
+
+    Davis and Rabinowitz, Methods of Numerical Integration (1984), sec. 2.9.
+
+    Parameters
+    ----------
+    t, power : ndarrays, shape (n,)
+        s, W; n is 1 or more.
+
+    Returns
+    -------
+    work : ndarray, shape (n,)
+        J.
+    within : ndarray, shape (n - 1,)
+        What the corrections add in each interval, J.
+    resolved : float
+        How far the work is from that of every other instant, J.
+    """
+    t, power = np.ascontiguousarray(t), np.ascontiguousarray(power)
+    total, within = np.empty(len(t)), np.empty(len(t) - 1)
+    resolved = WORK.call(len(t), *(array.ctypes.data for array in (t, power, total, within)))
+    return total, within, resolved
+
+
+def steps_inside(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """How many of increasing steps end inside each interval between increasing instants, its ends left out; shape (n - 1,)."""
+    t, steps = np.ascontiguousarray(t), np.ascontiguousarray(steps, dtype=float)
+    inside = np.empty(max(len(t) - 1, 0), dtype=np.int64)
+    STEPS_INSIDE.call(len(t), t.ctypes.data, len(steps), steps.ctypes.data, inside.ctypes.data)
+    return inside
 
 
 def potentials(system: System, values: np.ndarray) -> dict[str, np.ndarray]:

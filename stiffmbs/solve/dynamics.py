@@ -13,10 +13,9 @@ from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
 from ..compile.machine.layout import DYNAMICS, packed
-from ..compile.machine.routines import together
+from ..compile.machine.routines import Routine, together
 from ..compile.state import State
 from ..compile.system import System
-from .examined_rows import write_energies
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
 from .storage import all_finite, allocated, blocks, release
@@ -29,6 +28,11 @@ ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, CONTRADICTING, OUTPUT_POINTS = togethe
     accelerate="int64(float64, float64*, int64*)",
     contradicting="int64(int64, float64*, float64*, float64, float64*, float64*, float64*, float64, float64*, float64, float64, float64*, int64*, int64*)",
     output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
+)
+ENERGIES = Routine(
+    "stiffmbs.solve.native.reporting.energies",
+    "energies",
+    "void(int64, int64, float64*, float64*, int64, float64*, int64, int64*, int64, int64*, float64*, float64*, float64*)",
 )
 
 POSITION_TOLERANCE = 1e-12
@@ -269,11 +273,11 @@ class Dynamics:
             done = block.start + OUTPUT_POINTS.call(
                 len(times), times.ctypes.data, project, POSITION_TOLERANCE, n_output, *addresses, self._at
             )
-            write_energies(
-                (rows[1][block], system.mass),
-                (rows[4][block], self._potential, self._power),
-                (kinetic[block], potential[block], power[block]),
-            )
+            ENERGIES.call(
+                len(times), system.n_u, addresses[1], system.mass.ctypes.data, n_output, addresses[4],
+                len(self._potential), self._potential.ctypes.data, len(self._power), self._power.ctypes.data,
+                *(array[block].ctypes.data for array in (kinetic, potential, power)),
+            )  # fmt: skip
             release(*rows, kinetic, potential, power, q, u)
             if done < block.stop:
                 break

@@ -5,20 +5,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from stiffmbs.solve.examined_rows import contradicting_rows, steps_inside, work_since_start, write_energies
+from stiffmbs.diagnostics.overlooked import contradicting_rows
+from stiffmbs.results.energy_balance import steps_inside, work_since_start
 
 
 @pytest.fixture
 def random():
     return np.random.default_rng(3)
-
-
-def test_energies_are_sums_over_bodies_and_terms(random):
-    u, values, mass = random.normal(size=(7, 3)), random.normal(size=(7, 5)), np.array([2.0, 2.0, 0.5])
-    found = np.empty((3, 7))
-    write_energies((u, mass), (values, np.array([0, 4]), np.array([2])), tuple(found))
-    expected = 0.5 * u**2 @ mass, values[:, 0] + values[:, 4], values[:, 2]
-    np.testing.assert_allclose(found, expected, rtol=1e-14, atol=1e-14)
 
 
 def test_rows_contradict_where_the_velocity_changes_otherwise_than_accelerations_say(random):
