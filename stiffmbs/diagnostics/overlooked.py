@@ -18,7 +18,6 @@ from ..compile.machine.routines import Routine
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.settings import RunSettings
-from ..results.energy_balance_notes import within_steps
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.trajectory import Trajectory
@@ -26,7 +25,7 @@ from ..solve.trajectory import Trajectory
 CONTRADICTING_ROWS = Routine(
     "stiffmbs.diagnostics.native.contradictions",
     "contradicting_rows",
-    "int64(int64, int64, float64*, float64*, float64*, float64*, float64, int64*)",
+    "int64(int64, int64, float64*, float64*, float64*, float64*, float64, int64, float64*, int64*)",
 )
 
 OVERLOOKED_TOLERANCES = 3e5
@@ -92,10 +91,7 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     steps = trajectory.step_times
     if len(steps) < 2 or not system.has_laws:
         return None
-    pairs = contradicting_rows(
-        rows.t, rows.u, rows.acceleration, system.mass, OVERLOOKED_PART
-    )  # few: the rest costs nothing
-    pairs = pairs[within_steps(rows.t[pairs], rows.t[pairs + 1], steps)]
+    pairs = contradicting_rows(rows, system.mass, steps)
     if not len(pairs):
         return None
     number = np.searchsorted(steps, rows.t[pairs])
@@ -112,24 +108,23 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
 
 
-def contradicting_rows(
-    t: np.ndarray, u: np.ndarray, acceleration: np.ndarray, mass: np.ndarray, part: float
-) -> np.ndarray:
-    """Numbers of the rows of which the change of velocities until the next differs from the mean of their accelerations.
+def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Numbers of the rows that contradict the next one beyond `OVERLOOKED_PART`, where both are inside one step.
 
     Parameters
     ----------
-    t, u, acceleration : ndarrays, shapes (n,), (n, n_u), (n, n_u)
+    rows : OutputRows
     mass : ndarray, shape (n_u,)
         Weights.
-    part : float
-        Of the larger acceleration, that is exceeded.
+    steps : ndarray
+        Ends of the steps, s.
     """
-    found = np.empty(len(t), dtype=np.int64)
-    arrays = [np.ascontiguousarray(array) for array in (t, u, acceleration, mass)]
+    found = np.empty(len(rows.t), dtype=np.int64)
+    t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
     count = CONTRADICTING_ROWS.call(
-        len(t), len(mass), *(array.ctypes.data for array in arrays), part, found.ctypes.data
-    )
+        len(t), len(mass), t.ctypes.data, u.ctypes.data, acceleration.ctypes.data, mass.ctypes.data, OVERLOOKED_PART,
+        len(steps), steps.ctypes.data, found.ctypes.data,
+    )  # fmt: skip
     return found[:count]
 
 

@@ -1,6 +1,7 @@
 """Compiled loops over output instants give what NumPy gives, and the work is of the order that its rule has."""
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +20,13 @@ def test_rows_contradict_where_the_velocity_changes_otherwise_than_accelerations
     u[1:] = u[0] + np.cumsum(np.diff(t)[:, None] * (a[1:] + a[:-1]) / 2, axis=0)
     u[20:, 1] += 5.0
     a[30] = np.nan
-    assert contradicting_rows(t, u, a, np.array([1.0, 2.0]), 0.3).tolist() == [19]
+    rows = SimpleNamespace(t=t, u=u, acceleration=a)
+    mass, between = np.array([1.0, 2.0]), (t[1:] + t[:-1]) / 2
+    assert contradicting_rows(rows, mass, np.array([-1.0, 2.0])).tolist() == [19]
+    assert not len(contradicting_rows(rows, mass, between)), "steps end inside the interval"
+    assert contradicting_rows(rows, mass, np.array([t[19] - 1e-6, t[20] + 1e-6])).tolist() == [19]
+    assert not len(contradicting_rows(rows, mass, np.array([t[19], t[20] + 1e-6])))
+    assert not len(contradicting_rows(rows, mass, np.array([t[19] - 1e-6, t[20]])))
 
 
 def test_the_work_of_a_smooth_power_is_of_fourth_order():

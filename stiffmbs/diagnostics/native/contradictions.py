@@ -20,8 +20,21 @@ def _larger(first, second):
     return first if first >= second or second != second else second
 
 
-def contradicting_rows(count, n_u, t, u, acceleration, mass, part, found):
-    """Which rows contradict the next by more than a part of the larger acceleration; how many.
+@compiled
+def _within_step(begin, end, n_steps, steps):
+    """Whether an interval lies inside one of the steps with these ends, its own ends strictly."""
+    low, high = 0, n_steps
+    while low < high:
+        middle = (low + high) // 2
+        if steps[middle] <= begin:
+            low = middle + 1
+        else:
+            high = middle
+    return low > 0 and low < n_steps and steps[low - 1] < begin and end < steps[low]
+
+
+def contradicting_rows(count, n_u, t, u, acceleration, mass, part, n_steps, steps, found):
+    """Which rows contradict the next, within one step, by more than a part of the larger acceleration; how many.
 
     The change of the velocities in between, in a second, differs from the mean of the accelerations.
     """
@@ -36,7 +49,7 @@ def contradicting_rows(count, n_u, t, u, acceleration, mass, part, found):
             off = (velocity[n_u + k] - velocity[k]) / elapsed - 0.5 * (first[k] + second[k])
             total += mass[k] * off * off
         after = _weighted(n_u, second, mass)
-        if total > part * part * _larger(after, before):
+        if total > part * part * _larger(after, before) and _within_step(t[row], t[row + 1], n_steps, steps):
             found[contradicting] = row
             contradicting += 1
         before = after
