@@ -206,4 +206,4 @@ class NativeEngine:
 
     def history(self) -> History:
         """Ends of the steps and their orders."""
-        return History(self._ida.history.t, self._ida.history.order)
+        return History(*self._ida.history.ends())
