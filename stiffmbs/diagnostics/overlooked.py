@@ -121,7 +121,7 @@ def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) ->
     """
     found = np.empty(len(rows.t), dtype=np.int64)
     t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
-    count = CONTRADICTING_ROWS.call_for(len(t))(
+    count = CONTRADICTING_ROWS.call(
         len(t), len(mass), t.ctypes.data, u.ctypes.data, acceleration.ctypes.data, mass.ctypes.data, OVERLOOKED_PART,
         len(steps), steps.ctypes.data, found.ctypes.data,
     )  # fmt: skip

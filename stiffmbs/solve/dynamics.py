@@ -236,7 +236,7 @@ class Dynamics:
         found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
         arrays = [np.ascontiguousarray(array) for array in (begin, end, q, u, self.system.mass, atol)]
         at_begin, at_end, at_q, at_u, at_mass, at_atol = (array.ctypes.data for array in arrays)
-        count = CONTRADICTING.call_for(10 * len(begin))(
+        count = CONTRADICTING.call(
             len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, rate.ctypes.data, found.ctypes.data, self._at
         )  # fmt: skip
         return np.flatnonzero(found) if count else np.empty(0, dtype=int)
@@ -273,7 +273,7 @@ class Dynamics:
             done = block.start + OUTPUT_POINTS.call(
                 len(times), times.ctypes.data, project, POSITION_TOLERANCE, n_output, *addresses, self._at
             )
-            ENERGIES.call_for(len(times))(
+            ENERGIES.call(
                 len(times), system.n_u, addresses[1], system.mass.ctypes.data, n_output, addresses[4],
                 len(self._potential), self._potential.ctypes.data, len(self._power), self._power.ctypes.data,
                 *(array[block].ctypes.data for array in (kinetic, potential, power)),

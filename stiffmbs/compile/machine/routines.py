@@ -10,8 +10,6 @@ from typing import Any
 from .compiler import Compiled, compiled_routines
 
 Signatures = tuple[tuple[str, str], ...]
-FEW_ROWS = 3000
-"""Rows that a loop of some operations a row goes through in less time than another thread keeps the interpreter's lock."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +40,6 @@ class Routine:
     def short_call(self) -> Callable[..., Any]:
         """The same, for calls that last some microseconds: the interpreter's lock is kept."""
         return self._compiled().short_call
-
-    def call_for(self, rows: int) -> Callable[..., Any]:
-        """`short_call` for a loop over a few thousand rows at the most, which takes some microseconds, else `call`."""
-        return self.short_call if rows <= FEW_ROWS else self.call
 
     @cached_property
     def address(self) -> int:
