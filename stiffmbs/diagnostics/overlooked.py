@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..compile.machine.layout import addresses
 from ..compile.machine.routines import Routine
 from ..compile.reactions import reactions
 from ..compile.system import System
@@ -121,10 +122,8 @@ def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) ->
     """
     found = np.empty(len(rows.t), dtype=np.int64)
     t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
-    count = CONTRADICTING_ROWS.call(
-        len(t), len(mass), t.ctypes.data, u.ctypes.data, acceleration.ctypes.data, mass.ctypes.data, OVERLOOKED_PART,
-        len(steps), steps.ctypes.data, found.ctypes.data,
-    )  # fmt: skip
+    *of_rows, at_steps, at_found = addresses(t, u, acceleration, mass, steps, found)
+    count = CONTRADICTING_ROWS.call(len(t), len(mass), *of_rows, OVERLOOKED_PART, len(steps), at_steps, at_found)
     return found[:count]
 
 

@@ -81,12 +81,6 @@ class Job:
         """Whether states are on the constraints but for the tolerance."""
         return near_constraints(self.settings)
 
-    def structure_notes(self) -> StructureNotes:
-        """What there is to say of the structure; found once for all jobs that differ by numbers in forces."""
-        return self.dynamics.kept(
-            "structure notes", None, lambda: structure_notes(self.redundancy, self.subsystems, self.dynamics)
-        )
-
     def evaluations(self) -> int:
         """How often the equations of the system and of its parts were evaluated so far."""
         parts = (self.dynamics, *(subsystem.dynamics for subsystem in self.subsystems))
@@ -269,12 +263,12 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         )
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
     if job.on_constraints:
-        statistics["drift"] = float(np.nanmax(rows.drift))
+        statistics["drift"] = float(np.fmax.reduce(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
     system = job.dynamics.system
     found = results_of_run(job.data, system, rows, job.settings, trajectory.step_times)
     of_motion = motion_notes(job.dynamics, rows, job.on_constraints)
-    structure = job.structure_notes()
+    structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     wrong = (*(of_motion.senseless or found.broken_balance), *of_motion.uncertain, *found.undefined)
     return Solution(
         name=job.data.name, time=rows.t, channels=found.channels, outcome=outcome, message=message,

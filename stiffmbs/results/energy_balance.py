@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.machine.layout import addresses
 from ..compile.machine.routines import together
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
@@ -150,7 +151,7 @@ def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.n
     """
     t, power = np.ascontiguousarray(t), np.ascontiguousarray(power)
     total, within = np.empty(len(t)), np.empty(len(t) - 1)
-    resolved = WORK.call(len(t), *(array.ctypes.data for array in (t, power, total, within)))
+    resolved = WORK.call(len(t), *addresses(t, power, total, within))
     return total, within, resolved
 
 
@@ -158,7 +159,8 @@ def steps_inside(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
     """How many of increasing steps end inside each interval between increasing instants, its ends left out; shape (n - 1,)."""
     t, steps = np.ascontiguousarray(t), np.ascontiguousarray(steps, dtype=float)
     inside = np.empty(max(len(t) - 1, 0), dtype=np.int64)
-    STEPS_INSIDE.call(len(t), t.ctypes.data, len(steps), steps.ctypes.data, inside.ctypes.data)
+    at_t, at_steps, at_inside = addresses(t, steps, inside)
+    STEPS_INSIDE.call(len(t), at_t, len(steps), at_steps, at_inside)
     return inside
 
 

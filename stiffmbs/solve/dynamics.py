@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
-from ..compile.machine.layout import DYNAMICS, packed
+from ..compile.machine.layout import DYNAMICS, address, addresses, packed
 from ..compile.machine.routines import Routine, together
 from ..compile.state import State
 from ..compile.system import System
@@ -118,13 +118,12 @@ class Dynamics:
         moving = ~np.isin(row, algebraic)
         self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
         self._n_output = system.n_values("output")
-        self._potential, self._power = (
-            system.term("output", name).source.astype(np.int64) for name in ("potential", "power")
-        )
+        self._potential = np.array(system.term("output", "potential").source, dtype=np.int64)
+        self._power = np.array(system.term("output", "power").source, dtype=np.int64)
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
-        turned = {name: system.turned(name) for name in ("acceleration", "output")}
-        self._turned_for_output = np.setdiff1d(turned["output"], turned["acceleration"]).astype(np.int64)
+        turned = np.setdiff1d(system.turned("output"), system.turned("acceleration"))
+        self._turned_for_output = turned.astype(np.int64)
         self.table = packed(
             DYNAMICS,
             {
@@ -212,7 +211,7 @@ class Dynamics:
     def accelerate(self, t: float) -> tuple[int, np.ndarray]:
         """0 or a failure (`stiffmbs.solve.native.statuses`), and u' from the block system; the multipliers are in the state's lam."""
         acceleration = np.empty(self.system.n_u)
-        return ACCELERATE.short_call(t, acceleration.ctypes.data, self._at), acceleration
+        return ACCELERATE.short_call(t, address(acceleration), self._at), acceleration
 
     def contradicting(
         self, ends: tuple[np.ndarray, np.ndarray], apart: float, states: tuple[np.ndarray, np.ndarray],
@@ -235,9 +234,9 @@ class Dynamics:
         (begin, end), (q, u), (rtol, atol) = ends, states, tolerances
         found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
         arrays = [np.ascontiguousarray(array) for array in (begin, end, q, u, self.system.mass, atol)]
-        at_begin, at_end, at_q, at_u, at_mass, at_atol = (array.ctypes.data for array in arrays)
+        at_begin, at_end, at_q, at_u, at_mass, at_atol = (address(array) for array in arrays)
         count = CONTRADICTING.call(
-            len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, rate.ctypes.data, found.ctypes.data, self._at
+            len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, address(rate), address(found), self._at
         )  # fmt: skip
         return np.flatnonzero(found) if count else np.empty(0, dtype=int)
 
@@ -269,14 +268,14 @@ class Dynamics:
         for block in blocks(count):
             rows[0][block], rows[1][block] = q[block], u[block]
             times = np.array(t[block], dtype=float)
-            addresses = [array[block].ctypes.data for array in rows]
+            at_times, *written = addresses(times, *(array[block] for array in (*rows, kinetic, potential, power)))
             done = block.start + OUTPUT_POINTS.call(
-                len(times), times.ctypes.data, project, POSITION_TOLERANCE, n_output, *addresses, self._at
+                len(times), at_times, project, POSITION_TOLERANCE, n_output, *written[:6], self._at
             )
+            mass, potentials, powers = addresses(system.mass, self._potential, self._power)
             ENERGIES.call(
-                len(times), system.n_u, addresses[1], system.mass.ctypes.data, n_output, addresses[4],
-                len(self._potential), self._potential.ctypes.data, len(self._power), self._power.ctypes.data,
-                *(array[block].ctypes.data for array in (kinetic, potential, power)),
+                len(times), system.n_u, written[1], mass, n_output, written[4],
+                len(self._potential), potentials, len(self._power), powers, *written[6:],
             )  # fmt: skip
             release(*rows, kinetic, potential, power, q, u)
             if done < block.stop:

@@ -5,7 +5,10 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Bushing, Model
+from stiffmbs.jobs.run import prepare
+from stiffmbs.solve.bdf import Integrator
 from stiffmbs.solve.error_control import stability_limit as order_watch
+from stiffmbs.solve.trajectory import Grid
 
 
 def rod_on_bushing(stiffness):
@@ -58,3 +61,50 @@ def test_scenes_without_such_a_vibration_are_solved_as_before(examples, name, mo
     unwatched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
     assert watched.solver["steps"] == unwatched.solver["steps"]
     assert watched.notes == unwatched.notes
+
+
+def test_states_are_compared_with_the_cubics_of_least_squares():
+    random, n = np.random.default_rng(2), 5
+    t = 3.0 + np.cumsum(0.5 + random.random(order_watch.STATES_LOOKED_AT))
+    rows = np.vander(t - 9.0, 4) @ random.normal(size=(4, n)) + 1e-4 * random.normal(size=(len(t), n))
+    atol = 1e-6 * (1.0 + random.random(n))
+    x, scale = (2 * t - t[0] - t[-1]) / (t[-1] - t[0]), 1e-5 * np.abs(rows[-1]) + atol
+    best = np.polyfit(x, rows, 3)
+    off = (rows - np.vander(x, 4) @ best) / scale
+    expected = np.sqrt((off**2).mean(axis=1).max()), np.sqrt(((best[0] / scale) ** 2).mean())
+    least, *found = order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)
+    np.testing.assert_allclose(found, expected, rtol=1e-7)
+    assert 0 < least < found[0]
+    rows[:, 0] += 1e3 * np.cos(3.0 * t)
+    assert order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)[0] > order_watch.NEGLIGIBLE
+
+
+def test_many_unknowns_are_looked_at_sooner(monkeypatch):
+    """A look costs less there than the steps that it saves."""
+    model = Model(gravity=(0, -9.81))
+    end = "ground"
+    for k in range(20):
+        rod = model.add(f"rod_{k}", Body(mass=1, inertia=1 / 12, position=(k + 0.5, 0)))
+        model.add(f"pin_{k}", Bushing(i=rod.at(-0.5, 0), j=end, stiffness=[1e6, 1e6, 0], damping=[0, 0, 0]))
+        end = rod.at(0.5, 0)
+    looks = []
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "changed", lambda _, samples, steps: looks.append(steps))
+    solved(model, rtol=1e-4)
+    assert looks
+    assert 100 < looks[0] < 1000
+
+
+def test_ida_is_not_started_where_it_is_to_stop(monkeypatch):
+    """It refuses to: an order that is to change there waits for the next start."""
+    job = prepare(rod_on_bushing(1e4), duration=0.1, solver="bdf")
+    integrator = Integrator(job.dynamics, job.settings)
+    for _ in integrator.run(job.start, Grid(0.0, 0.1, np.array([0.1]))):
+        pass
+    engine, starts = integrator.engine, []
+    monkeypatch.setattr(engine, "begin", lambda *given: starts.append(given))
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "due", lambda *_: True)
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "changed", lambda *_: True)
+    engine._adapt(0.1)
+    assert not starts
+    engine._adapt(0.2)
+    assert len(starts) == 1

@@ -18,12 +18,21 @@ from functools import cached_property
 import numpy as np
 
 from ...compile.equations import Equations
+from ...compile.machine.layout import addresses
+from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from .tolerances import independent_tolerances
 
-STATES_LOOKED_AT, STEPS_APART, DEGREE = 16, 4, 3
-"""States that are looked at, steps from one to the next, and the polynomial that they are compared with: motion that steps of
-order 3 to 5 do resolve is some thousands of tolerances away from it."""
+CUBIC = Routine(
+    "stiffmbs.solve.error_control.native.cubic",
+    "cubic",
+    "void(int64, int64, float64*, float64, float64*, int64, int64*, float64, float64*, float64*)",
+)
+STATES_LOOKED_AT, STEPS_APART = 16, 4
+"""States that are looked at, and steps from one to the next: motion that steps of order 3 to 5 do resolve is some thousands of
+tolerances away from a cubic."""
+FAR_APART = np.array([0, 4, 8, 12, 15], dtype=np.int64)
+"""States that mostly show by themselves that all are far from it."""
 NEGLIGIBLE = 150.0
 """Distance from it, in units of the tolerance, up to which a vibration is not worth following: the orders that follow it
 damp it too (from 64 to 44 in 1000 steps of order 5).  A smaller tolerance keeps it."""
@@ -35,8 +44,13 @@ FAINT, DAMPED_AWAY = 4.0, 100
 WITHIN_PERIODS = 12.0
 """Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
 start with longer ones would stir up vibrations that have long been damped."""
-FIRST_LOOK, LATER = 2000, 1.5
+FIRST_LOOK, LATER = 2048, 1.5
 """Steps before the first look, and how many times as many before each later one."""
+FEW, SOONER = 50, 10
+"""Unknowns from which on looks are the more frequent the more there are, and how many times as frequent at the most: a step
+then costs more and more, a look hardly so.  It stays below 2 % of the steps."""
+MOST_BETWEEN = 2
+"""Most steps between two looks, times those before the first: a vibration may come late in a run."""
 RELAPSE, STRETCH, LONGER = 2000, 2000, 4
 """Steps between looks at a held order, in which the vibration dies away (250 are too few to see what is gained); steps with
 the order held at first, and how many times as many after each relapse."""
@@ -53,6 +67,33 @@ TIGHTEST_HELD = 1e-7
 cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
 HELD, HIGHEST = 2, 5
 """Orders: the highest that is stable for every vibration, and the highest of all."""
+
+
+def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> tuple[float, float, float]:
+    """How far states are from the cubics that fit best, in units of the tolerance.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (`STATES_LOOKED_AT`, 1 + n)
+        Times and states.
+    rtol : float
+    atol : ndarray, shape (n,)
+
+    Returns
+    -------
+    least : float
+        The distance that five of them show.
+    distance : float
+        The largest of one state, as a root mean square; not computed where `least` is beyond `NEGLIGIBLE`, as what follows.
+    highest : float
+        Root mean square of the coefficients of the third power, times being -1 to 1.
+    """
+    count, n = len(samples), samples.shape[1] - 1
+    samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(3)
+    rows, at_atol, few, at_work, at_found = addresses(samples, atol, FAR_APART, work, found)
+    CUBIC.short_call(count, n, rows, rtol, at_atol, len(FAR_APART), few, NEGLIGIBLE, at_work, at_found)
+    least, distance, highest = found.tolist()
+    return least, distance, highest
 
 
 class StabilityLimitDetection:
@@ -73,6 +114,7 @@ class StabilityLimitDetection:
         self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
         self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST_HELD
         self._equations, self._settings = equations, settings
+        self._first = int(FIRST_LOOK / min(max(equations.n / FEW, 1), SOONER))
         self.forget()
 
     @cached_property
@@ -81,7 +123,7 @@ class StabilityLimitDetection:
 
     def forget(self) -> None:
         """Begin a new run."""
-        self.order, self._next, self._stretch = self._highest, FIRST_LOOK, STRETCH
+        self.order, self._next, self._stretch = self._highest, self._first, STRETCH
         self._held: list[tuple[float, int]] = []
         self._held_steps = 0
         self._briefly = False
@@ -91,6 +133,11 @@ class StabilityLimitDetection:
     def held(self) -> bool:
         """Whether the order is held down."""
         return self.order < self._highest
+
+    @property
+    def looks_often(self) -> bool:
+        """Whether a look costs little beside a step."""
+        return self._first < FIRST_LOOK
 
     def begin(self, t: float, steps: int, fastest: float) -> None:
         """The integrator starts, or starts anew, where vibrations have rates up to `fastest`, 1/s."""
@@ -102,7 +149,9 @@ class StabilityLimitDetection:
 
     def wait(self, steps: int) -> int:
         """How many steps from now on the next look is due."""
-        return self._next - steps if self._watches and self._next > steps else FIRST_LOOK
+        if self.held and self.looks_often:
+            return max(self._next - steps, 1)
+        return self._next - steps if self._watches and self._next > steps else self._first
 
     def changed(self, samples: np.ndarray, steps: int) -> bool:
         """Look at the last steps; whether the highest order is to change.
@@ -114,19 +163,20 @@ class StabilityLimitDetection:
         steps : int
             Of the whole run.
         """
-        if len(samples) < STATES_LOOKED_AT:
+        if len(samples) < (1 if self.held else STATES_LOOKED_AT):
             return False
         t, (since, before) = float(samples[-1, 0]), self._mark
-        pace, self._mark = (t - since) / (steps - before), (t, steps)
+        pace, self._mark = (t - since) / max(steps - before, 1), (t, steps)
         if self.held:
             return self._frees(pace, t, steps)
         local = float(samples[-1, 0] - samples[0, 0]) / (STEPS_APART * (len(samples) - 1))
         steady = pace < STEADY * local and local * self._fastest < WITHIN_PERIODS
         distance, longer = self._fit(samples) if steady else (0.0, 0.0)
         faint = distance < FAINT
-        creeping = STUCK < distance < NEGLIGIBLE and (longer > (NO_LOSS if faint else GAIN)) and (faint or self._holds)
+        holds = self._holds and steps >= FIRST_LOOK
+        creeping = STUCK < distance < NEGLIGIBLE and (longer > (NO_LOSS if faint else GAIN)) and (faint or holds)
         if not creeping:
-            self._next = int(LATER * steps)
+            self._next = steps + min(int((LATER - 1) * steps), MOST_BETWEEN * self._first)
             return False
         self.order, self._pace, self._briefly = HELD, pace, faint
         self._next = steps + (DAMPED_AWAY if faint else RELAPSE)
@@ -143,7 +193,7 @@ class StabilityLimitDetection:
         if not self._briefly:
             self._stretch *= LONGER
             self._held_steps += steps - self._held[-1][1]
-        self.order, self._next = self._highest, steps + (RELAPSE if pays or self._briefly else steps)
+        self.order, self._next = self._highest, steps + (self._first if self._briefly else RELAPSE if pays else steps)
         return True
 
     def _fit(self, samples: np.ndarray) -> tuple[float, float]:
@@ -151,27 +201,13 @@ class StabilityLimitDetection:
 
         Five samples mostly show that they are far from it: then the second figure is 0.
         """
-        times, rows = samples[:, 0], samples[:, 1:]
-        x = (2 * times - times[0] - times[-1]) / (times[-1] - times[0])
-        scale = self._rtol * np.abs(rows[-1]) + self._atol
-        few = [0, 4, 8, 12, 15]
-        points = x[few].tolist()
-        weights = np.array([1 / math.prod(a - b for b in points if b != a) for a in points])
-        least = self._size((weights @ rows[few]) / np.abs(weights).sum() / scale)
+        least, distance, highest = cubic_fit(samples, self._rtol, self._atol)
         if least > NEGLIGIBLE:
             return least, 0.0
-        powers = np.power.outer(x, np.arange(DEGREE + 1))
-        coefficients = np.linalg.lstsq(powers, rows, rcond=None)[0]
-        errors = (rows - powers @ coefficients) / scale
-        half = STEPS_APART * (len(samples) - 1) / 2  # steps in a unit of x
-        third = 6 * self._size(coefficients[DEGREE] / scale) / half**3
+        half = STEPS_APART * (len(samples) - 1) / 2  # steps in a unit of the cubic's variable
+        third = 6 * highest / half**3
         longer = (MARGIN / (ERROR_CONSTANT * third)) ** (1 / 3) if third > 0 else math.inf
-        return float(np.sqrt((errors**2).mean(axis=1).max())), longer
-
-    @staticmethod
-    def _size(errors: np.ndarray) -> float:
-        """Root mean square."""
-        return float(np.sqrt(errors @ errors / len(errors)))
+        return distance, longer
 
     def note(self, steps: int) -> str:
         """What was done, for the user, after so many steps of the run; empty for nothing."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import EXPLICIT, packed
+from ...compile.machine.layout import EXPLICIT, address, packed
 from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
@@ -81,7 +81,7 @@ class Integration:
     @property
     def at(self) -> int:
         """The address of the table for compiled code."""
-        return self._table.ctypes.data
+        return address(self._table)
 
     @property
     def t(self) -> float:
