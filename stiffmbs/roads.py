@@ -7,6 +7,7 @@ Examples
 """
 
 from .describe.roads.cosine_bump import CosineBump
+from .describe.roads.crg import CrgRoad
 from .describe.roads.flat import FlatRoad
 from .describe.roads.formula import FormulaRoad
 from .describe.roads.grid import GridRoad
@@ -18,6 +19,7 @@ from .describe.roads.step import StepRoad
 
 __all__ = [
     "CosineBump",
+    "CrgRoad",
     "FlatRoad",
     "FormulaRoad",
     "GridRoad",

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from .machine.layout import CALL, STATE, packed
+from .machine.layout import CALL, STATE, address, packed
 from .machine.routines import TERMS
 from .system import System
 from .terms import TERM_AXES, TERM_SETS
@@ -54,7 +54,7 @@ class State:
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
         self._evaluated = np.zeros(1, dtype=np.int64)
         self.table = self._packed(self._n_calls, self._calls_at)
-        self._evaluate = TERMS.short_call
+        self._evaluate, self._at = TERMS.short_call, address(self.table)
 
     def _packed(self, n_calls: np.ndarray, calls_at: np.ndarray) -> np.ndarray:
         system = self.system
@@ -136,7 +136,7 @@ class State:
     def evaluate(self, term_set: str, t: float) -> None:
         """Compute all terms of a set at the current state."""
         self.load(term_set)
-        self._evaluate(t, SETS.index(term_set), self.table.ctypes.data)
+        self._evaluate(t, SETS.index(term_set), self._at)
 
     def count_anew(self, t: float) -> None:
         """Set the counters of turns to the very angles that they count."""

@@ -18,7 +18,7 @@ from ..diagnostics.overlooked import Overlooked, overlooked, together
 from ..diagnostics.within_long_steps import overlooked_in_long_steps
 from ..solve import traits_of
 from ..solve.dynamics import OutputRows
-from ..solve.error_control.relaxation import creep_of
+from ..solve.error_control.relaxation import Creep, creep_of
 from ..solve.settings import changed
 from ..solve.trajectory import Outcome, Trajectory
 
@@ -34,6 +34,8 @@ RELAXED, EXACT = "SI2", "SI2_exact"
 CREPT = 10.0
 """Tolerances of a velocity, as a mean over the run, up to which creep is left alone: with 25 a pendulum's error is that many
 tolerances too.  The examples have 0 to 5."""
+LESS = 0.5
+"""Part of the creep that exact constraints may leave."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
     found = compute(job)
     if not relaxed(job) or not len(found.rows.t):
         return found
-    creep = creep_of(job.dynamics.system, found.rows, found.trajectory, job.settings)
+    creep = _creep(job, found)
     stopped = found.trajectory.outcome is Outcome.STOPPED
     if not (creep.mean > CREPT or (stopped and creep.at_end > CREPT)):
         return found
@@ -105,12 +107,23 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
         return _noted(found, f"{creep.sentence()}; the results may be wrong by that")
     again = compute(exactly(job))
     if len(again.rows.t) >= len(found.rows.t):
+        if (
+            creep.mean > CREPT and _creep(job, again).mean > LESS * creep.mean
+        ):  # jumps of velocities that no breakpoint tells
+            return found
         return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
+    if stopped:
+        return found
     return _noted(
         found,
         f"{creep.sentence()}; the results may be wrong by that, and formulation {EXACT} does not come as far: "
         f"{again.trajectory.message}",
     )
+
+
+def _creep(job: Job, computed: Computed) -> Creep:
+    breakpoints = job.dynamics.input_features(job.grid.start, job.grid.end).breakpoints
+    return creep_of(job.dynamics.system, computed.rows, computed.trajectory, job.settings, breakpoints)
 
 
 def relaxed(job: Job) -> bool:

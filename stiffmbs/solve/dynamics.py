@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
-from ..compile.machine.layout import DYNAMICS, packed
+from ..compile.machine.layout import DYNAMICS, address, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
@@ -202,7 +202,7 @@ class Dynamics:
     def accelerate(self, t: float) -> tuple[int, np.ndarray]:
         """0 or a failure (`stiffmbs.solve.native.statuses`), and u' from the block system; the multipliers are in the state's lam."""
         acceleration = np.empty(self.system.n_u)
-        return ACCELERATE.short_call(t, acceleration.ctypes.data, self._at), acceleration
+        return ACCELERATE.short_call(t, address(acceleration), self._at), acceleration
 
     def contradicting(
         self, ends: tuple[np.ndarray, np.ndarray], apart: float, states: tuple[np.ndarray, np.ndarray],
@@ -225,9 +225,9 @@ class Dynamics:
         (begin, end), (q, u), (rtol, atol) = ends, states, tolerances
         found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
         arrays = [np.ascontiguousarray(array) for array in (begin, end, q, u, self.system.mass, atol)]
-        at_begin, at_end, at_q, at_u, at_mass, at_atol = (array.ctypes.data for array in arrays)
+        at_begin, at_end, at_q, at_u, at_mass, at_atol = (address(array) for array in arrays)
         count = CONTRADICTING.call(
-            len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, rate.ctypes.data, found.ctypes.data, self._at
+            len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, address(rate), address(found), self._at
         )  # fmt: skip
         return np.flatnonzero(found) if count else np.empty(0, dtype=int)
 
@@ -259,9 +259,9 @@ class Dynamics:
         for block in blocks(count):
             rows[0][block], rows[1][block] = q[block], u[block]
             times = np.array(t[block], dtype=float)
-            addresses = [array[block].ctypes.data for array in rows]
+            addresses = [address(array[block]) for array in rows]
             done = block.start + OUTPUT_POINTS.call(
-                len(times), times.ctypes.data, project, POSITION_TOLERANCE, n_output, *addresses, self._at
+                len(times), address(times), project, POSITION_TOLERANCE, n_output, *addresses, self._at
             )
             kinetic[block] = 0.5 * rows[1][block] ** 2 @ system.mass
             potential[block] = rows[4][block][:, self._potential].sum(axis=1)

@@ -73,6 +73,30 @@ def test_pairs_that_are_not_solved_are_refused():
         made("GRAPHICS/1, PLANE, RM=1\nGRAPHICS/3, CYLINDER, CM=22, LENGTH=300\nCONTACT/1, IGEOM=3, JGEOM=1, " + LAW)
 
 
+def test_the_force_of_a_contact_is_that_on_the_side_of_igeom():
+    """A ball at rest on a plane, asked for as IGEOM and as JGEOM, on either side."""
+    text = """ball
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, QG=0,0,40, MASS=2, CM=21, IP=1,1,1
+MARKER/21, PART=2
+GRAPHICS/1, PLANE, RM=1, XMIN=-1, XMAX=1, YMIN=-1, YMAX=1
+GRAPHICS/2, ELLIPSOID, CM=21, XSCALE=80, YSCALE=80, ZSCALE=80
+CONTACT/1, IGEOM={i}, JGEOM={j}, IMPACT, STIFFNESS=1E4, DAMPING=10, EXPONENT=1.5, DMAX=0.1
+REQUEST/1, F2=CONTACT(1,0,4,0)\\, F3=CONTACT(1,1,4,0)\\, F4=CONTACT(1,0,1,0)
+ACCGRAV/KGRAV=-9806.65
+LIST
+END
+"""
+    for i, j, sign in ((2, 1, 1), (1, 2, -1)):
+        found = stiffmbs.run(read_adams(text.format(i=i, j=j)), duration=0.2, points=3)
+        force = [found[f"REQUEST_1.f{k}"][-1] for k in (2, 3, 4)]
+        np.testing.assert_allclose(force, np.array([sign, -sign, 1]) * 2 * 9.80665, rtol=1e-3)
+    notes = read_adams(text.format(i=1, j=2).replace("(1,0,1,0)", "(1,0,5,0)")).notes
+    assert any("found the torque of CONTACT/1, expected a component of its force" in note for note in notes)
+
+
 BALLS = """two balls
 PART/1, GROUND
 PART/2, MASS=2, CM=21, IP=0.01,0.01,0.01, VX=3, WZ=20

@@ -175,7 +175,7 @@ def test_contacts_that_are_not_read_are_refused(text, words):
     [
         ("ARRAY/1, X\nARRAY/2, U\nARRAY/3, Y\nTFSISO/1, X=1, U=2, Y=3, NUM=1, DENOM=1,1", "found U = 2, expected the number of an ARRAY"),
         ("TFSISO/1, X=1, U=2, Y=3, NUM=1,1,1, DENOM=1,1", "found no proper transfer function"),
-        ("ARRAY/1, X\nMATRIX/1, FULL=RORDER, M=1, N=2, VALUES=1,2\nLSE/1, X=1, A=1", "found A of 1 rows, expected 1 rows of 1"),
+        ("ARRAY/1, X\nMATRIX/1, FULL=RORDER, M=1, N=2, VALUES=1,2\nLSE/1, X=1, A=1", "found A of 1 by 2 numbers, expected 1 rows and 1 col"),
         ("MATRIX/1, FULL=RORDER, M=2, N=2, VALUES=1,2", "found 2 VALUES of 2 rows"),
         ("MATRIX/1, FILE=a.txt", "found FILE, expected the numbers"),
     ],

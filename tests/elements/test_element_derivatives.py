@@ -13,7 +13,7 @@ from stiffmbs.solve.formulations import FORMULATIONS
 from ..random_parts import CASES, add_joints, random_element, refers_to_joints, three_bodies, three_bodies_in_space
 
 T = 0.37
-STEP = 5e-3
+STEP = 3e-3
 WEIGHTS = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}  # eighth order, centred
 TOLERANCE = 1e-8
 

@@ -84,3 +84,35 @@ def test_a_swinging_chain_keeps_its_energy(solved, links):
     falls = solution["energy.potential"][0] - solution["energy.potential"].min()
     assert solution.energy_drift() < 1e-5 * falls
     assert solution["constraint.position"].max() < 1e-10
+
+
+CAR_AXIS = """
+gravity: [0, -1]
+parameters: {w: 10 rad/s, amplitude: 0.1 m}
+variables: {y_road: amplitude*sin(w*t), x_road: "sqrt((1 m)^2 - y_road^2)", stretched: "sqrt((r.x - x_road)^2 + (r.y - y_road)^2)"}
+bodies:
+  l: {mass: 5e-4, inertia: 1, position: [0, 0.5], velocity: [-0.5, 0]}
+  r: {mass: 5e-4, inertia: 1, position: [1, 0.5], velocity: [-0.5, 0]}
+joints:
+  axle: {type: distance, i: l, j: r, length: 1}
+  axis: {type: equation, zero: l.x*x_road + l.y*y_road}
+forces:
+  left: {type: spring_damper, i: l, j: ground, stiffness: 1, free_length: 0.5}
+  right:
+    type: force
+    i: r
+    j: ground
+    force: ["1 N/m*(0.5 m/stretched - 1)*(r.x - x_road)", "1 N/m*(0.5 m/stretched - 1)*(r.y - y_road)"]
+"""
+CAR_AXIS_AT_3 = {
+    "l.x": 0.0493455784275402809, "l.y": 0.496989460230171154, "r.x": 1.04174252488542152, "r.y": 0.373911027265361257,
+    "l.vx": -0.0770583684040972358, "l.vy": 0.00744686658723778553, "r.vx": 0.0175568157537232222, "r.vy": 0.770341043779251976,
+}  # fmt: skip
+"""Of the Test Set for IVP Solvers, problem 'car axis' (Mazzia, Magherini, release 2.4)."""
+
+
+@pytest.mark.parametrize("settings", [{"rtol": 1e-9}, {"rtol": 1e-9, "solver": "projected"}])
+def test_the_car_axis_of_the_test_set_for_initial_value_problems(settings):
+    solution = stiffmbs.run(stiffmbs.read_scene(CAR_AXIS), duration=3.0, **settings)
+    for channel, expected in CAR_AXIS_AT_3.items():
+        assert solution[channel][-1] == pytest.approx(expected, abs=1e-6)

@@ -5,7 +5,10 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Bushing, Model
+from stiffmbs.jobs.run import prepare
+from stiffmbs.solve.bdf import Integrator
 from stiffmbs.solve.error_control import stability_limit as order_watch
+from stiffmbs.solve.trajectory import Grid
 
 
 def rod_on_bushing(stiffness):
@@ -58,3 +61,34 @@ def test_scenes_without_such_a_vibration_are_solved_as_before(examples, name, mo
     unwatched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
     assert watched.solver["steps"] == unwatched.solver["steps"]
     assert watched.notes == unwatched.notes
+
+
+def test_many_unknowns_are_looked_at_sooner(monkeypatch):
+    """A look costs less there than the steps that it saves."""
+    model = Model(gravity=(0, -9.81))
+    end = "ground"
+    for k in range(20):
+        rod = model.add(f"rod_{k}", Body(mass=1, inertia=1 / 12, position=(k + 0.5, 0)))
+        model.add(f"pin_{k}", Bushing(i=rod.at(-0.5, 0), j=end, stiffness=[1e6, 1e6, 0], damping=[0, 0, 0]))
+        end = rod.at(0.5, 0)
+    looks = []
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "changed", lambda _, samples, steps: looks.append(steps))
+    solved(model, rtol=1e-4)
+    assert looks
+    assert 100 < looks[0] < 1000
+
+
+def test_ida_is_not_started_where_it_is_to_stop(monkeypatch):
+    """It refuses to: an order that is to change there waits for the next start."""
+    job = prepare(rod_on_bushing(1e4), duration=0.1, solver="bdf")
+    integrator = Integrator(job.dynamics, job.settings)
+    for _ in integrator.run(job.start, Grid(0.0, 0.1, np.array([0.1]))):
+        pass
+    engine, starts = integrator.engine, []
+    monkeypatch.setattr(engine, "begin", lambda *given: starts.append(given))
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "due", lambda *_: True)
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "changed", lambda *_: True)
+    engine._adapt(0.1)
+    assert not starts
+    engine._adapt(0.2)
+    assert len(starts) == 1

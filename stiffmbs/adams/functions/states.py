@@ -155,7 +155,9 @@ def _linear(one: LinearSystem, translation: Translation) -> dict[str, Any]:
     expected = {"A": (a, n, n), "B": (b, n, max(m, 1)), "C": (c, len(c), n), "D": (d, len(c), max(m, 1))}
     for name, (rows, high, wide) in expected.items():
         if len(rows) != high or any(len(row) != wide for row in rows):
-            raise one.fault(f"found {name} of {len(rows)} rows, expected {high} rows of {wide} numbers")
+            raise one.fault(
+                f"found {name} of {len(rows)} by {len(rows[0])} numbers, expected {high} rows and {wide} columns"
+            )
     identity = [[1 if i == k else 0 for i in range(n)] for k in range(n)]
     made: dict[str, Any] = {
         "a": [vector([x / unit for x in row]) for row in a],

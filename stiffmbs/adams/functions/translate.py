@@ -38,7 +38,7 @@ PLAIN = {
 }  # fmt: skip
 """Functions that the scene has too."""
 COUPLED = (
-    "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "CVCV", "SFORCE", "VFORCE", "VTORQ", "VTORQUE", "GFORCE", "SPDP", "BUSH", "BEAM", "FIELD",
+    "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "CVCV", "CONTACT", "SFORCE", "VFORCE", "VTORQ", "VTORQUE", "GFORCE", "SPDP", "BUSH", "BEAM", "FIELD",
     "FX", "FY", "FZ", "FM", "TX", "TY", "TZ", "TM",
 )  # fmt: skip
 """Functions of forces that requests alone may use."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Iterator
 
+from ..scene.contacts import swapped
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
 from ..statements.constraints import GeneralConstraint, Numbered
+from ..statements.contact import Contact
 from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
@@ -22,6 +24,7 @@ ANGLES = ("PSI", "THETA", "PHI")
 ELEMENTS = {
     **{name: name for name in (
         "JOINT", "JPRIM", "GCON", "MOTION", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "BEAM", "FIELD", "COUPLER", "GEAR", "PTCV", "CVCV",
+        "CONTACT",
     )},
     "VTORQ": "VTORQUE", "SPDP": "SPRINGDAMPER", "BUSH": "BUSHING",
 }  # fmt: skip
@@ -95,6 +98,10 @@ class OutputTranslation(Translation):
             raise function.fault(f"found the force of {found.label} on its marker J, which it does not have")
         if on_j and isinstance(found, SingleForce) and found.action_only:
             return number(0.0)
+        if isinstance(found, Contact):
+            if which[0] == "T":
+                raise function.fault(f"found the torque of {found.label}, expected a component of its force")
+            on_j = bool(on_j) != swapped(found, self.mechanism)
         return over(self._component(which, [(found, bool(on_j))], axes, function), self._force_unit(which))
 
     def _force_unit(self, component: str) -> float:

@@ -14,7 +14,7 @@ from ..functions.translate import Translation
 from ..statements.contact import PLANE, SPHERE, Contact, Friction, Shape, read_shape
 from ..statements.fault import of_each
 from .mechanism import Mechanism
-from .solids import between_solids
+from .solids import PAIRS, between_solids
 
 TORQUE = "_torque"
 SLOW = 1e-6
@@ -34,6 +34,12 @@ def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> d
         sphere, plane = (first, second) if first.sort == SPHERE else (second, first)
         return _on_plane(contact, sphere, plane, mechanism, translation)
     return {contact.name: between_solids(contact, first, second, mechanism)}
+
+
+def swapped(contact: Contact, mechanism: Mechanism) -> bool:
+    """Whether the scene's force is on the part of JGEOM."""
+    first, second = (_shape(contact, ident, mechanism).sort for ident in contact.shapes)
+    return (first, second) not in ((SPHERE, PLANE), *PAIRS)
 
 
 def _shape(contact: Contact, ident: int, mechanism: Mechanism) -> Shape:

@@ -106,7 +106,7 @@ class _Rubbing:
         load = self._sum(
             ("REACTION_FORCE", self._across("F")), ("BENDING_MOMENT", f"{self._across('T')}/{self._overlap()}")
         )
-        mu, way = self._coefficient(speed), self._direction(speed)
+        mu, way = self._of_magnitude(speed), self._direction(speed)
         force = f"-(({mu})*({load}) + {self._preload(f.force)}*({way}))*{along}/{speed}"
         torque = f"-({f.pin!r}*({mu})*({load}) + {self._preload(f.torque)}*({way}))*{about}/{speed}"
         return self._force([None, None, force], f.name) | self._torque([None, None, torque], f.name + TORQUE)
@@ -116,7 +116,9 @@ class _Rubbing:
         parts = [f"({f.ball!r}*{self._turning(axis)})" for axis in "XYZ"]
         speed = self._speed(*parts)
         load = self._sum(("REACTION_FORCE", f"{f.ball!r}*{self._whole('F')}"))
-        size = f"(({self._coefficient(speed)})*({load}) + {self._preload(f.torque)}*({self._direction(speed)}))/{speed}"
+        size = (
+            f"(({self._of_magnitude(speed)})*({load}) + {self._preload(f.torque)}*({self._direction(speed)}))/{speed}"
+        )
         return self._torque([f"-{part}*{size}" for part in parts], f.name)
 
     def _sum(self, *loads: tuple[str, str]) -> str:
@@ -127,13 +129,21 @@ class _Rubbing:
 
     def _coefficient(self, speed: str) -> str:
         """mu over a speed with its sign."""
+        return self._held(speed) + self._fallen(speed, "-") + self._fallen(f"-({speed})", "+")
+
+    def _of_magnitude(self, speed: str) -> str:
+        """mu over a speed that is never negative."""
+        return self._held(speed) + self._fallen(speed, "-")
+
+    def _held(self, speed: str) -> str:
         f = self._f
-        slow, fast, less = f.stiction_velocity, f.sliding_velocity, f.static - f.dynamic
-        held = f"STEP({speed}, {-slow!r}, {-f.static!r}, {slow!r}, {f.static!r})"
-        if not less:
-            return held
-        fallen = (f"STEP({sign}({speed}), {slow!r}, 0, {fast!r}, {less!r})" for sign in ("", "-"))
-        return f"{held} - {next(fallen)} + {next(fallen)}"
+        return f"STEP({speed}, {-f.stiction_velocity!r}, {-f.static!r}, {f.stiction_velocity!r}, {f.static!r})"
+
+    def _fallen(self, speed: str, sign: str) -> str:
+        """What the coefficient loses as the speed goes on from that of stiction."""
+        f = self._f
+        less = f.static - f.dynamic
+        return f" {sign} STEP({speed}, {f.stiction_velocity!r}, 0, {f.sliding_velocity!r}, {less!r})" if less else ""
 
     def _direction(self, speed: str) -> str:
         slow = self._f.stiction_velocity

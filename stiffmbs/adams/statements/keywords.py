@@ -52,6 +52,7 @@ LEFT_OUT = {
     "MATERIAL": "materials",
     "OUTPUT": "output settings",
     "RESULTS": "output settings",
+    "LIST": "output settings",
     "MREQUEST": "output",
     "FEMDATA": "output",
     "LINEAR": "analysis settings",

@@ -96,7 +96,8 @@ def _from_entries(found: Arguments, values: tuple[float, ...]) -> tuple[tuple[fl
     if not values or len(rows) != len(values) or len(columns) != len(values) or 0 in (*rows, *columns):
         raise found.fault("found other numbers of I, J and VALUES, expected as many of each, I and J from 1 on")
     entries = dict(zip(zip(rows, columns, strict=True), values, strict=True))
-    return tuple(tuple(entries.get((i, j), 0.0) for j in range(1, max(columns) + 1)) for i in range(1, max(rows) + 1))
+    high, wide = (max(int(found.number(name) or 0), *at) for name, at in (("M", rows), ("N", columns)))
+    return tuple(tuple(entries.get((i, j), 0.0) for j in range(1, wide + 1)) for i in range(1, high + 1))
 
 
 def read_linear_system(statement: Statement, units: Units) -> LinearSystem:

@@ -7,6 +7,7 @@ that stays, or a cell: a number that both sides read and set.
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
@@ -30,6 +31,13 @@ class Layout(dict[str, str]):
         formats = ["f8" if self[name] == FLOAT_CELL else "i8" for name in columns]
         offsets = [8 * column for column in columns.values()]
         return np.dtype({"names": list(columns), "formats": formats, "offsets": offsets, "itemsize": 8 * len(self)})
+
+    @cached_property
+    def given(self) -> tuple[np.ndarray, tuple[str, ...], tuple[np.dtype[Any] | None, ...]]:
+        """The columns whose values Python gives, numbers and addresses of arrays: their places, names, and types of the arrays."""
+        found = {name: column for column, name in enumerate(self) if self[name] in (INT, *DTYPES)}
+        types = (np.dtype(DTYPES[self[name]]) if self[name] in DTYPES else None for name in found)
+        return np.array([*found.values()], dtype=np.intp), tuple(found), tuple(types)
 
 
 INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
@@ -343,15 +351,24 @@ def arrays_of(layout: Layout, lists: Mapping[str, Any]) -> dict[str, np.ndarray]
 def fill(table: np.ndarray, layout: Layout, values: Mapping[str, Any]) -> None:
     """Fill a table; cells for which no value is given keep theirs."""
     own = table.view(layout.cells)[0]
-    for column, (name, kind) in enumerate(layout.items()):
-        if kind in CELLS and name in values:
+    for name in layout.cells.names or ():
+        if name in values:
             own[name] = values[name]
-        if kind not in (INT, *DTYPES):
-            continue
+    columns, names, types = layout.given
+    numbers = []
+    for name, dtype in zip(names, types, strict=True):
         value = values[name]
-        if kind == INT:
-            table[column] = int(value)
-        else:
+        if dtype is not None:
             assert isinstance(value, np.ndarray) and value.flags.c_contiguous, name
-            assert value.dtype == DTYPES[kind], name
-            table[column] = value.__array_interface__["data"][0]
+            assert value.dtype == dtype, name
+            value = address(value)
+        numbers.append(int(value))
+    table[columns] = numbers
+
+
+def address(array: np.ndarray) -> int:
+    """The address of an array's numbers, in a tenth of the time that ``array.ctypes.data`` takes."""
+    if array.size and array.flags.writeable:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))  # type: ignore[arg-type]
+    at: int = array.__array_interface__["data"][0]
+    return at

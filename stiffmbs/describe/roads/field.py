@@ -15,6 +15,7 @@ from ...errors import InputError
 from ..fields import NAME_PATTERN, sentence
 from ..files.quoted import quoted, written
 from .cosine_bump import CosineBump
+from .crg import CrgRoad
 from .flat import FlatRoad
 from .formula import FormulaRoad
 from .grid import GridRoad
@@ -27,7 +28,7 @@ from .step import StepRoad
 ROADS: Mapping[str, type[Road]] = MappingProxyType(
     {
         road.kind: road
-        for road in (FlatRoad, FormulaRoad, TableRoad, GridRoad, StepRoad, CosineBump, SineSweep, Iso8608Road)
+        for road in (FlatRoad, FormulaRoad, TableRoad, GridRoad, CrgRoad, StepRoad, CosineBump, SineSweep, Iso8608Road)
     }
 )
 """The kinds of roads."""

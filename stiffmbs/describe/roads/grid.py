@@ -33,10 +33,14 @@ class GridRoad(Road):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
-        """The first line's height, and what each further one adds."""
-        heights = [line(x) for line in r.lines]
-        height = heights[0]
-        for k in range(1, len(heights)):
-            part = clipped((y - r.across[k - 1]) / (r.across[k] - r.across[k - 1]))
-            height = height + (heights[k] - heights[k - 1]) * part
-        return height
+        return between_lines(r, x, y)
+
+
+def between_lines(r: Symbolic, x: Any, y: Any) -> Any:
+    """The height of a road with tables `lines` at places `across`: the first line's, and what each further one adds."""
+    heights = [line(x) for line in r.lines]
+    height = heights[0]
+    for k in range(1, len(heights)):
+        part = clipped((y - r.across[k - 1]) / (r.across[k] - r.across[k - 1]))
+        height = height + (heights[k] - heights[k - 1]) * part
+    return height

@@ -81,6 +81,11 @@ class Road(Component):
         raise NotImplementedError
 
     @staticmethod
+    def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
+        """How far along and across the road a point is, m; e is the element that is on the road."""
+        return x, y
+
+    @staticmethod
     def surface(r: Symbolic, x: Any, y: Any) -> Any:
         """The height that a wheel sees there, m: through the filter where the road has one."""
         return r.height(x, y) if r.rolled is None else r.rolled(x)

@@ -71,13 +71,14 @@ def contact_point(e: Symbolic) -> ContactPoint:
 
 
 def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
-    """Below or above a point: x and y along the road's axes, the point's distance from the road's tangent plane there, and
-    its normal."""
+    """Below or above a point: how far along and across the road it is, the point's distance from the road's tangent plane there,
+    and its normal."""
     from sympy import Matrix, sqrt
 
     local = point if e.j is None else Matrix([(point - e.j.point).dot(axis) for axis in e.j.axes])
     x, y = e.variable(local[0]), e.variable(local[1])
-    height = e.named(e.road.surface(x, y))
+    along, across = e.road.place(e, x, y)
+    height = e.named(e.road.surface(along, across))
     slopes = e.named([e.slope(height, x), e.slope(height, y)])
     upright = e.named(1 / sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2))
     components = Matrix([-slopes[0] * upright, -slopes[1] * upright, upright])
@@ -86,7 +87,7 @@ def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
         if e.j is None
         else sum((c * a for c, a in zip(components, e.j.axes, strict=True)), Matrix([0, 0, 0]))
     )
-    return x, y, e.named((local[2] - height) * upright), e.named(n)
+    return along, across, e.named((local[2] - height) * upright), e.named(n)
 
 
 def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:

@@ -9,6 +9,7 @@ import numpy as np
 from ...compile.system import System
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics, OutputRows
+from ..events.restart import INDISTINCT
 from ..storage import blocks, release
 from ..trajectory import Trajectory
 from .tolerances import absolute_tolerances
@@ -99,7 +100,9 @@ def _heaviest(system: System) -> np.ndarray:
     return system.per_velocity(mass, inertia + mass * system.size**2)
 
 
-def creep_of(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings) -> Creep:
+def creep_of(
+    system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, breakpoints: np.ndarray
+) -> Creep:
     """The creep of a run whose reported states were brought back to the constraints.
 
     Parameters
@@ -109,13 +112,16 @@ def creep_of(system: System, rows: OutputRows, trajectory: Trajectory, settings:
     trajectory : Trajectory
         As integrated, at the instants of the rows and maybe later.
     settings : RunSettings
+    breakpoints : ndarray
+        Instants at which prescribed velocities may jump, s: the rows there show that and no creep.
     """
     count = len(rows.t)
+    jump = _at_one_of(rows.t, breakpoints)
     absolute = absolute_tolerances(system, settings)[system.n_q :]
     largest, total, row, velocity = 0.0, 0.0, 0, 0
     for block in blocks(count):
         off = _in_tolerances(trajectory.u[:count][block], rows.u[block], absolute, settings.rtol)
-        of_rows = off.max(axis=1)
+        of_rows = np.where(jump[block], 0.0, off.max(axis=1))
         total += float(of_rows.sum())
         k = int(of_rows.argmax())
         if of_rows[k] > largest:
@@ -136,6 +142,16 @@ def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings)
         return 0.0
     absolute = absolute_tolerances(system, settings)[system.n_q :]
     return float(_in_tolerances(u, state.u, absolute, settings.rtol).max())
+
+
+def _at_one_of(t: np.ndarray, instants: np.ndarray) -> np.ndarray:
+    """Whether each time is one of some increasing instants, but for rounding."""
+    if not len(instants):
+        return np.zeros(len(t), dtype=bool)
+    following = np.searchsorted(instants, t)
+    before, after = instants[np.maximum(following - 1, 0)], instants[np.minimum(following, len(instants) - 1)]
+    near: np.ndarray = np.minimum(np.abs(t - before), np.abs(t - after)) <= INDISTINCT * np.abs(t)
+    return near
 
 
 def _in_tolerances(before: np.ndarray, after: np.ndarray, absolute: np.ndarray, rtol: float) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import EXPLICIT, packed
+from ...compile.machine.layout import EXPLICIT, address, packed
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
@@ -80,7 +80,7 @@ class Integration:
     @property
     def at(self) -> int:
         """The address of the table for compiled code."""
-        return self._table.ctypes.data
+        return address(self._table)
 
     @property
     def t(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import MOST_STEPS
+from ...compile.machine.layout import MOST_STEPS, address
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ..events.long_steps import LongStepLog
@@ -255,10 +255,8 @@ class NativeIda:
         for rows in (y_out,) if yp_out is None else (y_out, yp_out):
             self._check_rows(rows, len(times))
         self._ida.ask("IDASetStopTime", stop)
-        derivatives = 0 if yp_out is None else yp_out.ctypes.data
-        self._run(
-            ADVANCE, len(times), times.ctypes.data, stop, min(self._pace, self._look), y_out.ctypes.data, derivatives
-        )
+        derivatives = 0 if yp_out is None else address(yp_out)
+        self._run(ADVANCE, len(times), address(times), stop, min(self._pace, self._look), address(y_out), derivatives)
         return int(self._ida.cells["served"]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:

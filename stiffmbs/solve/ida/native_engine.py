@@ -15,6 +15,7 @@ from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
 from ..error_control.newton import NUMBERS_END, Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
+from ..events.restart import just_after
 from ..storage import allocated, blocks, release
 from ..trajectory import History
 from .engine import Reached
@@ -71,6 +72,7 @@ class NativeEngine:
         """Forget counters, history and pivots of an earlier run."""
         self._ida.forget()
         self._order.forget()
+        self._ida.look_after(self._order.wait(0))
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
@@ -92,9 +94,13 @@ class NativeEngine:
         self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
+        if self._order.looks_often:
+            self._ida.look_after(self._order.wait(self._ida.history.count))
 
-    def _adapt(self) -> None:
+    def _adapt(self, stop: float) -> None:
         """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
+        if just_after(self._ida.t) >= stop:
+            return  # IDA does not start where it is to stop
         self._ease_newton()
         ida = self._ida
         if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
@@ -126,7 +132,7 @@ class NativeEngine:
                 release(rows)
             yield self._reached(times[last], rows[last], status)
             if status is Status.GOING:
-                self._adapt()
+                self._adapt(stop)
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
@@ -136,7 +142,7 @@ class NativeEngine:
             served, status = self._ida.steps(stop, times, rows)
             yield self._reached(times[:served], rows[:served], status)
             if status is Status.GOING:
-                self._adapt()
+                self._adapt(stop)
 
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
         failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""

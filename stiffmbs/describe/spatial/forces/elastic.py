@@ -101,7 +101,7 @@ class Elastic(Force):
 
     beyond: ClassVar[str] = (
         "found its bodies turned by three quarters of a turn against each other (an axis about which they are free: "
-        "tilted by 135 degrees), expected less"
+        "tilted by 135 degrees), expected less; a vibration that grows, as shimmy, is told by 'stiffmbs modes' with an earlier --at"
     )
 
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")

@@ -1,0 +1,177 @@
+"""A road by a curved regular grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, PrivateAttr, ValidationInfo, model_validator
+from pydantic_core import core_schema
+
+from ...errors import InputError
+from ..element import Symbolic
+from ..files.quoted import written
+from ..table import Table
+from .crg_grid import CrgGrid, read_crg
+from .grid import between_lines
+from .reference_line import ReferenceLine, nearest, reference_line
+from .road import Road
+from .rolling_filter import through_filter
+
+if TYPE_CHECKING:
+    import numpy as np
+
+MOST_SECTIONS, MOST_HEIGHTS = 32, 400_000
+"""Long sections, and heights on all of them, that the equations may have."""
+STRAIGHT = 1e-9
+"""m, up to which a reference line may depart from a straight one."""
+LEVEL = 3
+"""Points before and behind the road that keep it level there."""
+
+
+class _CrgField:
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        def read(found: object, info: ValidationInfo) -> CrgGrid:
+            return _read(found, info.context or {})
+
+        return core_schema.with_info_plain_validator_function(read)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "string", "description": "the name of an OpenCRG file, beside the scene"}
+
+
+def _read(found: object, context: Mapping[str, Any]) -> CrgGrid:
+    if isinstance(found, CrgGrid):
+        return found
+    if not isinstance(found, str | Path):
+        raise ValueError(f"found {written(found)}, expected the name of a file")
+    try:
+        return read_crg(Path(context.get("folder") or "") / found)
+    except InputError as error:
+        raise ValueError(str(error)) from None
+
+
+AnyCrg = Annotated[CrgGrid, _CrgField()]
+
+
+class CrgRoad(Road):
+    """A road by an OpenCRG file (.crg): heights beside a straight or curved reference line, with its slope and banking.
+
+    Along each long section the height is interpolated by Akima's cubics, between two sections straight; beyond the road it stays.
+    Of more long sections than `sections` so many are used, equally far apart, and a note says so.  The line may turn by up to
+    80 deg from its mean direction.
+
+    ASAM OpenCRG 1.2, user manual.
+    """
+
+    kind: ClassVar[str] = "crg"
+
+    file: AnyCrg = Field(description="the name of an OpenCRG file, beside the scene")
+    placed: Literal["origin", "file"] = Field(
+        "origin", description="whether the road begins at the origin along x, as OpenCRG has it, or where the file says"
+    )
+    sections: int = Field(MOST_SECTIONS, ge=2, le=MOST_SECTIONS, description="long sections that are used at the most")
+
+    _line: ReferenceLine | None = PrivateAttr(None)
+
+    @model_validator(mode="after")
+    def _of_bounded_size(self) -> CrgRoad:
+        count = len(self.file.u) * len(self._columns)
+        if count > MOST_HEIGHTS:
+            raise ValueError(
+                f"found {count} heights, {len(self.file.u)} on each of {len(self._columns)} long sections, expected at most "
+                f"{MOST_HEIGHTS}: use fewer sections, or cut the road"
+            )
+        try:
+            self._line = self._reference_line()
+        except InputError as error:
+            raise ValueError(str(error)) from None
+        return self
+
+    @property
+    def _columns(self) -> np.ndarray:
+        """The long sections that are used."""
+        import numpy as np
+
+        count = len(self.file.v)
+        return np.unique(np.round(np.linspace(0, count - 1, min(count, self.sections))).astype(int))
+
+    def _at_its_place(self) -> tuple[np.ndarray, np.ndarray, float]:
+        """x and y of the reference line, m, and the level that heights are above, m."""
+        import numpy as np
+
+        x, y = self.file.x, self.file.y
+        if self.placed == "file":
+            return x, y, 0.0
+        c, s = np.cos(self.file.heading), np.sin(self.file.heading)
+        x, y = x - x[0], y - y[0]
+        return c * x + s * y, c * y - s * x, self.file.level
+
+    def _reference_line(self) -> ReferenceLine | None:
+        """The reference line where it is curved."""
+        import numpy as np
+
+        x, y, _ = self._at_its_place()
+        c, s = self._direction()
+        across = (y - y[0]) * c - (x - x[0]) * s
+        if np.abs(across).max() <= STRAIGHT:
+            return None
+        return reference_line(self.file.u, x, y, self.file.v, self.file.path)
+
+    def _direction(self) -> tuple[float, float]:
+        """Of the first stretch of the reference line."""
+        import math
+
+        heading = 0.0 if self.placed == "origin" else self.file.heading
+        return math.cos(heading), math.sin(heading)
+
+    def notes(self) -> Iterator[str]:
+        used, count = len(self._columns), len(self.file.v)
+        if used < count:
+            yield f"{used} of the {count} long sections of {self.file.path} are used"
+        if self.file.options:
+            yield f"the options of {self.file.path} are not used: beyond the road its height stays"
+
+    def extent(self) -> tuple[float, float]:
+        return float(self.file.u[0]), float(self.file.u[-1])
+
+    def in_equations(self) -> dict[str, Any]:
+        x, y, level = self._at_its_place()
+        columns = self._columns
+        tables = tuple(
+            through_filter(_section(self.file.u, self.file.heights[:, k] - level), self.filter_radius) for k in columns
+        )
+        own = {"friction": self.friction, "lines": tables, "across": tuple(self.file.v[columns].tolist())}
+        if self._line is not None:
+            return {**own, **self._line.in_equations()}
+        return {
+            **own,
+            "guess": None,
+            "direction": self._direction(),
+            "start": (float(x[0]), float(y[0]), float(self.file.u[0])),
+        }
+
+    @staticmethod
+    def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
+        """u and v of the point."""
+        if r.guess is not None:
+            return nearest(r, e, x, y)
+        (c, s), (x0, y0, u0) = r.direction, r.start
+        return e.named((x - x0) * c + (y - y0) * s + u0), e.named((y - y0) * c - (x - x0) * s)
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        return between_lines(r, x, y)
+
+
+def _section(u: np.ndarray, heights: np.ndarray) -> Table:
+    """The heights of a long section, which stay beyond its ends."""
+    import numpy as np
+
+    beside = (u[1] - u[0]) * np.arange(1, LEVEL + 1)
+    at = np.concatenate([u[0] - beside[::-1], u, u[-1] + beside])
+    z = np.concatenate([np.full(LEVEL, heights[0]), heights, np.full(LEVEL, heights[-1])])
+    return Table.model_construct(
+        table=tuple(zip(at.tolist(), z.tolist(), strict=True)), ends="natural", lines=False, akima=True
+    )

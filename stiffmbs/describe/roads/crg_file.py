@@ -1,0 +1,147 @@
+"""Files of curved regular grids (OpenCRG, .crg): a header in text, then heights as text or as binary numbers.
+
+ASAM OpenCRG 1.2, user manual.  Blocks of the header begin with ``$NAME`` and end with ``$``; a line ``$$$$`` ends the header.
+A record of the data is one cross-section: the channels that ``$KD_DEFINITION`` lists, in their order.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import InputError
+from ..files.quoted import quoted
+
+WIDTH = 72
+"""Characters of a line of the header that count."""
+REFUSED = {"ROAD_CRG_FILE": "a reference to another file", "ROAD_CRG_MODS": "modifiers"}
+"""Blocks that change what the file says, and what they hold."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A line of a block, without its comment."""
+
+    line: int
+    text: str
+
+
+@dataclass(frozen=True)
+class CrgHeader:
+    """The header of a file.
+
+    Attributes
+    ----------
+    blocks : dict of str to list of Entry
+    numbers : dict of str to float
+        Of ``$ROAD_CRG``, by the names in capitals.
+    layout : str
+        Of the data: LRFI, LDFI, KRBI or KDBI.
+    channels : list of Entry
+        What stands behind ``D:``.
+    u : tuple of float
+        Start and increment, m.
+    line : int
+        The last line of the header.
+    end : int
+        Where the data begin, in bytes.
+    """
+
+    blocks: dict[str, list[Entry]]
+    numbers: dict[str, float]
+    layout: str
+    channels: list[Entry]
+    u: tuple[float, float]
+    line: int
+    end: int
+
+
+def read_header(content: bytes, path: Path) -> CrgHeader:
+    """Read the header of a file.
+
+    Raises
+    ------
+    InputError
+        When it is none; names the line.
+    """
+    source = str(path)
+    blocks, line, end = _blocks(content, source)
+    for name, holds in REFUSED.items():
+        if blocks.get(name):
+            entry = blocks[name][0]
+            raise InputError(
+                f"{source}, line {entry.line}: found ${name}, {holds}, expected a file with heights as they are"
+            )
+    numbers = dict(_numbers(blocks.get("ROAD_CRG", []), source))
+    definition = blocks.get("KD_DEFINITION", [])
+    layouts = [entry for entry in definition if entry.text.startswith("#:")]
+    channels = [Entry(entry.line, entry.text[2:].strip()) for entry in definition if entry.text.startswith("D:")]
+    if not layouts or not channels:
+        raise InputError(f"{source}: found no $KD_DEFINITION with a format (#:) and channels (D:)")
+    layout = layouts[-1].text[2:].strip()
+    if layout not in ("LRFI", "LDFI", "KRBI", "KDBI"):
+        raise InputError(
+            f"{source}, line {layouts[-1].line}: found the format '{quoted(layout)}', expected LRFI, LDFI, KRBI or KDBI"
+        )
+    start = numbers.get("REFERENCE_LINE_START_U", 0.0), numbers.get("REFERENCE_LINE_INCREMENT", 0.01)
+    return CrgHeader(blocks, numbers, layout, channels, _u(definition, start, source), line, end)
+
+
+def _blocks(content: bytes, source: str) -> tuple[dict[str, list[Entry]], int, int]:
+    """The blocks, the last line of the header, and the first byte behind it."""
+    blocks: dict[str, list[Entry]] = {}
+    name, at, number = "", 0, 0
+    while at < len(content):
+        stop = content.find(b"\n", at)
+        stop = len(content) if stop < 0 else stop
+        number += 1
+        text = content[at:stop].decode("latin-1").rstrip("\r")[:WIDTH]
+        at = stop + 1
+        word = text.partition("!")[0].strip()
+        if text.startswith("$$"):
+            if name:
+                raise InputError(f"{source}, line {number}: found the end of the header inside ${name}, expected '$'")
+            return blocks, number, at
+        if word == "$":
+            if not name:
+                raise InputError(f"{source}, line {number}: found the end of a block, expected its beginning")
+            name = ""
+        elif text.startswith("$"):
+            if name:
+                raise InputError(f"{source}, line {number}: found {quoted(word)} inside ${name}, expected '$'")
+            name = word[1:].split()[0].upper()
+            blocks.setdefault(name, [])
+        elif name and word and not text.startswith("*"):
+            blocks[name].append(Entry(number, word))
+    raise InputError(f"{source}: found no line $$$$ that ends the header, expected an OpenCRG file with data")
+
+
+def _numbers(block: list[Entry], source: str) -> Iterator[tuple[str, float]]:
+    for entry in block:
+        name, equals, value = entry.text.partition("=")
+        if equals:
+            yield name.strip().upper(), _number(value, f"{source}, line {entry.line}")
+
+
+def _u(definition: list[Entry], start: tuple[float, float], source: str) -> tuple[float, float]:
+    """Start and increment of the reference line, as ``U: reference line u,m,0.0,0.01`` says where it stands."""
+    for entry in definition:
+        parts = [part.strip() for part in entry.text[2:].split(",")]
+        if entry.text.startswith("U:") and parts[:2] == ["reference line u", "m"]:
+            given = [_number(part, f"{source}, line {entry.line}") for part in parts[2:4] if part]
+            start = (*given, *start[len(given) :])  # type: ignore[assignment]
+    if not start[1] > 0:
+        raise InputError(f"{source}: found an increment of {start[1]:g} m, expected one above zero")
+    return start
+
+
+def _number(text: str, where: str) -> float:
+    try:
+        value = float(text.replace("D", "E").replace("d", "e"))
+    except ValueError:
+        raise InputError(f"{where}: found '{quoted(text.strip())}', expected a number") from None
+    if not math.isfinite(value):
+        raise InputError(f"{where}: found '{quoted(text.strip())}', expected a finite number")
+    return value

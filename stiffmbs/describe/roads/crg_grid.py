@@ -1,0 +1,146 @@
+"""Curved regular grids: the reference line in the plane, and the heights beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...errors import InputError
+from .crg_file import CrgHeader, Entry, read_header
+from .crg_records import read_records
+
+if TYPE_CHECKING:
+    import numpy as np
+
+UNITS = {"phi": "rad", "slope": "m/m", "banking": "m/m"}
+"""Of the channels of the reference line."""
+
+
+@dataclass(frozen=True, eq=False)
+class CrgGrid:
+    """A curved regular grid.
+
+    Attributes
+    ----------
+    path : str
+    u : ndarray, shape (n,)
+        Along the reference line, m.
+    v : ndarray, shape (k,)
+        To the left of it, m; increasing.
+    heights : ndarray, shape (n, k)
+        With slope and banking, m.
+    x, y : ndarrays, shape (n,)
+        Of the reference line, m.
+    heading : float
+        At its start, rad.
+    level : float
+        Of the reference line at its start, m.
+    options : bool
+        Whether the file has options, which are not used.
+    """
+
+    path: str
+    u: np.ndarray
+    v: np.ndarray
+    heights: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    heading: float
+    level: float
+    options: bool = False
+
+
+def read_crg(path: Path) -> CrgGrid:
+    """Read an OpenCRG file.
+
+    The heading, and the slope, of a record is that from the record before to this one, as in OpenCRG's own library; the banking
+    is that at the record.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read; names the line.
+    """
+    import numpy as np
+
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read ({error.strerror or error})") from None
+    header = read_header(content, path)
+    line, sections = _sorted_channels(header, path)
+    v = _positions(header, sections, path)
+    records = read_records(content, header, path)
+    order = np.argsort(v, kind="stable")
+    v = v[order]
+    if not np.all(np.diff(v) > 0):
+        raise InputError(f"{path}: found two long sections at one v, expected different positions")
+    columns = np.array([column for column, _ in sections])[order]
+    u = header.u[0] + header.u[1] * np.arange(len(records))
+    get = header.numbers.get
+    phi, slope, banking = (
+        records[:, line[name]] if name in line else np.full(len(u), get(f"REFERENCE_LINE_START_{key}", 0.0))
+        for name, key in (("phi", "PHI"), ("slope", "S"), ("banking", "B"))
+    )
+    level = get("REFERENCE_LINE_START_Z", 0.0) + _summed(slope * header.u[1])
+    return CrgGrid(
+        str(path), u, v, records[:, columns] + level[:, None] + banking[:, None] * v,
+        get("REFERENCE_LINE_START_X", 0.0) + _summed(np.cos(phi) * header.u[1]),
+        get("REFERENCE_LINE_START_Y", 0.0) + _summed(np.sin(phi) * header.u[1]),
+        float(phi[1]), float(level[0]), bool(header.blocks.get("ROAD_CRG_OPTS")),
+    )  # fmt: skip
+
+
+def _summed(steps: np.ndarray) -> np.ndarray:
+    """The sums of all steps but the first, which leads to no record."""
+    import numpy as np
+
+    return np.concatenate([[0.0], np.cumsum(steps[1:])])
+
+
+def _sorted_channels(header: CrgHeader, path: Path) -> tuple[dict[str, int], list[tuple[int, Entry]]]:
+    """Columns of the reference line's channels, by name, and those of the long sections."""
+    line: dict[str, int] = {}
+    sections: list[tuple[int, Entry]] = []
+    for column, entry in enumerate(header.channels):
+        name, _, unit = (part.strip() for part in entry.text.partition(","))
+        kind = name.removeprefix("reference line ")
+        expected = "m" if name.startswith("long section ") else UNITS.get(kind, unit)
+        if unit != expected:
+            raise InputError(f"{path}, line {entry.line}: found '{name}' in '{unit}', expected {expected}")
+        if name.startswith("long section "):
+            sections.append((column, Entry(entry.line, name.removeprefix("long section "))))
+        elif name.startswith("reference line ") and kind in UNITS:
+            line[kind] = column
+    if len(sections) < 2:
+        raise InputError(f"{path}: found {len(sections)} long sections, expected two or more")
+    return line, sections
+
+
+def _positions(header: CrgHeader, sections: list[tuple[int, Entry]], path: Path) -> np.ndarray:
+    """v of the long sections: each states its own, or they are numbered and equally far apart."""
+    import numpy as np
+
+    placed = [entry.text.startswith("at v =") for _, entry in sections]
+    if any(placed) != all(placed):
+        entry = sections[placed.index(not placed[0])][1]
+        raise InputError(
+            f"{path}, line {entry.line}: found 'long section {entry.text}', expected positions for all or none"
+        )
+    found = []
+    for k, (_, entry) in enumerate(sections):
+        text = entry.text.removeprefix("at v =").strip()
+        try:
+            found.append(float(text))
+        except ValueError:
+            raise InputError(
+                f"{path}, line {entry.line}: found the long section '{entry.text}', expected a number"
+            ) from None
+        if not placed[0] and found[-1] != k + 1:
+            raise InputError(f"{path}, line {entry.line}: found the long section {text}, expected {k + 1}")
+    if placed[0]:
+        return np.array(found)
+    step = header.numbers.get("LONG_SECTION_V_INCREMENT", 0.01)
+    right = header.numbers.get("LONG_SECTION_V_RIGHT", -step * (len(found) - 1) / 2)
+    return right + step * np.arange(len(found))
