@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .group import Group
-from .system import System
 from .terms import TERM_SETS
+
+if TYPE_CHECKING:
+    from .system import System
 
 
 def reactions(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -26,23 +29,23 @@ def reactions(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
     dict of str to ndarray
         Channels such as ``"rail.fy"``, shape (n,), for elements that have a kind of their own (weights have none).
     """
-    found: dict[str, np.ndarray] = {}
+    return {name: values[:, at] if at >= 0 else np.zeros(len(values)) for name, at in system.reported.items()}
+
+
+def reported_terms(system: System) -> Iterator[tuple[str, int]]:
+    """The channels of `reactions`, and where each stands among the values of the output terms; -1 for one that is zero."""
     for g, group in enumerate(system.groups):
-        if not group.kind.element.kind:
-            continue
-        found |= _of_term(system, g, group, values, "reaction", system.of_body.reactions)
-        found |= _of_term(system, g, group, values, "measured", getattr(group.kind.element, "channels", ()))
-    return found
+        if group.kind.element.kind:
+            yield from _of_term(system, g, group, "reaction", system.of_body.reactions)
+            yield from _of_term(system, g, group, "measured", getattr(group.kind.element, "channels", ()))
 
 
-def _of_term(
-    system: System, g: int, group: Group, values: np.ndarray, term: str, labels: Sequence[str]
-) -> dict[str, np.ndarray]:
+def _of_term(system: System, g: int, group: Group, term: str, labels: Sequence[str]) -> Iterator[tuple[str, int]]:
     """The rows of one term of a group's elements by name; what has no entry is zero."""
     pattern = group.record.patterns.get(term, [])
-    first = system.places["output"][g, 1 + TERM_SETS["output"].index(term)]
-    found = {f"{name}.{label}": np.zeros(len(values)) for name in group.names for label in labels}
+    first = int(system.places["output"][g, 1 + TERM_SETS["output"].index(term)])
+    found = {f"{name}.{label}": -1 for name in group.names for label in labels}
     for e, name in enumerate(group.names):
         for k, (row, _) in enumerate(pattern):
-            found[f"{name}.{labels[row]}"] = values[:, first + e * len(pattern) + k]
-    return found
+            found[f"{name}.{labels[row]}"] = first + e * len(pattern) + k
+    yield from found.items()

@@ -17,6 +17,7 @@ from .bodies import BodyKind
 from .group import Group
 from .kernels import kernel_of
 from .machine.compiler import Compiled
+from .reactions import reported_terms
 from .record import source_of
 from .terms import TERM_AXES, TERM_SETS, TURNED
 
@@ -238,6 +239,11 @@ class System:
                 if first <= at < first + group.count * width:
                     return group, (at - first) // width
         raise IndexError(f"the set {term_set} has no value {at}")
+
+    @cached_property
+    def reported(self) -> dict[str, int]:
+        """The channels of joints and forces, and where each stands among the values of the output terms; -1 for one that is zero."""
+        return dict(reported_terms(self))
 
     @cached_property
     def timed(self) -> np.ndarray:

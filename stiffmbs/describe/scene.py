@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,7 +11,7 @@ from pydantic import Field, PrivateAttr
 from pydantic import ValidationError as PydanticError
 
 from ..errors import InputError
-from .element import Component
+from .element import Component, Force
 from .fields import sentence
 from .figure import Figure
 from .files.expand import (
@@ -121,11 +121,20 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
     """The notes of a scene, and what there is to say of the roads and tyres of a model."""
     told: dict[str, list[str]] = {}
     for name, element in model.forces.items():
-        for _, component in element.parts(Component):
+        for component in _components(element):
             for note in component.notes():
                 told.setdefault(note, []).append(name)
     own = model.notes if isinstance(model, Scene) else ()
     return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
+
+
+def _components(element: Force) -> Iterator[Component]:
+    """What a force is made of besides numbers."""
+    for value in vars(element).values():
+        if isinstance(value, Component):
+            yield value
+        elif isinstance(value, tuple):
+            yield from (part for part in value if isinstance(part, Component))
 
 
 class PlanarScene(PlanarData, Scene):

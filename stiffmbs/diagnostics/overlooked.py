@@ -14,13 +14,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..compile.machine.layout import addresses
+from ..compile.machine.routines import Routine
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.settings import RunSettings
-from ..results.energy_balance_notes import within_steps
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.trajectory import Trajectory
+
+CONTRADICTING_ROWS = Routine(
+    "stiffmbs.diagnostics.native.contradictions",
+    "contradicting_rows",
+    "int64(int64, int64, float64*, float64*, float64*, float64*, float64, int64, float64*, int64*)",
+)
 
 OVERLOOKED_TOLERANCES = 3e5
 """Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
@@ -85,31 +92,47 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     steps = trajectory.step_times
     if len(steps) < 2 or not system.has_laws:
         return None
-    off, size = _contradictions(rows), rows.acceleration**2 @ system.mass
-    pairs = np.flatnonzero(
-        off**2 @ system.mass > OVERLOOKED_PART**2 * np.fmax(size[1:], size[:-1])
-    )  # few: the rest costs nothing
-    pairs = pairs[within_steps(rows.t[pairs], rows.t[pairs + 1], steps)]
+    pairs = contradicting_rows(rows, system.mass, steps)
+    if not len(pairs):
+        return None
     number = np.searchsorted(steps, rows.t[pairs])
     step = steps[number] - steps[number - 1]
     tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u[pairs])
-    over_step = np.abs(off[pairs]) * step[:, None] / (OVERLOOKED_TOLERANCES * tolerance)
+    over_step = np.abs(_contradictions(rows, pairs)) * step[:, None] / (OVERLOOKED_TOLERANCES * tolerance)
     found = np.flatnonzero((over_step > 1).any(axis=1))
     if not len(found):
         return None
     _, first = np.unique(number[found], return_index=True)
-    at, k = (pairs + (size[pairs + 1] > size[pairs]))[found], found[0]
+    first_size, second_size = (rows.acceleration[k] ** 2 @ system.mass for k in (pairs, pairs + 1))
+    at, k = (pairs + (second_size > first_size))[found], found[0]
     velocity = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities)
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
 
 
-def _contradictions(rows: OutputRows) -> np.ndarray:
-    """By how much the change of velocities between instants, in a second, differs from the mean of their accelerations."""
-    off = np.diff(rows.u, axis=0)
-    off /= np.diff(rows.t)[:, None]
-    off -= 0.5 * rows.acceleration[1:]
-    off -= 0.5 * rows.acceleration[:-1]
-    return off
+def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Numbers of the rows that contradict the next one beyond `OVERLOOKED_PART`, where both are inside one step.
+
+    Parameters
+    ----------
+    rows : OutputRows
+    mass : ndarray, shape (n_u,)
+        Weights.
+    steps : ndarray
+        Ends of the steps, s.
+    """
+    found = np.empty(len(rows.t), dtype=np.int64)
+    t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
+    *of_rows, at_steps, at_found = addresses(t, u, acceleration, mass, steps, found)
+    count = CONTRADICTING_ROWS.call(len(t), len(mass), *of_rows, OVERLOOKED_PART, len(steps), at_steps, at_found)
+    return found[:count]
+
+
+def _contradictions(rows: OutputRows, pairs: np.ndarray) -> np.ndarray:
+    """By how much the change of velocities until the next instant, in a second, differs from the mean of their accelerations."""
+    following = pairs + 1
+    change = (rows.u[following] - rows.u[pairs]) / (rows.t[following] - rows.t[pairs])[:, None]
+    mean: np.ndarray = 0.5 * (rows.acceleration[pairs] + rows.acceleration[following])
+    return change - mean
 
 
 def acting(system: System, rows: OutputRows, k: int) -> str:

@@ -53,8 +53,9 @@ def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float
 
 def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray:
     """Which of the first `count` steps are to be judged; few, so that the others cost nothing."""
-    n_q = found.dynamics.system.n_q
-    tolerances = settings.rtol, absolute_tolerances(found.dynamics.system, settings)[n_q:]
+    system = found.dynamics.system
+    atol = found.dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
+    tolerances = settings.rtol, atol[system.n_q :]
     ends, states = (found.begin[:count], found.end[:count]), (found.q[:count], found.u[:count])
     return found.dynamics.contradicting(
         ends, FROM_MIDDLE, states, tolerances, (WORTH_A_NOTE * OVERLOOKED_PART, WORTH_A_NOTE * CONTRADICTED_TOLERANCES)

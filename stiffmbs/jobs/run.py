@@ -263,7 +263,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         )
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
     if job.on_constraints:
-        statistics["drift"] = float(np.nanmax(rows.drift))
+        statistics["drift"] = float(np.fmax.reduce(rows.drift))
     outcome, message = _ending(job, rows, trajectory)
     system = job.dynamics.system
     found = results_of_run(job.data, system, rows, job.settings, trajectory.step_times)

@@ -9,6 +9,8 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 from .. import compile as compile_package
+from .. import diagnostics as diagnostics_package
+from .. import results as results_package
 from .. import solve as solve_package
 from ..compile.compile_model import kinds_of
 from ..compile.kernels import compile_usual
@@ -39,7 +41,7 @@ def usual_kinds() -> tuple[Kind, ...]:
 
 def routines() -> Iterator[Routine]:
     """Every compiled routine that a module of the package declares."""
-    for package in (compile_package, solve_package):
+    for package in (compile_package, solve_package, results_package, diagnostics_package):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             if ".native." not in f"{module.name}.":
                 found = vars(importlib.import_module(module.name)).values()

@@ -4,8 +4,7 @@ Along a motion T + V changes by the work of dampers, drives, friction, applied f
 (`stiffmbs.compile.symbolic.losses` has their power).  Both are computed from the states that a run reports, so their difference
 tells how well these satisfy the equations of motion, whatever the integrator believes of its own error.
 
-The work is integrated by the trapezoidal rule with end corrections (Davis and Rabinowitz, Methods of Numerical
-Integration, 1984, sec. 2.9), of order 4; the same rule on every other instant tells how well these resolve the power.
+The work is integrated by the trapezoidal rule with end corrections, of order 4; the same rule on every other instant tells how well these resolve the power.
 """
 
 from __future__ import annotations
@@ -14,9 +13,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.machine.layout import addresses
+from ..compile.machine.routines import together
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..solve.dynamics import OutputRows
+
+WORK, STEPS_INSIDE = together(
+    "stiffmbs.results.native.work",
+    work="float64(int64, float64*, float64*, float64*, float64*)",
+    steps_inside="void(int64, float64*, int64, float64*, int64*)",
+)
 
 MOST_INSTANTS = 100_000
 """Instants that a balance is made of at the most; of more every other one counts, or fewer."""
@@ -106,35 +113,55 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
     with np.errstate(all="ignore"):  # a diverged run has no balance
         t, kinetic = rows.t[thinned], rows.kinetic[thinned]
         potential, power = rows.potential[thinned], rows.power[thinned]
-        known = np.isfinite(kinetic + potential + power) & (np.diff(t, prepend=-np.inf) > 0)
-        if not known.all():
+        finite, increasing = np.isfinite(kinetic + potential + power), t[1:] > t[:-1]
+        if not (finite.all() and increasing.all()):
+            known = finite & np.append(True, increasing)[: len(t)]
             t, kinetic, potential, power = t[known], kinetic[known], potential[known], power[known]
         if not len(t):
             nothing = np.empty(0)
             return Balance(t, np.zeros(1), np.zeros(1), nothing, nothing, 0.0, 0.0, keeps_energy)
         total = kinetic + potential
-        gained, within = _gained(t, power) if not keeps_energy else np.zeros((2, len(t) - 1))
-        work = np.concatenate([[0.0], np.cumsum(gained)])
-        resolved = 0.0 if keeps_energy else _difference(work[::2], t[::2], power[::2])
+        if keeps_energy:
+            work, within, resolved = np.zeros_like(t), np.zeros(len(t) - 1), 0.0
+        else:
+            work, within, resolved = work_since_start(t, power)
         scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
-    inside = np.searchsorted(steps, t[1:], side="left") - np.searchsorted(steps, t[:-1], side="right")
+    inside = steps_inside(t, steps)
     return Balance(t, total - total[0], work, within, inside, resolved, scale, keeps_energy)
 
 
-def _difference(work: np.ndarray, t: np.ndarray, power: np.ndarray) -> float:
-    """How far the work is from what the power gives at fewer instants."""
-    coarse = np.concatenate([[0.0], np.cumsum(_gained(t, power)[0])])
-    return float(np.max(np.abs(work - coarse), initial=0.0))
+def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """The integral of a power by the trapezoidal rule with end corrections.
+
+    Davis and Rabinowitz, Methods of Numerical Integration (1984), sec. 2.9.
+
+    Parameters
+    ----------
+    t, power : ndarrays, shape (n,)
+        s, W; n is 1 or more.
+
+    Returns
+    -------
+    work : ndarray, shape (n,)
+        J.
+    within : ndarray, shape (n - 1,)
+        What the corrections add in each interval, J.
+    resolved : float
+        How far the work is from that of every other instant, J.
+    """
+    t, power = np.ascontiguousarray(t), np.ascontiguousarray(power)
+    total, within = np.empty(len(t)), np.empty(len(t) - 1)
+    resolved = WORK.call(len(t), *addresses(t, power, total, within))
+    return total, within, resolved
 
 
-def _gained(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The work in each interval, and the part of it that the end corrections make."""
-    h = np.diff(t)
-    if len(t) < 3:
-        return h * (power[1:] + power[:-1]) / 2, np.zeros_like(h)
-    slope = np.gradient(power, t)
-    corrections = h**2 * (slope[:-1] - slope[1:]) / 12
-    return h * (power[1:] + power[:-1]) / 2 + corrections, corrections
+def steps_inside(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """How many of increasing steps end inside each interval between increasing instants, its ends left out; shape (n - 1,)."""
+    t, steps = np.ascontiguousarray(t), np.ascontiguousarray(steps, dtype=float)
+    inside = np.empty(max(len(t) - 1, 0), dtype=np.int64)
+    at_t, at_steps, at_inside = addresses(t, steps, inside)
+    STEPS_INSIDE.call(len(t), at_t, len(steps), at_steps, at_inside)
+    return inside
 
 
 def potentials(system: System, values: np.ndarray) -> dict[str, np.ndarray]:

@@ -12,8 +12,8 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
-from ..compile.machine.layout import DYNAMICS, address, packed
-from ..compile.machine.routines import together
+from ..compile.machine.layout import DYNAMICS, address, addresses, packed
+from ..compile.machine.routines import Routine, together
 from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
@@ -28,6 +28,11 @@ ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, CONTRADICTING, OUTPUT_POINTS = togethe
     accelerate="int64(float64, float64*, int64*)",
     contradicting="int64(int64, float64*, float64*, float64, float64*, float64*, float64*, float64, float64*, float64, float64, float64*, int64*, int64*)",
     output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
+)
+ENERGIES = Routine(
+    "stiffmbs.solve.native.reporting.energies",
+    "energies",
+    "void(int64, int64, float64*, float64*, int64, float64*, int64, int64*, int64, int64*, float64*, float64*, float64*)",
 )
 
 POSITION_TOLERANCE = 1e-12
@@ -113,10 +118,12 @@ class Dynamics:
         moving = ~np.isin(row, algebraic)
         self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
         self._n_output = system.n_values("output")
-        self._potential = system.term("output", "potential").source
-        self._power = system.term("output", "power").source
+        self._potential = np.array(system.term("output", "potential").source, dtype=np.int64)
+        self._power = np.array(system.term("output", "power").source, dtype=np.int64)
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
+        turned = np.setdiff1d(system.turned("output"), system.turned("acceleration"))
+        self._turned_for_output = turned.astype(np.int64)
         self.table = packed(
             DYNAMICS,
             {
@@ -133,6 +140,8 @@ class Dynamics:
                 "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
                 "n_algebraic": len(algebraic),
                 **self._algebraic,
+                "n_turned_for_output": len(self._turned_for_output),
+                "turned_for_output": self._turned_for_output,
             },
         )
         self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]
@@ -259,13 +268,15 @@ class Dynamics:
         for block in blocks(count):
             rows[0][block], rows[1][block] = q[block], u[block]
             times = np.array(t[block], dtype=float)
-            addresses = [address(array[block]) for array in rows]
+            at_times, *written = addresses(times, *(array[block] for array in (*rows, kinetic, potential, power)))
             done = block.start + OUTPUT_POINTS.call(
-                len(times), address(times), project, POSITION_TOLERANCE, n_output, *addresses, self._at
+                len(times), at_times, project, POSITION_TOLERANCE, n_output, *written[:6], self._at
             )
-            kinetic[block] = 0.5 * rows[1][block] ** 2 @ system.mass
-            potential[block] = rows[4][block][:, self._potential].sum(axis=1)
-            power[block] = rows[4][block][:, self._power].sum(axis=1)
+            mass, potentials, powers = addresses(system.mass, self._potential, self._power)
+            ENERGIES.call(
+                len(times), system.n_u, written[1], mass, n_output, written[4],
+                len(self._potential), potentials, len(self._power), powers, *written[6:],
+            )  # fmt: skip
             release(*rows, kinetic, potential, power, q, u)
             if done < block.stop:
                 break

@@ -80,7 +80,9 @@ def with_gaps(channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def _finite(values: np.ndarray) -> bool:
     for block in blocks(len(values)):
-        finite = np.isfinite(values[block].sum()) or np.isfinite(values[block]).all()  # a sum of large values overflows
+        finite = (
+            math.isfinite(values[block].sum()) or np.isfinite(values[block]).all()
+        )  # a sum of large values overflows
         release(values)
         if not finite:
             return False

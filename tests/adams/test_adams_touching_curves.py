@@ -139,3 +139,5 @@ def test_the_drawn_start_is_found_between_curves_that_cross():
     text = dataset(ellipse(40, 40), FACE, (15, 0), 38)
     scene = read_adams(text)
     np.testing.assert_allclose(scene.bodies["CVCV_6_touch"].position, [0.015, 0.039, 0], atol=1e-9)
+    below = read_adams(text.replace("JRM=21", "JRM=21, JDISP=0,-40,0"))
+    np.testing.assert_allclose(below.bodies["CVCV_6_touch"].position, [0.015, -0.001, 0], atol=1e-9)

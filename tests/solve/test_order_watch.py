@@ -63,6 +63,22 @@ def test_scenes_without_such_a_vibration_are_solved_as_before(examples, name, mo
     assert watched.notes == unwatched.notes
 
 
+def test_states_are_compared_with_the_cubics_of_least_squares():
+    random, n = np.random.default_rng(2), 5
+    t = 3.0 + np.cumsum(0.5 + random.random(order_watch.STATES_LOOKED_AT))
+    rows = np.vander(t - 9.0, 4) @ random.normal(size=(4, n)) + 1e-4 * random.normal(size=(len(t), n))
+    atol = 1e-6 * (1.0 + random.random(n))
+    x, scale = (2 * t - t[0] - t[-1]) / (t[-1] - t[0]), 1e-5 * np.abs(rows[-1]) + atol
+    best = np.polyfit(x, rows, 3)
+    off = (rows - np.vander(x, 4) @ best) / scale
+    expected = np.sqrt((off**2).mean(axis=1).max()), np.sqrt(((best[0] / scale) ** 2).mean())
+    least, *found = order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)
+    np.testing.assert_allclose(found, expected, rtol=1e-7)
+    assert 0 < least < found[0]
+    rows[:, 0] += 1e3 * np.cos(3.0 * t)
+    assert order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)[0] > order_watch.NEGLIGIBLE
+
+
 def test_many_unknowns_are_looked_at_sooner(monkeypatch):
     """A look costs less there than the steps that it saves."""
     model = Model(gravity=(0, -9.81))

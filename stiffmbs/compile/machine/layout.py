@@ -85,12 +85,13 @@ EQUATIONS = Layout({
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
 
 FACTORS = Layout({
-    "n": INT, "expected_entries": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "scale": FLOATS,
+    "n": INT, "expected_entries": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "factored": FLOATS, "scale": FLOATS,
     "order": INTS, "l_start": INTS, "l_row": OWN_INTS, "l": OWN_FLOATS, "u_start": INTS, "u_row": OWN_INTS, "u": OWN_FLOATS,
     "pivot": INTS, "work": FLOATS, "b": FLOATS, "previous": FLOATS, "stack": INTS, "x": FLOATS,
 })  # fmt: skip
 """A sparse matrix by columns, its factors and work space (`stiffmbs.compile.machine.native.factors`).  `expected_entries` is the number of
-entries that each factor is expected to have at the most, `capacity` the number for which there is memory."""
+entries that each factor is expected to have at the most, `capacity` the number for which there is memory; `factored` holds the matrix
+before it was scaled, where block systems keep it."""
 
 FIXED_ORDER = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
@@ -131,10 +132,12 @@ DYNAMICS = Layout({
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
     "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
     "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
+    "n_turned_for_output": INT, "turned_for_output": INTS,
 })  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
 `behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
-depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values."""
+depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values; and the
+bodies whose orientation output terms ask for beside those that accelerations do, by their first coordinates."""
 
 
 IDA = Layout({
@@ -372,3 +375,8 @@ def address(array: np.ndarray) -> int:
         return ctypes.addressof(ctypes.c_char.from_buffer(array))  # type: ignore[arg-type]
     at: int = array.__array_interface__["data"][0]
     return at
+
+
+def addresses(*arrays: np.ndarray) -> list[int]:
+    """The addresses of several arrays' numbers."""
+    return [address(array) for array in arrays]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.system import Term
+from ...compile.system import System, Term
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 
@@ -63,12 +63,17 @@ class Stiffness:
 
 def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:
     """That of the state at hand."""
-    state, system = dynamics.state, dynamics.system
+    state = dynamics.state
     state.evaluate("tangent", t)
-    f_q, f_u, values = system.term("tangent", "f_q"), system.term("tangent", "f_u"), state.values["tangent"]
+    of_positions, of_velocities = dynamics.kept("row sums", None, lambda: _row_sums(dynamics.system))
     with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
-        of_positions = _largest_row_sum(f_q, values, system.mass, system.mass_by_coordinate)
-        return Stiffness(of_positions, _largest_row_sum(f_u, values, system.mass, system.mass))
+        values = state.values["tangent"]
+        return Stiffness(of_positions.largest(values), of_velocities.largest(values))
+
+
+def _row_sums(system: System) -> tuple[RowSums, RowSums]:
+    f_q, f_u = system.term("tangent", "f_q"), system.term("tangent", "f_u")
+    return row_sums(f_q, system.mass, system.mass_by_coordinate), row_sums(f_u, system.mass, system.mass)
 
 
 def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
@@ -76,13 +81,36 @@ def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
     return max(min(LOOSEST, stiffness.allowed_residual), TIGHTEST, NUMBERS_END / settings.rtol)
 
 
-def _largest_row_sum(term: Term, values: np.ndarray, mass: np.ndarray, of_columns: np.ndarray) -> float:
-    """The largest sum of magnitudes in a row of M^-1/2 A M^-1/2, A being a term, from the values of its set.
+@dataclass(frozen=True)
+class RowSums:
+    """Sums of magnitudes in the rows of M^-1/2 A M^-1/2, A being a term.
 
-    It bounds the same eigenvalues as the rows of M^-1 A, and does not depend on the units of lengths and angles: on a car these bounded the
+    The largest bounds the same eigenvalues as that of M^-1 A, and does not depend on the units of lengths and angles: on a car these bounded the
     square of the fastest rate by 160 times, this by 2.  Columns of coordinates without a mass stay as they are in M^-1 A.
+
+    Attributes
+    ----------
+    source, row : ndarrays of int
+        Where the entries stand among the values of their set, and their rows.
+    scales : ndarray
+        What each entry is divided by.
+    n : int
+        Number of rows.
     """
+
+    source: np.ndarray
+    row: np.ndarray
+    scales: np.ndarray
+    n: int
+
+    def largest(self, values: np.ndarray) -> float:
+        """The largest sum, from the values of the term's set."""
+        sums = np.bincount(self.row, np.abs(values[self.source]) / self.scales, minlength=self.n)
+        return float(sums.max()) if self.n else 0.0
+
+
+def row_sums(term: Term, mass: np.ndarray, of_columns: np.ndarray) -> RowSums:
+    """Those of a term, by the masses of its rows and its columns."""
     of_rows, of_term = mass[term.row], of_columns[term.column]
     scales = np.sqrt(of_rows) * np.sqrt(np.where(of_term > 0, of_term, of_rows))
-    sums = np.bincount(term.row, np.abs(values[term.source]) / scales, minlength=len(mass))
-    return float(sums.max()) if len(mass) else 0.0
+    return RowSums(term.source, term.row, scales, len(mass))

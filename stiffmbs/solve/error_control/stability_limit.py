@@ -18,12 +18,21 @@ from functools import cached_property
 import numpy as np
 
 from ...compile.equations import Equations
+from ...compile.machine.layout import addresses
+from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from .tolerances import independent_tolerances
 
-STATES_LOOKED_AT, STEPS_APART, DEGREE = 16, 4, 3
-"""States that are looked at, steps from one to the next, and the polynomial that they are compared with: motion that steps of
-order 3 to 5 do resolve is some thousands of tolerances away from it."""
+CUBIC = Routine(
+    "stiffmbs.solve.error_control.native.cubic",
+    "cubic",
+    "void(int64, int64, float64*, float64, float64*, int64, int64*, float64, float64*, float64*)",
+)
+STATES_LOOKED_AT, STEPS_APART = 16, 4
+"""States that are looked at, and steps from one to the next: motion that steps of order 3 to 5 do resolve is some thousands of
+tolerances away from a cubic."""
+FAR_APART = np.array([0, 4, 8, 12, 15], dtype=np.int64)
+"""States that mostly show by themselves that all are far from it."""
 NEGLIGIBLE = 150.0
 """Distance from it, in units of the tolerance, up to which a vibration is not worth following: the orders that follow it
 damp it too (from 64 to 44 in 1000 steps of order 5).  A smaller tolerance keeps it."""
@@ -58,6 +67,33 @@ TIGHTEST_HELD = 1e-7
 cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
 HELD, HIGHEST = 2, 5
 """Orders: the highest that is stable for every vibration, and the highest of all."""
+
+
+def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> tuple[float, float, float]:
+    """How far states are from the cubics that fit best, in units of the tolerance.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (`STATES_LOOKED_AT`, 1 + n)
+        Times and states.
+    rtol : float
+    atol : ndarray, shape (n,)
+
+    Returns
+    -------
+    least : float
+        The distance that five of them show.
+    distance : float
+        The largest of one state, as a root mean square; not computed where `least` is beyond `NEGLIGIBLE`, as what follows.
+    highest : float
+        Root mean square of the coefficients of the third power, times being -1 to 1.
+    """
+    count, n = len(samples), samples.shape[1] - 1
+    samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(3)
+    rows, at_atol, few, at_work, at_found = addresses(samples, atol, FAR_APART, work, found)
+    CUBIC.short_call(count, n, rows, rtol, at_atol, len(FAR_APART), few, NEGLIGIBLE, at_work, at_found)
+    least, distance, highest = found.tolist()
+    return least, distance, highest
 
 
 class StabilityLimitDetection:
@@ -165,27 +201,13 @@ class StabilityLimitDetection:
 
         Five samples mostly show that they are far from it: then the second figure is 0.
         """
-        times, rows = samples[:, 0], samples[:, 1:]
-        x = (2 * times - times[0] - times[-1]) / (times[-1] - times[0])
-        scale = self._rtol * np.abs(rows[-1]) + self._atol
-        few = [0, 4, 8, 12, 15]
-        points = x[few].tolist()
-        weights = np.array([1 / math.prod(a - b for b in points if b != a) for a in points])
-        least = self._size((weights @ rows[few]) / np.abs(weights).sum() / scale)
+        least, distance, highest = cubic_fit(samples, self._rtol, self._atol)
         if least > NEGLIGIBLE:
             return least, 0.0
-        powers = np.power.outer(x, np.arange(DEGREE + 1))
-        coefficients = np.linalg.lstsq(powers, rows, rcond=None)[0]
-        errors = (rows - powers @ coefficients) / scale
-        half = STEPS_APART * (len(samples) - 1) / 2  # steps in a unit of x
-        third = 6 * self._size(coefficients[DEGREE] / scale) / half**3
+        half = STEPS_APART * (len(samples) - 1) / 2  # steps in a unit of the cubic's variable
+        third = 6 * highest / half**3
         longer = (MARGIN / (ERROR_CONSTANT * third)) ** (1 / 3) if third > 0 else math.inf
-        return float(np.sqrt((errors**2).mean(axis=1).max())), longer
-
-    @staticmethod
-    def _size(errors: np.ndarray) -> float:
-        """Root mean square."""
-        return float(np.sqrt(errors @ errors / len(errors)))
+        return distance, longer
 
     def note(self, steps: int) -> str:
         """What was done, for the user, after so many steps of the run; empty for nothing."""

@@ -311,6 +311,10 @@ class NativeIda:
         """
         return self._ida.answer("IDAGetDky", t, derivative)
 
+    def counted(self, name: str) -> int:
+        """One counter since the first beginning (`stiffmbs.solve.ida.statistics.COUNTERS`)."""
+        return self._statistics.of(name)
+
     def statistics(self) -> dict[str, int]:
         """Counters since the first beginning, and the order of the last step."""
         return self._statistics.counted()

@@ -109,7 +109,7 @@ class NativeEngine:
 
     def _ease_newton(self) -> None:
         """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""
-        counted = self._ida.statistics()
+        counted = {name: self._ida.counted(name) for name in self._counted}
         steps = counted["steps"] - self._counted["steps"]
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
         self._counted = counted
@@ -212,4 +212,4 @@ class NativeEngine:
 
     def history(self) -> History:
         """Ends of the steps and their orders."""
-        return History(self._ida.history.t, self._ida.history.order)
+        return History(*self._ida.history.ends())

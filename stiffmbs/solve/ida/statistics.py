@@ -37,17 +37,13 @@ class Statistics:
         self._at = ctypes.byref(self._value)
         self._read = {name: getattr(libraries, function) for name, function in COUNTERS.items()}
 
-    def _now(self) -> dict[str, int]:
-        found = {}
-        for name, read in self._read.items():
-            read(self._memory, self._at)
-            found[name] = self._value.value
-        return found
+    def of(self, name: str) -> int:
+        """One of the counters."""
+        self._read[name](self._memory, self._at)
+        return self._before[name] + int(self._value.value)
 
     def _total(self) -> dict[str, int]:
-        return {
-            name: before + now for (name, before), now in zip(self._before.items(), self._now().values(), strict=True)
-        }
+        return {name: self.of(name) for name in COUNTERS}
 
     def keep(self) -> None:
         """Add what has been counted to the sum, before a restart sets IDA's counters to zero."""

@@ -57,6 +57,11 @@ class StepLog:
         _, order, size = self._chunks[-1][-1]
         return float(size), int(order)
 
+    def ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """Ends of the steps, s, and the order of each step's formula."""
+        rows = self._all()
+        return rows[:, 0].copy(), rows[:, 1].astype(int)
+
     def _all(self) -> np.ndarray:
         return np.concatenate([np.empty((0, WIDTH)), *self._chunks])
 

@@ -20,7 +20,9 @@ from stiffmbs.compile.machine.native.evaluate import (
     POSITION,
     add_entries,
     add_products,
+    call_kernels,
     evaluate,
+    share_turns,
 )
 from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
 from stiffmbs.compile.machine.native.orientation import take_unit_length
@@ -79,16 +81,28 @@ def _largest_violation(s, violation):
 
 
 @compiled
+def _is_as_factored(f):
+    """Whether the matrix is the one whose factors are known, as of bodies without joints; else it is kept as that."""
+    for k in range(f.a_start[f.n]):
+        if f.a[k] != f.factored[k]:
+            for following in range(k, f.a_start[f.n]):
+                f.factored[following] = f.a[following]
+            return False
+    return True
+
+
+@compiled
 def _solved(s, equations, factors, values):
     """Fill in, factor and solve one block system; 0, with the solution in the factors' `b`, or a failure."""
     e = equations_view(equations)
     matrix = factors_view(factors)
     add_entries(e, values, 0.0, matrix.a)
-    outcome = factored(factors)
-    if outcome == FULL:
-        return NO_MEMORY
-    if outcome != DONE:
-        return SINGULAR if isfinite(largest_of(matrix.a, matrix.a_start[matrix.n])) else NOT_FINITE
+    if not _is_as_factored(matrix) or not matrix.ready:
+        outcome = factored(factors)
+        if outcome == FULL:
+            return NO_MEMORY
+        if outcome != DONE:
+            return SINGULAR if isfinite(largest_of(matrix.a, matrix.a_start[matrix.n])) else NOT_FINITE
     f = factors_view(factors)  # the memory may have grown
     add_products(e, values, f.previous, f.previous, f.b)
     solve(f, f.b)
@@ -280,7 +294,8 @@ def _output_point(s, m, t, q, project, tolerance, largest):
     status = to_accelerations(s, m, t)
     if status < 0:
         return status
-    evaluate(s, OUTPUT, t)
+    share_turns(s, m.turned_for_output, m.n_turned_for_output)  # the others stand since the accelerations
+    call_kernels(s, OUTPUT, t)
     return 0
 
 

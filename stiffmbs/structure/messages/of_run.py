@@ -32,7 +32,11 @@ class StructureNotes:
 
 
 def structure_notes(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> StructureNotes:
-    """What there is to say of the structure of a system that was examined and presolved."""
+    """What there is to say of the structure of a system that was examined and presolved; found once for all runs of it."""
+    return dynamics.kept("structure notes", None, lambda: _found(redundancy, subsystems, dynamics))
+
+
+def _found(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> StructureNotes:
     return StructureNotes(
         (*_redundant(redundancy), *unconnected_sentence(dynamics.system)),
         tuple(presolve_sentences(dynamics.system, subsystems, dynamics)),

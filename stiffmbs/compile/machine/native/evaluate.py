@@ -15,9 +15,14 @@ CALL_WIDTH = len(CALL)
 @compiled
 def evaluate(s, term_set, t):
     """Compute all terms of a set at the state held in `s`; returns a pointer to their values."""
-    s.evaluated[0] += 1
-    turned = ints(s.turned[term_set])
-    for k in range(s.n_turned[term_set]):
+    share_turns(s, ints(s.turned[term_set]), s.n_turned[term_set])
+    return call_kernels(s, term_set, t)
+
+
+@compiled
+def share_turns(s, turned, count):
+    """Compute what kernels share of the orientations of some bodies, given by their first coordinates."""
+    for k in range(count):
         at = turned[k]
         if s.spatial:
             share_orientation(shifted(s.q, at + 3), shifted(s.turn, TURN_STRIDE * at))
@@ -26,6 +31,12 @@ def evaluate(s, term_set, t):
         cosine, sine = cos(angle), sin(angle)  # both before a store, so that one call finds them
         s.turn[at] = cosine
         s.turn[at + 1] = sine
+
+
+@compiled
+def call_kernels(s, term_set, t):
+    """Compute all terms of a set where the orientations of their bodies are shared; returns a pointer to their values."""
+    s.evaluated[0] += 1
     calls = ints(s.calls[term_set])
     values = floats(s.values[term_set])
     for k in range(s.n_calls[term_set]):

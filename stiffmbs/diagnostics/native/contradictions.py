@@ -1,0 +1,56 @@
+"""Output instants between which velocities change otherwise than accelerations say."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, shifted
+
+
+@compiled
+def _weighted(n_u, acceleration, mass):
+    """The square of an acceleration, weighted with masses."""
+    total = 0.0
+    for k in range(n_u):
+        total += mass[k] * acceleration[k] * acceleration[k]
+    return total
+
+
+@compiled
+def _larger(first, second):
+    """The larger of two numbers; the other one where one is not a number."""
+    return first if first >= second or second != second else second
+
+
+@compiled
+def _within_step(begin, end, n_steps, steps):
+    """Whether an interval lies inside one of the steps with these ends, its own ends strictly."""
+    low, high = 0, n_steps
+    while low < high:
+        middle = (low + high) // 2
+        if steps[middle] <= begin:
+            low = middle + 1
+        else:
+            high = middle
+    return low > 0 and low < n_steps and steps[low - 1] < begin and end < steps[low]
+
+
+def contradicting_rows(count, n_u, t, u, acceleration, mass, part, n_steps, steps, found):
+    """Which rows contradict the next, within one step, by more than a part of the larger acceleration; how many.
+
+    The change of the velocities in between, in a second, differs from the mean of the accelerations.
+    """
+    contradicting = 0
+    before = _weighted(n_u, acceleration, mass) if count > 0 else 0.0
+    for row in range(count - 1):
+        first, second = shifted(acceleration, row * n_u), shifted(acceleration, (row + 1) * n_u)
+        velocity = shifted(u, row * n_u)
+        elapsed = t[row + 1] - t[row]
+        total = 0.0
+        for k in range(n_u):
+            off = (velocity[n_u + k] - velocity[k]) / elapsed - 0.5 * (first[k] + second[k])
+            total += mass[k] * off * off
+        after = _weighted(n_u, second, mass)
+        if total > part * part * _larger(after, before) and _within_step(t[row], t[row + 1], n_steps, steps):
+            found[contradicting] = row
+            contradicting += 1
+        before = after
+    return contradicting

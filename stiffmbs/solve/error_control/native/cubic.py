@@ -1,0 +1,89 @@
+"""How far states after some steps are from a cubic, and its third derivative."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from stiffmbs.compile.machine.native.access import compiled, shifted
+
+
+@compiled
+def _divided_difference(n, rows, x, places, count, scale, weights):
+    """Root mean square of the highest divided difference over some states, relative to the sum of its weights."""
+    sum_of_weights = 0.0
+    for a in range(count):
+        weights[a] = 1.0
+        for b in range(count):
+            if b != a:
+                weights[a] /= x[places[a]] - x[places[b]]
+        sum_of_weights += abs(weights[a])
+    total = 0.0
+    for k in range(n):
+        difference = 0.0
+        for a in range(count):
+            difference += weights[a] * rows[places[a] * (n + 1) + 1 + k]
+        difference /= sum_of_weights * scale[k]
+        total += difference * difference
+    return sqrt(total / n)
+
+
+@compiled
+def _polynomials(count, x, p, squares):
+    """Orthogonal polynomials of degree 0 to 3 at the places x, with 1 before the highest power, and the sums of their squares."""
+    for degree in range(4):
+        here, before, older = (
+            shifted(p, degree * count),
+            shifted(p, (degree - 1) * count),
+            shifted(p, (degree - 2) * count),
+        )
+        centre = 0.0
+        for i in range(count if degree > 0 else 0):
+            centre += x[i] * before[i] * before[i]
+        squares[degree] = 0.0
+        for i in range(count):
+            here[i] = 1.0
+            if degree > 0:
+                here[i] = (x[i] - centre / squares[degree - 1]) * before[i]
+            if degree > 1:
+                here[i] -= squares[degree - 1] / squares[degree - 2] * older[i]
+            squares[degree] += here[i] * here[i]
+
+
+def cubic(count, n, rows, rtol, atol, n_few, few, negligible, work, found):
+    """How far `count` rows, a time and n values each, are from the cubics that fit best, in units of the tolerance.
+
+    `found` receives the distance over `few` of the rows, that over all (the largest root mean square of a row), and the root mean square
+    of the cubic coefficients, times being -1 to 1; the last two only where the first is not beyond `negligible`.  `work` has space for
+    n + 6 count + 8 numbers.
+    """
+    scale, x, p = work, shifted(work, n), shifted(work, n + count)
+    off, squares, part = shifted(work, n + 5 * count), shifted(work, n + 6 * count), shifted(work, n + 6 * count + 4)
+    first, last = rows[0], rows[(count - 1) * (n + 1)]
+    for i in range(count):
+        x[i] = (2.0 * rows[i * (n + 1)] - first - last) / (last - first)
+    for k in range(n):
+        scale[k] = rtol * abs(rows[(count - 1) * (n + 1) + 1 + k]) + atol[k]
+    found[0] = _divided_difference(n, rows, x, few, n_few, scale, off)
+    if found[0] > negligible:
+        return
+    _polynomials(count, x, p, squares)
+    for i in range(count):
+        off[i] = 0.0
+    highest = 0.0
+    for k in range(n):
+        for degree in range(4):
+            part[degree] = 0.0
+            for i in range(count):
+                part[degree] += p[degree * count + i] * rows[i * (n + 1) + 1 + k]
+            part[degree] /= squares[degree]
+        highest += (part[3] / scale[k]) * (part[3] / scale[k])
+        for i in range(count):
+            error = rows[i * (n + 1) + 1 + k]
+            for degree in range(4):
+                error -= part[degree] * p[degree * count + i]
+            off[i] += (error / scale[k]) * (error / scale[k])
+    largest = 0.0
+    for i in range(count):
+        largest = max(largest, off[i])
+    found[1] = sqrt(largest / n)
+    found[2] = sqrt(highest / n)
