@@ -12,6 +12,7 @@ from stiffmbs.describe.spatial.forces.applied import AppliedForce as _AppliedFor
 from stiffmbs.describe.spatial.forces.applied import AppliedTorque as _AppliedTorque
 from stiffmbs.describe.spatial.forces.beam import Beam as _Beam
 from stiffmbs.describe.spatial.forces.box_plane_impact import BoxPlaneImpact as _BoxPlaneImpact
+from stiffmbs.describe.spatial.forces.brake import Brake as _Brake
 from stiffmbs.describe.spatial.forces.bushing import Bushing as _Bushing
 from stiffmbs.describe.spatial.forces.cylinder_plane_impact import CylinderPlaneImpact as _CylinderPlaneImpact
 from stiffmbs.describe.spatial.forces.ellipsoid_plane_impact import EllipsoidPlaneImpact as _EllipsoidPlaneImpact
@@ -28,6 +29,7 @@ from stiffmbs.describe.spatial.forces.sphere_cylinder_impact import SphereCylind
 from stiffmbs.describe.spatial.forces.sphere_sphere_impact import SphereSphereImpact as _SphereSphereImpact
 from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
 from stiffmbs.describe.spatial.forces.vertical_tyre import VerticalTyre as _VerticalTyre
+from stiffmbs.describe.spatial.forces.wheel_torque import WheelTorque as _WheelTorque
 from stiffmbs.describe.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
 from stiffmbs.describe.spatial.joints.cylindrical import Cylindrical as _Cylindrical
 from stiffmbs.describe.spatial.joints.fixed import Fixed as _Fixed
@@ -122,6 +124,20 @@ class BoxPlaneImpact(_BoxPlaneImpact):
         y: given.Number,
         z: given.Number,
         type: Literal["box_plane_impact"] = ...,
+    ) -> None: ...
+
+class Brake(_Brake):
+    """A brake between a wheel and its upright, or the car's body, that slides at its torque and holds at a standstill."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        torque: given.Law,
+        windup: given.Number = ...,
+        settling: given.Number = ...,
+        lag: given.Number = ...,
+        type: Literal["brake"] = ...,
     ) -> None: ...
 
 class Bushing(_Bushing):
@@ -592,4 +608,10 @@ class VerticalTyre(_VerticalTyre):
         stiffness: given.Number,
         damping: given.Number = ...,
         type: Literal["vertical_tyre"] = ...,
+    ) -> None: ...
+
+class WheelTorque(_WheelTorque):
+    """A torque on a wheel about its axle: constant, or a formula of time and of anything measured."""
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker, torque: given.Law, type: Literal["wheel_torque"] = ...
     ) -> None: ...

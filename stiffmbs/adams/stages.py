@@ -18,8 +18,8 @@ Described: TypeAlias = tuple[Dataset, dict[str, Any]]
 NOT_OF_A_STAGE = ("run", "notes", "start", "stages")
 POSES = ("position", "orientation", "velocity", "omega", "open")
 """Of a body: where the first run starts, and the frame of its state."""
-BY_INITIAL_POSE = ("COUPLER", "GEAR", "SCREW", "RACKPIN")
-"""Constraints that hold joints as they are at the initial pose."""
+BY_INITIAL_POSE = ("COUPLER", "GEAR", "SCREW", "RACKPIN", "CVCV")
+"""Constraints that hold joints as they are at the initial pose, or start from where parts are drawn."""
 
 
 def followed(
@@ -100,9 +100,17 @@ def _in_si(segment: Segment, units: Units) -> dict[str, float]:
 def _changed(before: Described, now: Described, segment: Segment) -> dict[str, Any]:
     """What a stage changes of the scene before it."""
     patch = merge_patch(_without(before[1]), _without(now[1]))
-    _refuse_other_frames(patch.get("bodies") or {}, segment)
     _refuse_other_turns(patch.get("joints") or {}, now[0], segment)
-    return {"change": patch} if patch else {}
+    _refuse_other_frames(patch.get("bodies") or {}, segment)
+    kept = _with_all_bodies(patch)
+    return {"change": kept} if kept else {}
+
+
+def _with_all_bodies(patch: Mapping[str, Any]) -> dict[str, Any]:
+    """A patch that leaves every body: the one where two curves have touched goes on alone when these no longer do."""
+    bodies = {name: part for name, part in (patch.get("bodies") or {}).items() if part is not None}
+    others = {name: part for name, part in patch.items() if name != "bodies"}
+    return others | ({"bodies": bodies} if bodies else {})
 
 
 def _without(found: dict[str, Any]) -> dict[str, Any]:

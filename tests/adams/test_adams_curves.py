@@ -110,6 +110,7 @@ def test_a_curve_that_cannot_be_followed_is_said(points, sort, message):
         ("CURVE_POINTS, ORDER=4", "CONTROL_POINTS", "CURVE/7: found CONTROL_POINTS; expected CURVE_POINTS of order 4"),
         ("ORDER=4", "ORDER=2", "CURVE/7: found ORDER = 2; expected CURVE_POINTS of order 4"),
         ("ORDER=4", "SORT=4", "PTCV/4: CURVE/7: found 'SORT=4', expected one of CLOSED, .*; expected CURVE_POINTS of order 4"),
+        ("RM=11", "RM=11, DISP=-300,0,200", r"found DISPLACEMENT 0\.1\d+ m from where marker I is drawn"),
         ("RM=11", "RM=11, VELOCITY=3", "found VELOCITY, expected the velocities of the parts instead"),
     ],
 )  # fmt: skip

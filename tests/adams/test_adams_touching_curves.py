@@ -111,6 +111,20 @@ def test_an_eccentric_disc_lifts_a_roller():
     assert np.ptp(found["PART_3.y"]) > 0.01
 
 
+def test_a_follower_flies_when_its_curves_no_longer_touch(tmp_path):
+    (tmp_path / "cam.adm").write_text(
+        dataset(ellipse(40, 40), FACE, (15, 0), 40, spin=8.0).replace("REQUEST", "!REQUEST")
+    )
+    commands = "SIM/DYN, END=0.1, STEPS=5\nDEACTIVATE/CVCV, ID=6\nSIM/DYN, END=0.2, STEPS=5\n"
+    (tmp_path / "cam.acf").write_text(commands)
+    found = stiffmbs.run(tmp_path / "cam.adm", rtol=1e-9)
+    t, y, v = found.time[6:] - 0.1, found["PART_3.y"][6:], found["PART_3.vy"][6:]
+    np.testing.assert_allclose(y, y[0] + v[0] * t - G * t**2 / 2, atol=1e-8)
+    (tmp_path / "cam.acf").write_text(commands + "ACTIVATE/CVCV, ID=6\nSIM/DYN, END=0.3, STEPS=5\n")
+    with pytest.raises(InputError, match="found CVCV/6, CVCV, made active or changed since the simulation before it"):
+        stiffmbs.load_scene(tmp_path / "cam.adm")
+
+
 def test_a_pair_without_a_curve_or_with_a_stated_velocity_is_refused():
     text = dataset(ellipse(40, 40), FACE, (15, 0), 40)
     with pytest.raises(InputError, match="CVCV/6: found CURVE = 5, expected the number of a CURVE"):
@@ -125,3 +139,5 @@ def test_the_drawn_start_is_found_between_curves_that_cross():
     text = dataset(ellipse(40, 40), FACE, (15, 0), 38)
     scene = read_adams(text)
     np.testing.assert_allclose(scene.bodies["CVCV_6_touch"].position, [0.015, 0.039, 0], atol=1e-9)
+    below = read_adams(text.replace("JRM=21", "JRM=21, JDISP=0,-40,0"))
+    np.testing.assert_allclose(below.bodies["CVCV_6_touch"].position, [0.015, -0.001, 0], atol=1e-9)

@@ -12,7 +12,8 @@ import numpy as np
 
 from ...describe.spatial.massless import MASSLESS, massless_moment
 from ...describe.spatial.number_format import plain, quaternion, vector
-from ..statements.curves import CurveOnCurve, PointOnCurve
+from ..statements.constraints import Numbered
+from ..statements.curves import CurveOnCurve, FirstContact, PointOnCurve
 from ..statements.fault import of_each
 from ..statements.geometry import Frame
 from .first_touch import first_touch
@@ -21,6 +22,9 @@ from .mechanism import Mechanism
 
 TOUCH, OTHER, LEVEL = "_touch", "_other", "_plane"
 """Behind the name of a CVCV: the body where its curves touch, the joint with the first curve, and the one that turns the body."""
+
+ELSEWHERE = 0.01
+"""Part of a curve's size by which the first point of contact may be stated apart from where the marker is drawn."""
 
 
 def curves(mechanism: Mechanism) -> dict[str, Any]:
@@ -53,7 +57,20 @@ def _pairs(mechanism: Mechanism) -> list[CurveOnCurve]:
 def _on_curve(one: PointOnCurve, mechanism: Mechanism) -> dict[str, Any]:
     i, j = mechanism.place(one.i, one, "I"), mechanism.place(one.axes, one, "RM")
     curve = laid_curve(one, one.curve, j, mechanism)
+    start = _ground_point(one.start, one, mechanism)
+    apart = 0.0 if start is None else float(np.linalg.norm(start - i.initial.point))
+    if apart > ELSEWHERE * curve.size:
+        raise one.fault(f"found DISPLACEMENT {apart:.6g} m from where marker I is drawn, expected the same place")
     return {"type": "point_on_curve", "i": i.reference, "j": curve.marker, **curve.law}
+
+
+def _ground_point(start: FirstContact | None, user: Numbered, mechanism: Mechanism) -> np.ndarray | None:
+    """Where contact starts, m, in ground axes."""
+    if start is None:
+        return None
+    axes = mechanism.place(start.axes, user, "ICM").initial
+    found: np.ndarray = axes.point + axes.axes @ np.array(start.point)
+    return found
 
 
 def _curves(pair: CurveOnCurve, mechanism: Mechanism) -> tuple[LaidCurve, LaidCurve]:
@@ -83,7 +100,8 @@ def _touching(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
 def _body(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
     """A slight body at the point of contact, its x axis along the tangent and its z axis across the plane of the second curve."""
     first, second = _curves(pair, mechanism)
-    point, tangent = first_touch(first, second)
+    near, also_near = (_ground_point(start, pair, mechanism) for start in pair.starts)
+    point, tangent = first_touch(first, second, (near, also_near))
     z = second.initial.axes[:, 2]
     frame = Frame(point, np.column_stack([tangent, np.cross(z, tangent), z]))
     places = (mechanism.placed(marker).initial.point for marker in mechanism.dataset.markers.values())

@@ -9,10 +9,13 @@ from .laid_curves import LaidCurve
 SAMPLES = 400
 
 
-def first_touch(first: LaidCurve, second: LaidCurve) -> tuple[np.ndarray, np.ndarray]:
+def first_touch(
+    first: LaidCurve, second: LaidCurve, near: tuple[np.ndarray | None, np.ndarray | None]
+) -> tuple[np.ndarray, np.ndarray]:
     """A point near which two curves touch, and the unit tangent of the second one there, in ground axes.
 
-    Points of the two are sought that are near each other and have parallel tangents: drawn curves may be apart, or cross.
+    Points of the two are sought that are near each other and have parallel tangents: drawn curves may be apart, or cross.  Where a
+    point `near` each curve is given, m, the search starts at the curve's nearest to that.
 
     Returns
     -------
@@ -24,7 +27,7 @@ def first_touch(first: LaidCurve, second: LaidCurve) -> tuple[np.ndarray, np.nda
 
     curves = _Sampled(first), _Sampled(second)
     size = min(curve.size for curve in curves)
-    s, t = (curve.parameters for curve in curves)
+    s, t = (curve.parameters_near(point) for curve, point in zip(curves, near, strict=True))
     (a, a_way), (b, b_way) = curves[0](s), curves[1](t)
     apart = np.linalg.norm(a[:, None, :] - b[None, :, :], axis=2)
     crossed = 1 - (a_way @ b_way.T) ** 2
@@ -49,6 +52,12 @@ class _Sampled:
         self._law = CubicSpline(curve.arguments, curve.values, bc_type=curve.ends)
         self.parameters = np.linspace(curve.arguments[0], curve.arguments[-1], SAMPLES)
         self.size = float(np.max(np.ptp(self(self.parameters)[0], axis=0)))
+
+    def parameters_near(self, point: np.ndarray | None) -> np.ndarray:
+        """All parameters, or the one of the sample that is nearest to a point."""
+        if point is None:
+            return self.parameters
+        return self.parameters[[int(np.argmin(np.linalg.norm(self(self.parameters)[0] - point, axis=1)))]]
 
     def __call__(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         value, slope = self._law(s), self._law(s, 1)

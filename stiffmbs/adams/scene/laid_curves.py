@@ -57,6 +57,11 @@ class LaidCurve:
         return self.frame.within(self.owner.initial)
 
     @property
+    def size(self) -> float:
+        """From the first point to the last, or the largest diameter of a closed one, m."""
+        return float(2 * np.max(self.values) if self.closed else np.ptp(self.arguments))
+
+    @property
     def ends(self) -> str:
         """The end condition of the spline."""
         return "periodic" if self.closed else "not-a-knot"

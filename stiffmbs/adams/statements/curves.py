@@ -12,8 +12,9 @@ from .units import Units
 
 CUBIC = 4
 """The usual ORDER of a curve: one more than the degree of its pieces."""
-WITHOUT_EFFECT = ("DISPLACEMENT", "NODISPLACEMENT", "NOVELOCITY", "ICM")
-PAIR_WITHOUT_EFFECT = ("IDISPLACEMENT", "JDISPLACEMENT", "IICM", "JICM")
+WITHOUT_EFFECT = ("NODISPLACEMENT", "NOVELOCITY")
+_STARTS = ("DISPLACEMENT", "ICM")
+_PAIR_STARTS = tuple(side + name for side in "IJ" for name in _STARTS)
 _VELOCITIES = ("VELOCITY", "VX", "VY", "VZ")
 _PAIR_VELOCITIES = tuple(side + name for side in "IJ" for name in _VELOCITIES)
 
@@ -28,6 +29,14 @@ class SpaceCurve(Numbered):
 
 
 @dataclass(frozen=True)
+class FirstContact:
+    """A point near which a constraint starts on its curve, m, in the axes of a marker."""
+
+    point: tuple[float, ...]
+    axes: int
+
+
+@dataclass(frozen=True)
 class PointOnCurve(Numbered):
     """Marker I stays on a curve in the axes of marker `axes`; the reaction is on a floating marker of the curve's part."""
 
@@ -35,6 +44,7 @@ class PointOnCurve(Numbered):
     i: int
     floating: int
     axes: int
+    start: FirstContact | None = None
 
 
 @dataclass(frozen=True)
@@ -45,6 +55,7 @@ class CurveOnCurve(Numbered):
     axes: tuple[int, int]
     i: int
     floating: int
+    starts: tuple[FirstContact | None, FirstContact | None] = (None, None)
 
 
 def read_curve(statement: Statement, units: Units) -> SpaceCurve:
@@ -77,21 +88,32 @@ def _unread(found: Arguments) -> str:
 
 def read_point_on_curve(statement: Statement, units: Units) -> PointOnCurve:
     """A point that stays on a curve."""
-    found = Arguments(statement, "PTCV", ("CURVE", "I", "JFLOAT", "RM", *WITHOUT_EFFECT, *_VELOCITIES))
+    found = Arguments(statement, "PTCV", ("CURVE", "I", "JFLOAT", "RM", *WITHOUT_EFFECT, *_STARTS, *_VELOCITIES))
     _refuse(found, _VELOCITIES)
     return PointOnCurve(
         found.ident(), statement.line, statement.alias, "PTCV", found.required("CURVE"), found.required("I"),
-        found.required("JFLOAT"), found.required("RM"),
+        found.required("JFLOAT"), found.required("RM"), _first_contact(found, "", found.required("RM"), units),
     )  # fmt: skip
 
 
 def read_curve_on_curve(statement: Statement, units: Units) -> CurveOnCurve:
     """Two curves that touch."""
     names = tuple(side + name for name in ("CURVE", "FLOAT", "RM") for side in "IJ")
-    found = Arguments(statement, "CVCV", (*names, *PAIR_WITHOUT_EFFECT, *_PAIR_VELOCITIES))
+    found = Arguments(statement, "CVCV", (*names, *_PAIR_STARTS, *_PAIR_VELOCITIES))
     _refuse(found, _PAIR_VELOCITIES)
     first, second, i, j, own, other = (found.required(name) for name in names)
-    return CurveOnCurve(found.ident(), statement.line, statement.alias, "CVCV", (first, second), (own, other), i, j)
+    starts = _first_contact(found, "I", own, units), _first_contact(found, "J", other, units)
+    return CurveOnCurve(
+        found.ident(), statement.line, statement.alias, "CVCV", (first, second), (own, other), i, j, starts
+    )
+
+
+def _first_contact(found: Arguments, side: str, axes: int, units: Units) -> FirstContact | None:
+    """Where DISPLACEMENT says that contact starts, in the axes of ICM or of the curve."""
+    point = found.numbers(f"{side}DISPLACEMENT", 3)
+    if point is None:
+        return None
+    return FirstContact(tuple(x * units.length for x in point), found.reference(f"{side}ICM") or axes)
 
 
 def _refuse(found: Arguments, names: tuple[str, ...]) -> None:

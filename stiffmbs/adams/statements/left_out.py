@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from .constraints import WITHOUT_FRICTION
-from .curves import PAIR_WITHOUT_EFFECT as PAIR_STARTS
 from .curves import WITHOUT_EFFECT as CURVE_STARTS
 from .sensor import WITHOUT_EFFECT
 
@@ -25,7 +24,6 @@ LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     },
     "CURVE": {"MINPAR": "of a subroutine", "MAXPAR": "of a subroutine"},
     "PTCV": dict.fromkeys(CURVE_STARTS, "parts start where they are drawn"),
-    "CVCV": dict.fromkeys(PAIR_STARTS, "curves touch where they are drawn nearest"),
     "SENSOR": dict.fromkeys(WITHOUT_EFFECT, "no effect on results"),
     "DIFF": {"STATIC_HOLD": _NO_STATICS},
     "LSE": {"STATIC_HOLD": _NO_STATICS},

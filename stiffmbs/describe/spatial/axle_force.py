@@ -1,0 +1,27 @@
+"""What torques about a wheel's axle share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from ..element import Force, Symbolic
+from .marker import Marker
+
+
+class AxleForce(Force):
+    """Base of torques about a wheel's axle (it has no kind): on marker i's body about its y axis, and the opposite on j's."""
+
+    i: Marker = Field(description="marker on the wheel, its y axis along the axle, to the left of the heading")
+    j: Marker = Field(
+        description="the body that takes the opposite torque: the upright outboard, the car's body inboard"
+    )
+
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "y", "j": "body"}
+
+    @staticmethod
+    def spin(e: Symbolic) -> Any:
+        """Angular velocity of the wheel against the other body about its axle, rad/s; above zero when it rolls forward."""
+        return e.named((e.i.omega - e.j.omega).dot(e.i.y))

@@ -1,0 +1,29 @@
+"""Torque on a wheel about its axle."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from ...element import Symbolic
+from ...formula.field import TorqueOfMotion
+from ..axle_force import AxleForce
+from ..wrench import Pairs
+
+
+class WheelTorque(AxleForce):
+    """A torque on a wheel about its axle: constant, or a formula of time and of anything measured.
+
+    Above zero it drives forward.  The opposite torque acts on the body of j: on the upright for a motor in the hub, on the
+    car's body, or the carrier of a differential, for a motor that drives by shafts with joints of constant velocity.
+    """
+
+    kind: ClassVar[str] = "wheel_torque"
+    reflected: ClassVar[dict[str, str] | None] = {"torque": "about y"}
+
+    torque: TorqueOfMotion = Field(description="N m: a number or a formula")
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        return [(e.torque, cls.spin(e))]
