@@ -79,27 +79,31 @@ class BodyKind:
         """q' = Z(q) u; what stands behind the bodies' coordinates is taken to rest."""
         if self.n_q == self.n_u:
             return _with_rest(u, q)
-        of_q, of_u, rest = self._parted(q, u)
-        turning = 0.5 * times_vector(of_q[:, 3:], of_u[:, 3:])
-        return np.concatenate([np.column_stack([of_u[:, :3], turning]).ravel(), np.zeros(len(rest))])
+        of_q, of_u = self._parted(q, u)
+        rates = np.zeros(len(q))
+        of_bodies = rates[: of_q.size].reshape(of_q.shape)
+        of_bodies[:, :3] = of_u[:, :3]
+        of_bodies[:, 3:] = 0.5 * times_vector(of_q[:, 3:], of_u[:, 3:])
+        return rates
 
-    def _parted(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coordinates and velocities, a row for each body, and the coordinates behind them."""
+    def _parted(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and velocities of the bodies, a row for each: views."""
         of_u = u.reshape(-1, self.n_u)
-        of_bodies, rest = np.split(q, [self.n_q * len(of_u)])
-        return of_bodies.reshape(-1, self.n_q), of_u, rest
+        return q[: self.n_q * len(of_u)].reshape(-1, self.n_q), of_u
 
     def moved(self, q: np.ndarray, step: np.ndarray) -> np.ndarray:
         """The pose after a move that is given as velocities times time; quaternions stay of length 1."""
         if self.n_q == self.n_u:
             return q + _with_rest(step, q)
-        of_q, of_u, rest = self._parted(q, step)
+        there = q.astype(float)
+        of_q, of_u = self._parted(there, step)
         half = 0.5 * of_u[:, 3:]
         angle = np.linalg.norm(half, axis=1, keepdims=True)
         p, vector = of_q[:, 3:], half * np.sinc(angle / np.pi)
         turned = np.cos(angle) * p + times_vector(p, vector)
-        turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-        return np.concatenate([np.column_stack([of_q[:, :3] + of_u[:, :3], turned]).ravel(), rest])
+        of_q[:, :3] += of_u[:, :3]
+        of_q[:, 3:] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
+        return there
 
     def move(self, q: np.ndarray, there: np.ndarray) -> np.ndarray:
         """What takes a pose of the bodies to another, as velocities times time: the inverse of `moved`, shape (n_u,)."""

@@ -13,17 +13,15 @@ CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 def times_vector(p: np.ndarray, w: np.ndarray) -> np.ndarray:
     """p w for vectors w, taken for quaternions without scalar part."""
-    p0, p1, p2, p3 = np.moveaxis(p, -1, 0)
-    w1, w2, w3 = np.moveaxis(w, -1, 0)
-    return np.stack(
-        [
-            -p1 * w1 - p2 * w2 - p3 * w3,
-            p0 * w1 + p2 * w3 - p3 * w2,
-            p0 * w2 + p3 * w1 - p1 * w3,
-            p0 * w3 + p1 * w2 - p2 * w1,
-        ],
-        axis=-1,
-    )
+    p0, p1, p2, p3 = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
+    w1, w2, w3 = w[..., 0], w[..., 1], w[..., 2]
+    scalar = -p1 * w1 - p2 * w2 - p3 * w3
+    product = np.empty((*scalar.shape, 4))
+    product[..., 0] = scalar
+    product[..., 1] = p0 * w1 + p2 * w3 - p3 * w2
+    product[..., 2] = p0 * w2 + p3 * w1 - p1 * w3
+    product[..., 3] = p0 * w3 + p1 * w2 - p2 * w1
+    return product
 
 
 def times(p: np.ndarray, other: np.ndarray) -> np.ndarray:

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..describe.element import Component, Element
+from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
 from .machine import cache as store
@@ -100,7 +101,8 @@ def _record_of(kind: Kind, place: Description) -> KindRecord:
     if record is not None:
         return record
     LOGGER.info("deriving %s", with_place(kind, place.words))
-    record = _derived(kind)
+    with uncollected():
+        record = _derived(kind)
     if entry:
         store.write(entry, json.dumps(asdict(record)).encode())
     return record

@@ -101,5 +101,6 @@ __main__.start()
 
 @pytest.mark.parametrize(("end", "status"), [("sys.exit(3)", 3), ("raise ValueError", 1)])
 def test_the_command_ends_with_its_status_when_all_that_was_registered_has_run_and_is_printed(end, status):
-    done = subprocess.run([sys.executable, "-c", ENDING.format(end=end)], capture_output=True, text=True)
+    buffered = {**os.environ, "PYTHONUNBUFFERED": ""}
+    done = subprocess.run([sys.executable, "-c", ENDING.format(end=end)], capture_output=True, text=True, env=buffered)
     assert (done.returncode, done.stdout) == (status, "printed\nregistered later\n"), done.stderr

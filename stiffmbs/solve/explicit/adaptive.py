@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ..algebraic_states import no_value_ahead
 from ..dynamics import Dynamics
@@ -23,11 +22,11 @@ from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
+from .routines import ADVANCE
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
 from .stable_step import StableStep
 
-ADVANCE = Routine("stiffmbs.solve.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)")
 WORTH_TELLING = 0.1
 """Part of the steps that stability must have held back for the summary to name bdf."""
 MOST_LOOKS_APART = 16

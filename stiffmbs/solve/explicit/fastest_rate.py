@@ -4,15 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.routines import Routine
 from ..algebraic_states import rates_by_states
 from ..dynamics import Dynamics
-
-FASTEST_RATE = Routine(
-    "stiffmbs.solve.native.fastest_rate",
-    "fastest_rate",
-    "float64(float64, int64, float64*, float64*, int64*, int64*)",
-)
+from .routines import FASTEST_RATE
 
 
 def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from ...compile.machine.layout import EXPLICIT, address, packed
-from ...compile.machine.routines import Routine
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
@@ -16,9 +15,9 @@ from ..events.long_steps import LongStepLog, LongSteps
 from ..events.step_bound import StepBound
 from ..initial import InitialValues
 from ..trajectory import Grid, Rows
+from .routines import END_AT_EVENT
 from .scheme import Scheme
 
-END_AT_EVENT = Routine("stiffmbs.solve.native.event_search.explicit_events", "end_at_event", "int32(int64*)")
 SHORTEST_PART = 1e-12
 """Shorter steps than this part of the run would never come to its end."""
 MOST_STEPS, MOST_VALUES = 1024, 300_000
