@@ -60,6 +60,9 @@ def test_unknown_keys_and_missing_weights_are_noted(read):
     notes = " ".join(read().notes())
     assert "OWN1" in notes
     assert "friction ellipse" in notes
+    assert "FITTYP" not in notes
+    later = " ".join(read(FILE.replace("PCX1 = 1.6", "PCX1 = 1.6\nFITTYP = 61")).notes())
+    assert "line 23: FITTYP is that of a later Magic Formula" in later
 
 
 @pytest.mark.parametrize(

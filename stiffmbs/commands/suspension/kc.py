@@ -17,7 +17,7 @@ from ..scene import CHANGES, STOPPED_EARLY, in_file, refuse
 @click.argument("scene")
 @click.option("--axle", default="front", show_default=True, help="What stands before .left and .right; '' for nothing.")
 @click.option("--points", type=int, default=11, show_default=True, help="Of each curve: odd, 5 or more.")
-@click.option("--body", help="The body to clamp; chassis, or ground, by default.")
+@click.option("--body", help="The body to clamp; chassis, or the one that carries the axle, by default.")
 @click.option("--steering", help="The prismatic joint that steers; the only one named guide by default.")
 @click.option("--case", "cases", multiple=True, metavar="NAME=SIZE", help="How far a load case goes; 0 leaves it out.")
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the curves: .png, .svg or .pdf.")

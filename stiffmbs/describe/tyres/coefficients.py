@@ -30,6 +30,8 @@ WITH_LENGTHS = 10
 """What USE_MODE is greater by where slips lag by relaxation lengths."""
 MODES = frozenset((*range(5), *range(10, 15)))
 """USE_MODE without its sign."""
+LATER_FORMULA = 60
+"""FITTYP from which on a file is of MF-Tyre 6.0 or later."""
 SIDES = ("left", "right", "symmetric")
 FORMATS = ("PAC2002", "MF_05", "MF-TYRE", "MF_52", "52", "MF52")
 
@@ -167,6 +169,11 @@ def _of_file(file: PropertyFile) -> TyreProperties:
     }
     unknown = [name for name in file.entries if name not in (*NUMBERS, *KNOWN_UNUSED, *TEXTS)]
     remarks = [f"{file.source}: the keys {', '.join(unknown)} are not used"] if unknown else []
+    if "FITTYP" in file.entries and file.number("FITTYP") >= LATER_FORMULA:
+        line = file.entries["FITTYP"].line
+        remarks.append(
+            f"{file.source}, line {line}: FITTYP is that of a later Magic Formula, and its forces are those of MF-Tyre 5.2"
+        )
     try:
         return TyreProperties(coefficients=found, use_mode=_mode(file), side=_side(file), remarks=tuple(remarks))
     except InputError as error:

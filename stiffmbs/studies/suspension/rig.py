@@ -5,6 +5,7 @@ What is on the rig besides are the parts of the axle alone: tyres, drivers and o
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -76,7 +77,7 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
     name : str
         Such as ``front``; without it the suspensions are ``left`` and ``right``.
     body : str, optional
-        The body to clamp: ``chassis`` where there is one, else ground.
+        The body to clamp: ``chassis`` where there is one, else the one that most elements of the axle stand on.
     steering : str, optional
         The prismatic joint that steers: the only one named ``guide``, if there is one.
 
@@ -86,7 +87,7 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
         Where a suspension, its markers or what is named is not in the scene.
     """
     start = f"{name}." if name else ""
-    body = body or ("chassis" if "chassis" in model.bodies else GROUND)
+    body = body or ("chassis" if "chassis" in model.bodies else _carrying(model, start))
     rigid = f"{start}axle" if f"{start}axle" in model.bodies and f"{start}left.upright" not in model.bodies else None
     axle = Axle(f"{start}left", f"{start}right", body, steering, rigid)
     for side in SIDES:
@@ -94,6 +95,19 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
     if axle.body != GROUND and axle.body not in model.bodies:
         raise InputError(f"found no body '{axle.body}' to clamp, expected one of {', '.join(model.bodies)}")
     return replace(axle, steering=_steering(model, steering))
+
+
+def _carrying(model: ModelData, start: str) -> str:
+    """The body that most joints and forces of the suspensions stand on besides their own ones; ground without such."""
+    parts = tuple(f"{start}{side}" for side in SIDES) if not start else (start,)
+    elements = [
+        element
+        for name, element in (*model.joints.items(), *model.forces.items())
+        if name.startswith(parts) and not isinstance(element, Tyre)
+    ]
+    touched = Counter(marker.body for element in elements for _, marker in element.markers())
+    others = [(count, body) for body, count in touched.items() if not body.startswith(parts)]
+    return max(others, key=lambda found: found[0], default=(0, GROUND))[1]
 
 
 def _check_carrier(model: ModelData, axle: Axle, side: str) -> None:
