@@ -1,0 +1,67 @@
+"""Datasets whose text is garbled at random: each is read, or refused with a sentence, and `check` can list its statements."""
+
+import re
+from random import Random
+
+import pytest
+
+import stiffmbs
+from stiffmbs import InputError
+from stiffmbs.adams.load import read_adams
+
+from .adams_random_statements import random_statements
+from .test_adams_touching_curves import FACE, dataset, ellipse
+
+SIGNS = ',=/&!()*-0 9DE.:\\"'
+
+
+def originals():
+    cam = dataset(ellipse(40, 40), FACE, (15, 0), 40, spin=8.0)
+    return [cam, *(random_statements(seed).text() for seed in range(4))]
+
+
+def garbled(text, random):
+    """A dataset with a line gone, doubled or moved, a sign gone or added, other numbers, or other words."""
+    lines = text.split("\n")
+    k, m = random.randrange(len(lines)), random.randrange(len(lines))
+    at = random.randrange(len(lines[k]) + 1)
+    words = re.findall("[A-Z_]{3,}", text)
+    match random.randrange(8):
+        case 0:
+            del lines[k]
+        case 1:
+            lines.insert(k, lines[m])
+        case 2:
+            lines[k], lines[m] = lines[m], lines[k]
+        case 3:
+            lines[k] = lines[k][:at] + lines[k][at + 1 :]
+        case 4:
+            lines[k] = lines[k][:at] + random.choice(SIGNS) + lines[k][at:]
+        case 5:
+            lines[k] = re.sub(r"-?\d+\.?\d*", lambda found: random.choice(("0", "-1", "1e30", "x", found[0])), lines[k])
+        case 6:
+            lines[k] = lines[k].lower()
+        case 7:
+            lines[k] = re.sub(
+                "[A-Z_]{3,}", lambda found: random.choice(words) if random.random() < 0.5 else found[0], lines[k]
+            )
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 10))])
+def test_a_garbled_dataset_is_read_or_refused(tmp_path, seed):
+    random, texts = Random(seed), originals()
+    read = refused = 0
+    for _ in range(10 if seed == 0 else 100):
+        text = random.choice(texts)
+        for _ in range(random.choice((1, 1, 2, 3))):
+            text = garbled(text, random)
+        try:
+            read_adams(text)
+            read += 1
+        except InputError as error:
+            refused += 1
+            assert "\n" not in str(error)
+        (tmp_path / "model.adm").write_text(text)
+        assert stiffmbs.listed_statements(tmp_path / "model.adm")
+    assert read and refused
