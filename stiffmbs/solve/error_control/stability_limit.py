@@ -44,13 +44,8 @@ FAINT, DAMPED_AWAY = 4.0, 100
 WITHIN_PERIODS = 12.0
 """Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
 start with longer ones would stir up vibrations that have long been damped."""
-FIRST_LOOK, LATER = 2048, 1.5
+FIRST_LOOK, LATER = 2000, 1.5
 """Steps before the first look, and how many times as many before each later one."""
-FEW, SOONER = 50, 10
-"""Unknowns from which on looks are the more frequent the more there are, and how many times as frequent at the most: a step
-then costs more and more, a look hardly so.  It stays below 2 % of the steps."""
-MOST_BETWEEN = 2
-"""Most steps between two looks, times those before the first: a vibration may come late in a run."""
 RELAPSE, STRETCH, LONGER = 2000, 2000, 4
 """Steps between looks at a held order, in which the vibration dies away (250 are too few to see what is gained); steps with
 the order held at first, and how many times as many after each relapse."""
@@ -114,7 +109,6 @@ class StabilityLimitDetection:
         self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
         self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST_HELD
         self._equations, self._settings = equations, settings
-        self._first = int(FIRST_LOOK / min(max(equations.n / FEW, 1), SOONER))
         self.forget()
 
     @cached_property
@@ -123,7 +117,7 @@ class StabilityLimitDetection:
 
     def forget(self) -> None:
         """Begin a new run."""
-        self.order, self._next, self._stretch = self._highest, self._first, STRETCH
+        self.order, self._next, self._stretch = self._highest, FIRST_LOOK, STRETCH
         self._held: list[tuple[float, int]] = []
         self._held_steps = 0
         self._briefly = False
@@ -133,11 +127,6 @@ class StabilityLimitDetection:
     def held(self) -> bool:
         """Whether the order is held down."""
         return self.order < self._highest
-
-    @property
-    def looks_often(self) -> bool:
-        """Whether a look costs little beside a step."""
-        return self._first < FIRST_LOOK
 
     def begin(self, t: float, steps: int, fastest: float) -> None:
         """The integrator starts, or starts anew, where vibrations have rates up to `fastest`, 1/s."""
@@ -149,9 +138,7 @@ class StabilityLimitDetection:
 
     def wait(self, steps: int) -> int:
         """How many steps from now on the next look is due."""
-        if self.held and self.looks_often:
-            return max(self._next - steps, 1)
-        return self._next - steps if self._watches and self._next > steps else self._first
+        return self._next - steps if self._watches and self._next > steps else FIRST_LOOK
 
     def changed(self, samples: np.ndarray, steps: int) -> bool:
         """Look at the last steps; whether the highest order is to change.
@@ -163,20 +150,19 @@ class StabilityLimitDetection:
         steps : int
             Of the whole run.
         """
-        if len(samples) < (1 if self.held else STATES_LOOKED_AT):
+        if len(samples) < STATES_LOOKED_AT:
             return False
         t, (since, before) = float(samples[-1, 0]), self._mark
-        pace, self._mark = (t - since) / max(steps - before, 1), (t, steps)
+        pace, self._mark = (t - since) / (steps - before), (t, steps)
         if self.held:
             return self._frees(pace, t, steps)
         local = float(samples[-1, 0] - samples[0, 0]) / (STEPS_APART * (len(samples) - 1))
         steady = pace < STEADY * local and local * self._fastest < WITHIN_PERIODS
         distance, longer = self._fit(samples) if steady else (0.0, 0.0)
         faint = distance < FAINT
-        holds = self._holds and steps >= FIRST_LOOK
-        creeping = STUCK < distance < NEGLIGIBLE and (longer > (NO_LOSS if faint else GAIN)) and (faint or holds)
+        creeping = STUCK < distance < NEGLIGIBLE and (longer > (NO_LOSS if faint else GAIN)) and (faint or self._holds)
         if not creeping:
-            self._next = steps + min(int((LATER - 1) * steps), MOST_BETWEEN * self._first)
+            self._next = int(LATER * steps)
             return False
         self.order, self._pace, self._briefly = HELD, pace, faint
         self._next = steps + (DAMPED_AWAY if faint else RELAPSE)
@@ -193,7 +179,7 @@ class StabilityLimitDetection:
         if not self._briefly:
             self._stretch *= LONGER
             self._held_steps += steps - self._held[-1][1]
-        self.order, self._next = self._highest, steps + (self._first if self._briefly else RELAPSE if pays else steps)
+        self.order, self._next = self._highest, steps + (RELAPSE if pays or self._briefly else steps)
         return True
 
     def _fit(self, samples: np.ndarray) -> tuple[float, float]:

@@ -72,7 +72,6 @@ class NativeEngine:
         """Forget counters, history and pivots of an earlier run."""
         self._ida.forget()
         self._order.forget()
-        self._ida.look_after(self._order.wait(0))
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
@@ -94,16 +93,13 @@ class NativeEngine:
         self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
         self._ida.begin(t, y, yp, highest_order=self._order.order)
-        if self._order.looks_often:
-            self._ida.look_after(self._order.wait(self._ida.history.count))
 
     def _adapt(self, stop: float) -> None:
         """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
-        if just_after(self._ida.t) >= stop:
-            return  # IDA does not start where it is to stop
         self._ease_newton()
         ida = self._ida
-        if self._order.due(ida.history.count) and self._order.changed(ida.samples, ida.history.count):
+        due = just_after(ida.t) < stop and self._order.due(ida.history.count)  # IDA does not start where it is to stop
+        if due and self._order.changed(ida.samples, ida.history.count):
             self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
         ida.look_after(self._order.wait(ida.history.count))
 
