@@ -23,6 +23,8 @@ MOST_WITH_STATES = 1500
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
 MOST_BRANCHES = 3
+FAR = 0.2
+"""Distance from the described pose, as a part of the mechanism's size, from which on it is told."""
 SAME_MOTION = 1e-8
 """Singular value of free motions, relative to the largest, up to which they are the same."""
 LARGE_PART = 0.5
@@ -76,7 +78,7 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     if system.states and system.n_u > MOST_WITH_STATES:
         return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
     if system.states:
-        return _settled(found, start, list(_unstable(dynamics, t)))
+        return _settled(found, start, [*_unstable(dynamics, t), *_far_away(dynamics, start, found)])
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
@@ -119,8 +121,25 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     if status < 0:
         raise SolverError(f"the described velocities do not go on in the equilibrium: {failure(dynamics, status, t)}")
     lam = state.lam[: dynamics.system.n_c].copy()
-    notes = ("whether the equilibrium that the run starts in is stable was not looked at",)
+    notes = (
+        "whether the equilibrium that the run starts in is stable was not looked at",
+        *_far_away(dynamics, start, found),
+    )
     return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
+
+
+def _far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
+    """That the equilibrium lies far from the described pose, as of a car that has rolled there."""
+    system, of_body = dynamics.system, dynamics.system.of_body
+    pose = slice(0, of_body.n_q * len(system.bodies))
+    places, described = (q[pose].reshape(-1, of_body.n_q)[:, : of_body.linear] for q in (found.q, start.q))
+    moved = np.linalg.norm(places - described, axis=1)
+    body = int(np.argmax(moved))
+    if moved[body] > FAR * system.size:
+        yield (
+            f"the equilibrium that the run starts in lies {moved[body]:.3g} m away from the described pose ({system.bodies[body]}): "
+            "where that matters, as on a road with bumps, describe the bodies where they come to lie right"
+        )
 
 
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
