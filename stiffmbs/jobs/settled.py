@@ -78,7 +78,7 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     if system.states and system.n_u > MOST_WITH_STATES:
         return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
     if system.states:
-        return _settled(found, start, [*_unstable(dynamics, t), *_far_away(dynamics, start, found)])
+        return _settled(found, start, list(_unstable(dynamics, t)))
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
