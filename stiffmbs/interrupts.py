@@ -1,4 +1,4 @@
-"""The command while it is being loaded and as it ends, and the garbage collector: Ctrl-C, what is looked for, what is collected."""
+"""How the command starts and ends quickly: Ctrl-C while it is loaded, searches that it leaves out, and garbage collection."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ INTERRUPTED = 130
 def quiet_while_loading() -> None:
     """Let Ctrl-C end the command ``stiffmbs`` without a traceback while it is being loaded, and nothing be collected.
 
-    Nor does pydantic look through all installed packages for plugins, of which none serves here; and SymPy, whose usual 1000
-    results are soon forgotten, remembers all, which saves 10 % of deriving.
+    Pydantic does not look for plugins in all installed packages, as none serves here.  SymPy remembers all results, where it
+    usually keeps 1000: that saves 10 % of deriving.
     Programs that import the package keep their own ways.
     """
     if not _is_the_command():

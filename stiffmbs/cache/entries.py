@@ -1,10 +1,10 @@
 """Entries that are kept on disk: written once, read back where they are whole and the user's own.
 
 An entry is one file: a message authentication code, then the content.  It is written beside its place and moved there in
-one step, so that a crash or a second process can leave no half of it.  The code is an HMAC (RFC 2104) of the entry's name,
-its content, and what all entries of its folder depend on, under a secret of the user's: an entry that is damaged, stands in
-another's place, or was made by someone else does not match, and is made again.  Folders and files that others may write are
-refused with a note.
+one step, so that a crash or a second process can leave no half of it.  The code is an HMAC (RFC 2104) under a secret of the
+user's.  It covers the entry's name, its content, and what all entries of its folder depend on.  An entry that is damaged,
+stands in another's place, or was made by someone else does not match, and is made again.  Folders and files that others may
+write are refused with a note.
 """
 
 from __future__ import annotations
@@ -125,8 +125,8 @@ def tag_of(*parts: str) -> str:
 
 
 def digest(*parts: str) -> str:
-    """A name for some texts."""
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:40]
+    """A name for some texts, which may be names of files in any bytes."""
+    return hashlib.sha256("\0".join(parts).encode(errors="surrogateescape")).hexdigest()[:40]
 
 
 def _secret(directory: Path) -> bytes | None:

@@ -11,7 +11,7 @@ WORDS = {
     "record": "derived kinds",
     "kernel": "kernels",
     "routine": "routines",
-    "file": "read files",
+    "file": "contents of YAML files",
     "other": "of other versions or machines",
 }
 

@@ -85,14 +85,14 @@ class Kinds(Mapping[str, type[Any]]):
         return self.own()[kind]
 
     def _likely_first(self, kind: str) -> Iterator[str]:
-        """All files, so that few are loaded: loaded ones, that which is named as a kind, those that write its name."""
+        """All files in such an order that few are loaded: loaded ones, the one named as the kind, those that write its name."""
         yield from tuple(self._loaded)
         if kind in self._files:
             yield kind
-        yield from sorted(self._files, key=lambda file: self._strangeness(file, kind))
+        yield from sorted(self._files, key=lambda file: self._search_rank(file, kind))
 
-    def _strangeness(self, file: str, kind: str) -> int:
-        """How little of a kind is written in a file."""
+    def _search_rank(self, file: str, kind: str) -> int:
+        """0 for a file that writes the kind's name in quotes, 1 for one that writes it otherwise, 2 for one that does not."""
         try:
             text = (self._folder / f"{file}.py").read_text(encoding="utf-8")
         except OSError:  # installed without its source

@@ -1,8 +1,8 @@
 """Where the values of a study stand among the compiled numbers of a job, so that a case is a few of them changed in place.
 
 Nothing is read, checked or sorted anew: the forces were read once with numbers that are followed
-(`stiffmbs.describe.files.followed`).  Where a comparison comes out otherwise with other values, the case is left to the way by a
-whole scene, which takes other equations or says what is wrong.
+(`stiffmbs.describe.files.followed`).  Where a comparison comes out otherwise with other values, the whole scene of the
+case is read, which takes other equations or says what is wrong.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Runs that are taken again, as their results contradict the equations.
 
-Where steps passed over something, with a start at each instant that shows it: the step that ends there sees the force, so that
-its error estimate makes it as short as it has to be.  Where relaxed constraints crept beyond the tolerance, with exact ones:
-SI2 holds J u + C_t = E_lam lam, with an E_lam so small that forces of usual size change nothing.  Where equations are nearly
+Where steps passed over something, with a start at each instant that shows it: the step that ends there sees the force, and its
+error estimate makes it as short as it has to be.  Where relaxed constraints crept beyond the tolerance, with exact ones: SI2 holds J u + C_t = E_lam lam, with an E_lam so small that forces of usual size change nothing.  Where equations are nearly
 dependent, or forces are huge for the masses, lam is not: velocities creep, and energy is lost.
 """
 
@@ -107,9 +106,8 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
         return _noted(found, f"{creep.sentence()}; the results may be wrong by that")
     again = compute(exactly(job))
     if len(again.rows.t) >= len(found.rows.t):
-        if (
-            creep.mean > CREPT and _creep(job, again).mean > LESS * creep.mean
-        ):  # jumps of velocities that no breakpoint tells
+        # what stays is no creep, but jumps of velocities that no breakpoint tells
+        if creep.mean > CREPT and _creep(job, again).mean > LESS * creep.mean:
             return found
         return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
     if stopped:

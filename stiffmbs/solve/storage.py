@@ -80,9 +80,8 @@ def with_gaps(channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 def _finite(values: np.ndarray) -> bool:
     for block in blocks(len(values)):
-        finite = (
-            math.isfinite(values[block].sum()) or np.isfinite(values[block]).all()
-        )  # a sum of large values overflows
+        # a sum of large values overflows
+        finite = math.isfinite(values[block].sum()) or np.isfinite(values[block]).all()
         release(values)
         if not finite:
             return False

@@ -7,6 +7,7 @@ import numpy as np
 from .laid_curves import LaidCurve
 
 SAMPLES = 400
+"""Points of a curve among which the search looks for its start."""
 
 
 def first_touch(

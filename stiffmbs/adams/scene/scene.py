@@ -89,10 +89,8 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             *requests.notes,
         ],
     }
-    found |= {
-        "bodies": bodies(mechanism) | touching_bodies(mechanism),
-        "markers": ground_markers(mechanism),
-    }  # with the markers that formulas need
+    found["bodies"] = bodies(mechanism) | touching_bodies(mechanism)
+    found["markers"] = ground_markers(mechanism)  # with the markers that formulas need
     found["tables"] = mechanism.tables
     found["stages"] = [{"until": conditions(dataset, mechanism.inputs)}] if dataset.sensors else []
     return {key: value for key, value in found.items() if value or key == "bodies"}

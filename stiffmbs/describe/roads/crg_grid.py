@@ -54,8 +54,8 @@ class CrgGrid:
 def read_crg(path: Path) -> CrgGrid:
     """Read an OpenCRG file.
 
-    The heading, and the slope, of a record is that from the record before to this one, as in OpenCRG's own library; the banking
-    is that at the record.
+    A record's heading and slope are those of the stretch from the record before to this one, as in OpenCRG's own library.  The
+    banking is that at the record.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """The reference line of a curved road, and the nearest of its points, by cubic splines.
 
-The point u of the line R(u) that is nearest to a point P has (P - R).R' = 0, solved by Newton's method from a table of u over the
-position along the line's mean direction.  Before the run the method is tried on the whole road.
+The point u of the line R(u) that is nearest to a point P has (P - R).R' = 0.  Newton's method solves this; it starts from a table
+of u over the position along the line's mean direction.  Before the run the method is tried on the whole road.
 """
 
 from __future__ import annotations

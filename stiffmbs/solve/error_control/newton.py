@@ -85,8 +85,8 @@ def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
 class RowSums:
     """Sums of magnitudes in the rows of M^-1/2 A M^-1/2, A being a term.
 
-    The largest bounds the same eigenvalues as that of M^-1 A, and does not depend on the units of lengths and angles: on a car these bounded the
-    square of the fastest rate by 160 times, this by 2.  Columns of coordinates without a mass stay as they are in M^-1 A.
+    The largest bounds the same eigenvalues as that of M^-1 A, and does not depend on the units of lengths and angles.  On a car it was
+    2 times the square of the fastest rate, where that of M^-1 A was 160 times.  Columns of coordinates without a mass stay as they are in M^-1 A.
 
     Attributes
     ----------

@@ -149,7 +149,8 @@ def kinematics_and_compliance(
     points : int
         Of each curve, odd and at least 5.
     body, steering : str, optional
-        The body to clamp and the prismatic joint that steers, where they are not ``chassis`` or the one that carries the axle, and the only ``guide``.
+        The body to clamp, where it is neither ``chassis`` nor the one that carries the axle, and the prismatic joint that
+        steers, where it is not the only ``guide``.
     **amplitudes
         Of the load cases, such as ``bump=40`` (mm) or ``lateral=3`` (kN); 0 leaves a case out.
 

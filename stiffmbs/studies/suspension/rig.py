@@ -77,7 +77,7 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
     name : str
         Such as ``front``; without it the suspensions are ``left`` and ``right``.
     body : str, optional
-        The body to clamp: ``chassis`` where there is one, else the one that most elements of the axle stand on.
+        The body to clamp: ``chassis`` where there is one, else the one to which most elements of the axle are attached.
     steering : str, optional
         The prismatic joint that steers: the only one named ``guide``, if there is one.
 
@@ -98,7 +98,7 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
 
 
 def _carrying(model: ModelData, start: str) -> str:
-    """The body that most joints and forces of the suspensions stand on besides their own ones; ground without such."""
+    """The body to which most joints and forces of the suspensions are attached, besides their own bodies; ground without such."""
     parts = tuple(f"{start}{side}" for side in SIDES) if not start else (start,)
     elements = [
         element

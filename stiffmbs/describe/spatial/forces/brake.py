@@ -20,8 +20,8 @@ class Brake(AxleForce):
 
     The torque on the wheel is -C (z + T z'), with the largest torque C, which may be a formula and is never taken below zero.  The part z of
     it follows the spin w by z' = (w - abs(w) z)/(a + abs(w) L): Dahl's friction, which at rest is a spring of stiffness C/a, and does not
-    creep.  Sliding, z is 1 or -1.  The damping by T fades as 1/(1 + (T w/a)^2), so that the torque never exceeds C, and the lag L
-    keeps the brake of a fast wheel from being stiff.
+    creep.  Sliding, z is 1 or -1.  The damping by T fades as 1/(1 + (T w/a)^2), so that the torque never exceeds C.  The lag L keeps
+    the brake of a fast wheel from being stiff.
 
     Dahl, Solid friction damping of mechanical vibrations, AIAA Journal 14 (1976) 1675-1682.
     """

@@ -15,8 +15,8 @@ from ..wrench import Pairs
 class WheelTorque(AxleForce):
     """A torque on a wheel about its axle: constant, or a formula of time and of anything measured.
 
-    Above zero it drives forward.  The opposite torque acts on the body of j: on the upright for a motor in the hub, on the
-    car's body, or the carrier of a differential, for a motor that drives by shafts with joints of constant velocity.
+    Above zero it drives forward.  The opposite torque acts on the body of j: the upright for a motor in the hub.  For a motor
+    that drives by shafts with joints of constant velocity it is the car's body, or the carrier of a differential.
     """
 
     kind: ClassVar[str] = "wheel_torque"

@@ -52,8 +52,9 @@ def _polynomials(count, x, p, squares):
 def cubic(count, n, rows, rtol, atol, n_few, few, negligible, work, found):
     """How far `count` rows, a time and n values each, are from the cubics that fit best, in units of the tolerance.
 
-    `found` receives the distance over `few` of the rows, that over all (the largest root mean square of a row), and the root mean square
-    of the cubic coefficients, times being -1 to 1; the last two only where the first is not beyond `negligible`.  `work` has space for
+    `found` receives three numbers: the distance over `few` of the rows, that over all (the largest root mean square of a row), and the
+    root mean square of the cubic coefficients, times being -1 to 1.  The last two are found only where the first is not beyond
+    `negligible`.  `work` has space for
     n + 6 count + 8 numbers.
     """
     scale, x, p = work, shifted(work, n), shifted(work, n + count)
