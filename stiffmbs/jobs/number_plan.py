@@ -15,7 +15,7 @@ import numpy as np
 
 from ..compile.kind import sorted_out
 from ..describe.element import Element
-from ..describe.files.followed import Followed, NotFollowed, Record
+from ..describe.files.followed import Followed, Record
 from ..describe.files.other_forces import OtherForces
 from ..describe.model_data import ModelData
 from ..describe.scene import Scene, notes_of
@@ -121,7 +121,7 @@ def number_plan(job: Job, forces: OtherForces, values: Sequence[Any]) -> NumberP
         numbers = [_numbers(job, scene, name, record, values, forces) for name in forces.affected]
         if notes_of(scene) != notes_of(job.data):
             return None
-    except (NotFollowed, StiffmbsError, ValueError, TypeError):
+    except Exception:  # an element's code that such a number does not suit raises whatever Python does
         return None
     known = [each for each in numbers if each is not None]
     if len(known) < len(numbers):

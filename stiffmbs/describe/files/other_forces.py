@@ -18,7 +18,7 @@ from ..parts.options import CHOOSE, OPTIONS
 from ..scene import Scene
 from ..units.units import Quantity
 from .expand import read_parameter, replaced_parameters, set_value, unshared
-from .followed import FOLLOWED, Given, NotFollowed, Record
+from .followed import FOLLOWED, Given, Record
 from .unchanged import Unchanged, names_in
 from .written_scene import WrittenScene
 
@@ -110,7 +110,7 @@ class OtherForces:
             forces = self._forces(given, {**self._unchanged.context, PARAMETERS: others, FOLLOWED: record})
             scene = before.model_copy(update={FORCES: {**before.forces, **forces}})
             scene.check_elements({f"{FORCES}.{name}": force for name, force in forces.items()})
-        except (NotFollowed, InputError, PydanticError, ValueError, TypeError):
+        except Exception:  # an element's code that such a number does not suit raises whatever Python does
             return None
         return record, scene
 

@@ -130,8 +130,9 @@ def _u(definition: list[Entry], start: tuple[float, float], source: str) -> tupl
     for entry in definition:
         parts = [part.strip() for part in entry.text[2:].split(",")]
         if entry.text.startswith("U:") and parts[:2] == ["reference line u", "m"]:
-            own = [_number(part, f"{source}, line {entry.line}") if part else None for part in (*parts[2:4], "", "")]
-            start = start[0] if own[0] is None else own[0], start[1] if own[1] is None else own[1]
+            where, stated = f"{source}, line {entry.line}", (*parts[2:4], "", "")[:2]
+            first, step = (_number(part, where) if part else own for part, own in zip(stated, start, strict=True))
+            start = first, step
     if not start[1] > 0:
         raise InputError(f"{source}: found an increment of {start[1]:g} m, expected one above zero")
     return start
