@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
 
 from ..describe.settings import RunSettings, Settings, takes_settings
-from ..errors import AssemblyError, InputError
+from ..errors import AssemblyError, InputError, SolverError
 from ..jobs.run import Job, Runnable, data_of, prepare
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
 from ..jobs.taken_again import CREPT, exactly, relaxed
@@ -21,7 +22,7 @@ from ..solve.events.restart import restarted
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers
-from .stepping import stepper_of
+from .stepping import Stepper, stepper_of
 
 OWN_INPUTS = "inputs"
 """The section of a scene with its inputs."""
@@ -145,8 +146,18 @@ class Simulation:
         if self._relaxed and (self._steps % LOOK == 0 or self._steps & (self._steps - 1) == 0):
             self._advance_without_creep(end)
         else:
-            self._stepper.advance(end)
+            self._advance(end)
         self.t, self._known = end, None
+
+    def _advance(self, end: float) -> None:
+        """Go on to a later time; with relaxed constraints again where exact ones do not come there, as through a singular pose."""
+        try:
+            self._stepper.advance(end)
+        except SolverError:
+            if self._relaxed or not relaxed(self._job):
+                raise
+            self._go_on_with(self._steps_of(self._job, self.q, self.u), relaxed=True)
+            self._stepper.advance(end)
 
     def _advance_without_creep(self, end: float) -> None:
         """Go on to a later time; once more from here and with exact constraints, now and later, where the relaxed ones creep."""
@@ -157,10 +168,18 @@ class Simulation:
             dynamics.state.q[:] = self._stepper.q
             creep = creep_at(dynamics, end, self._stepper.u, settings)
         if creep > CREPT:
-            self._relaxed = False
-            self._stepper = stepper_of(exactly(self._job), restarted(dynamics, self.t, q, u), self.t)
-            self._places = self._places_of_bodies()
-            self._stepper.advance(end)
+            with suppress(SolverError):  # in a singular pose, which relaxed constraints alone pass
+                exact = self._steps_of(exactly(self._job), q, u)
+                exact.advance(end)
+                self._go_on_with(exact, relaxed=False)
+
+    def _steps_of(self, job: Job, q: np.ndarray, u: np.ndarray) -> Stepper:
+        """A stepper from a state at the present time."""
+        return stepper_of(job, restarted(job.dynamics, self.t, q, u), self.t)
+
+    def _go_on_with(self, stepper: Stepper, relaxed: bool) -> None:
+        self._stepper, self._relaxed = stepper, relaxed
+        self._places = self._places_of_bodies()
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
         """Values of inputs from now on; those of others stay.

@@ -12,6 +12,7 @@ import stiffmbs
 from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
 from stiffmbs.bench.error_bars import PROBLEMS, measured
 from stiffmbs.commands.main import main
+from stiffmbs.jobs import taken_again
 from stiffmbs.results.error_bars import between, error_bar
 from stiffmbs.show.digits import with_bar
 
@@ -173,7 +174,8 @@ def nearly_a_parallelogram():
     return stiffmbs.read_scene(text)
 
 
-def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy():
+def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(monkeypatch):
+    monkeypatch.setattr(taken_again, "CREPT", np.inf)  # exact constraints see the micron at any tolerance
     found = stiffmbs.verify(nearly_a_parallelogram(), duration=3.0, rtol=1e-5)
     (told,) = [note for note in found.notes if "another branch" in note]
     flat = found.time[np.argmax(np.abs(np.sin(found["v0.angle"])) < 0.2)]

@@ -37,6 +37,8 @@ def _held_too_little(dynamics: Dynamics, settings: RunSettings, t: float, q: np.
     """A sentence on the constraint that changes so little with coordinates that its own rounding moves them by more than the
     tolerance; empty where there is none."""
     system, state = dynamics.system, dynamics.state
+    if not system.n_c:
+        return ""
     state.q[:] = q
     state.evaluate("motion", t)
     jacobian = system.term("motion", "C_q")

@@ -122,7 +122,7 @@ def creep_of(
     largest, total, row, velocity = 0.0, 0.0, 0, 0
     for block in blocks(count):
         off = _in_tolerances(trajectory.u[:count][block], rows.u[block], absolute, settings.rtol)
-        of_rows = np.where(jump[block], 0.0, off.max(axis=1))
+        of_rows = np.where(jump[block], 0.0, np.nan_to_num(off.max(axis=1)))
         total += float(of_rows.sum())
         k = int(of_rows.argmax())
         if of_rows[k] > largest:
