@@ -127,7 +127,9 @@ class CaseSolver:
             done = solution.outcome is Outcome.DONE
             outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
         except NotFollowed:  # something looks at the described forces after all
-            self._plan = None
+            if self._plan is None:
+                raise
+            self._plan, self._jobs = None, []
             return self.row(case, values)
         except StiffmbsError as error:
             return Row(case, "error", str(error)[:MOST_WORDS], (np.nan,) * len(self._task.outputs))
