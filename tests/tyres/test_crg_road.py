@@ -168,3 +168,21 @@ def test_roads_that_turn_too_far_or_fold_are_refused(tmp_path):
         CrgRoad(file=written(tmp_path / "turn.crg", bend=0.1))
     with pytest.raises(InputError, match=r"nowhere\.crg: the file cannot be read"):
         CrgRoad(file="nowhere.crg")
+
+
+def test_a_straight_road_leads_from_its_start_to_its_end(tmp_path):
+    head = "$ROAD_CRG\nreference_line_increment=1\nreference_line_start_x=1\nreference_line_end_x=4\nreference_line_end_y=3\n{}$\n"
+    rest = (
+        "$KD_DEFINITION\n#:LRFI\nD:long section at v = -1,m\nD:long section at v = 1,m\n$\n$$$$\n"
+        + "   0.00000   0.00000\n" * 5
+    )
+    file = tmp_path / "straight.crg"
+    file.write_text(head.format("") + rest)
+    grid = CrgRoad(file=file, placed="file").file
+    np.testing.assert_allclose(grid.heading, math.pi / 4)
+    np.testing.assert_allclose(grid.x, 1 + np.arange(5) / math.sqrt(2))
+    file.write_text(head.format("reference_line_start_phi=0.5\n") + rest)
+    with pytest.raises(
+        InputError, match="START_PHI = 0.5, but the reference line leads from its start to its end at 0.785 rad"
+    ):
+        CrgRoad(file=file)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
 
 UNITS = {"phi": "rad", "slope": "m/m", "banking": "m/m"}
 """Of the channels of the reference line."""
+SAME_HEADING = 1e-3
+"""rad, between a heading that is given and the one from start to end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +82,14 @@ def read_crg(path: Path) -> CrgGrid:
     columns = np.array([column for column, _ in sections])[order]
     u = header.u[0] + header.u[1] * np.arange(len(records))
     get = header.numbers.get
+    heading = 0.0 if "phi" in line else _heading(header.numbers, path)
+    straight = {
+        "phi": heading,
+        "slope": get("REFERENCE_LINE_START_S", 0.0),
+        "banking": get("REFERENCE_LINE_START_B", 0.0),
+    }
     phi, slope, banking = (
-        records[:, line[name]] if name in line else np.full(len(u), get(f"REFERENCE_LINE_START_{key}", 0.0))
-        for name, key in (("phi", "PHI"), ("slope", "S"), ("banking", "B"))
+        records[:, line[name]] if name in line else np.full(len(u), number) for name, number in straight.items()
     )
     level = get("REFERENCE_LINE_START_Z", 0.0) + _summed(slope * header.u[1])
     return CrgGrid(
@@ -90,6 +98,21 @@ def read_crg(path: Path) -> CrgGrid:
         get("REFERENCE_LINE_START_Y", 0.0) + _summed(np.sin(phi) * header.u[1]),
         float(phi[1]), float(level[0]), bool(header.blocks.get("ROAD_CRG_OPTS")),
     )  # fmt: skip
+
+
+def _heading(numbers: dict[str, float], path: Path) -> float:
+    """Of a straight reference line, rad: as it is given, or from its start to its end where that is."""
+    start, end = ([numbers.get(f"REFERENCE_LINE_{which}_{axis}") for axis in "XY"] for which in ("START", "END"))
+    given = numbers.get("REFERENCE_LINE_START_PHI")
+    if None in end:
+        return given or 0.0
+    dx, dy = (float(last or 0.0) - float(first or 0.0) for first, last in zip(start, end, strict=True))
+    found = math.atan2(dy, dx)
+    if given is not None and abs(math.remainder(given - found, math.tau)) > SAME_HEADING:
+        raise InputError(
+            f"{path}: found REFERENCE_LINE_START_PHI = {given:g}, but the reference line leads from its start to its end at {found:.3g} rad"
+        )
+    return found if given is None else given
 
 
 def _summed(steps: np.ndarray) -> np.ndarray:
