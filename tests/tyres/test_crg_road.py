@@ -183,6 +183,6 @@ def test_a_straight_road_leads_from_its_start_to_its_end(tmp_path):
     np.testing.assert_allclose(grid.x, 1 + np.arange(5) / math.sqrt(2))
     file.write_text(head.format("reference_line_start_phi=0.5\n") + rest)
     with pytest.raises(
-        InputError, match="START_PHI = 0.5, but the reference line leads from its start to its end at 0.785 rad"
+        InputError, match=r"START_PHI = 0\.5, but the reference line leads from its start to its end at 0\.785 rad"
     ):
         CrgRoad(file=file)
