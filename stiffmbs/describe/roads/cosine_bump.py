@@ -33,6 +33,7 @@ class CosineBump(Road):
         return self.start, self.start + self.length
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """The heights, m, at places x, m."""
         from numpy import cos, pi
 
         return self.crest * (1 - cos(2 * pi * ramp_at(x, self.start, self.length))) / 2

@@ -137,6 +137,7 @@ class CrgRoad(Road):
         return float(self.file.u[0]), float(self.file.u[-1])
 
     def in_equations(self) -> dict[str, Any]:
+        """The tables of its long sections, rolled over by a disc with `filter_radius`, and where its reference line lies."""
         x, y, level = self._at_its_place()
         columns = self._columns
         tables = tuple(

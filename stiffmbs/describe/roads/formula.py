@@ -47,6 +47,7 @@ class FormulaRoad(Road):
         return None if self.first is None or self.last is None else (self.first, self.last)
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """The heights, m, that the formula gives at places x, m."""
         from numpy import broadcast_to
 
         from ..formula.functions import IN_FORMULAS

@@ -28,6 +28,7 @@ class GridRoad(Road):
         return points[0][0], points[-1][0]
 
     def in_equations(self) -> dict[str, Any]:
+        """Its tables along x, rolled over by a disc with `filter_radius`, and where they lie."""
         tables = tuple(through_filter(table, self.filter_radius) for table in self.file.tables)
         return {"friction": self.friction, "lines": tables, "across": self.file.across}
 

@@ -70,6 +70,7 @@ class Iso8608Road(Road):
         return 0.0, self.length
 
     def in_equations(self) -> dict[str, Any]:
+        """The tables of its left and right track, rolled over by a disc with `filter_radius`."""
         left, right = _tables(
             CLASSES.index(self.roughness),
             self.seed,

@@ -50,6 +50,7 @@ class TableRoad(Road):
         return min(table[0][0] for table in tables), max(table[-1][0] for table in tables)
 
     def in_equations(self) -> dict[str, Any]:
+        """Its tables, rolled over by a disc with `filter_radius`."""
         tables = {name: getattr(self, name) for name in ("profile", "left", "right")}
         filtered = {name: table and through_filter(table, self.filter_radius) for name, table in tables.items()}
         return {"friction": self.friction, "track": self.track, **filtered}

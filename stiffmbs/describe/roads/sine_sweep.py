@@ -42,6 +42,7 @@ class SineSweep(Road):
         return self.start, self.start + self.length
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """The heights, m, of the sweep at places x, m."""
         from numpy import pi, sin
 
         s = ramp_at(x, self.start, self.length)

@@ -32,5 +32,6 @@ class StepRoad(Road):
         return self.start, self.start + self.length
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """The heights, m, at places x, m."""
         s = ramp_at(x, self.start, self.length)
         return self.rise * s**2 * (3 - 2 * s)
