@@ -42,6 +42,8 @@ class Formula:
         The text with the scene's variables in their places; empty where the scene has none.
     states : tuple of str
         The states of the model that it uses, by their full names.
+    kept : dict
+        What is worked out of the tree once, by what it is; shared with formulas that differ by values alone.
     """
 
     text: str
@@ -54,6 +56,7 @@ class Formula:
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
     expanded: str = ""
     states: tuple[str, ...] = ()
+    kept: dict[Any, Any] = field(default_factory=dict)
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
@@ -81,11 +84,6 @@ class Formula:
     def _reactions(self) -> list[tuple[str, str]]:
         calls = [node for node in reading_order(self.tree) if is_reaction(node)]
         return [(node.func.id, joint_of(node)) for node in calls]  # type: ignore[attr-defined]
-
-    @cached_property
-    def kept(self) -> dict[Any, Any]:
-        """What is worked out of it once, by what it is; nothing at first."""
-        return {}
 
     def bodies(self) -> Iterator[str]:
         """The bodies that it names, some more than once."""
