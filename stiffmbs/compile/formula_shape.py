@@ -84,7 +84,9 @@ class FormulaShape(ast.NodeVisitor):
             text = self._read()
             kept[before] = text, list(self.data.bodies), self.constants, self.measures, self.tables, self.reactions
         text, bodies, constants, measures, tables, reactions = kept[before]
-        self.data.bodies, self.measures, self.tables, self.reactions = map(copy.copy, (bodies, measures, tables, reactions))
+        self.data.bodies, self.measures, self.tables, self.reactions = map(
+            copy.copy, (bodies, measures, tables, reactions)
+        )
         self.numbers = [formula_value(self.formula, node) for node in constants]
         return str(text)
 

@@ -52,8 +52,9 @@ class OtherForces:
 
     def _read_before(self) -> Iterator[tuple[tuple[str, tuple[str, ...], bool], Formula]]:
         """The formulas of the forces that the values stand in."""
-        for name in self.affected if self._unchanged.scene else ():
-            for _, formula in self._unchanged.scene.forces[name].parts(Formula):
+        scene = self._unchanged.scene
+        for name in self.affected if scene else ():
+            for _, formula in scene.forces[name].parts(Formula):  # type: ignore[union-attr]
                 yield (formula.text, formula.variables, formula.velocities), formula
 
     def _found(self, written: WrittenScene) -> frozenset[str] | None:
@@ -103,7 +104,7 @@ class OtherForces:
             scene.check_elements({f"{FORCES}.{name}": force for name, force in forces.items()})
         except (InputError, PydanticError, ValueError):
             return None
-        scene._quantities = parameters
+        scene._quantities, scene._written = parameters, None
         return scene
 
     def followed(self, values: Sequence[Any]) -> tuple[Record, Scene] | None:

@@ -28,7 +28,6 @@ from .state_names import with_states
 from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
 
-
 READ_BEFORE = "formulas"
 """The key in the context of a validation of formulas by their texts, variables and whether they may hold velocities: those that were
 read with the same names."""
