@@ -23,6 +23,7 @@ from stiffmbs.solve.native.event_search.bounds import (
     shift_ends,
     suspicious,
 )
+from stiffmbs.solve.native.event_search.nearby import note_zones
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
 from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state, weighted
@@ -134,6 +135,7 @@ def _event_within(x, c, s, m, until):
         w.ready = 1
     _note_rates(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
     _look_within(x, c, s)
+    note_zones(w)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
     if _stages_have_changed(x, c, s, until):
