@@ -324,12 +324,13 @@ EVENT_SEARCH = Layout({
     "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
-    "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS,
+    "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
 })  # fmt: skip
 """What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
-edges, their values and rates at both ends of the step and of a part of it, and states of the step at some nodes.
+edges, their values and rates at both ends of the step and of a part of it, the kernel that computes each and which kernels
+have one near an edge, and states of the step at some nodes.
 
 Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond
 zero."""
