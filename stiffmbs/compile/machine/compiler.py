@@ -20,6 +20,8 @@ LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
 _ONE_AT_A_TIME = RLock()
 """Threads may need the same routine at once: one compiles it, the others find it."""
+GEOMETRY = f"{__package__}.geometry"
+"""The modules that sources of solids in contact call."""
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
@@ -78,18 +80,17 @@ def _compiled_source(source: str, name: str, signature: str, of: Description) ->
         exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations
         return names
 
-    entry = store.name_of(store.KERNEL, source, _language_text(), _called_text(), signature)
+    entry = store.name_of(store.KERNEL, source, _language_text(), _called_text(GEOMETRY in source), signature)
     return _loaded(entry, _Source(((name, signature),), namespace, of.words, source))[name]
 
 
 @cache
-def _called_text() -> str:
+def _called_text(with_geometry: bool) -> str:
     """The text of what generated sources call."""
-    native = Path(__file__).parent / "native"
-    return "\0".join(
-        (native / f"{name}.py").read_text(encoding="utf-8")
-        for name in ("nonsmooth", "continuous_angle", "spline", "rotation_vector", "python_call")
-    )
+    here = Path(__file__).parent
+    names = ("nonsmooth", "continuous_angle", "spline", "rotation_vector", "python_call")
+    files = [here / "native" / f"{name}.py" for name in names]
+    return _joined(files + sorted((here / "geometry").glob("*.py")) * with_geometry)
 
 
 @cache
