@@ -27,7 +27,7 @@ _LATER = {
     "PythonFunction": ".describe.python_function", "RunSettings": ".describe.settings", "Scene": ".describe.scene", "State": ".describe.states.state",
     "SteadyMotion": ".describe.settings", "Table": ".describe.table", "TransferFunction": ".describe.states.linear_system",
     "ground": ".describe.marker:GROUND", "load_scene": ".jobs.load_scene", "read_scene": ".describe.scene", "register": ".describe.own_elements",
-    "scene_schema": ".describe.schema", "si": ".describe.units:si",
+    "scene_schema": ".describe.schema",
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
     "compile_model": ".compile.compile_model", "equilibrium": ".jobs.equilibrium", "quasi_static": ".jobs.quasi_static", "modes": ".jobs.modes", "run": ".jobs.run",
@@ -44,18 +44,20 @@ _LATER = {
 }  # fmt: skip
 """The modules of what is loaded when it is used, and its name there where that is another."""
 
-_OFFERED = "AssemblyError", "InputError", "SolverError", "StiffmbsError", *_LATER
+_MODULES = {"fields": ".fields", "si": ".describe.units.si", "spatial": ".spatial"}
+
+_OFFERED = "AssemblyError", "InputError", "SolverError", "StiffmbsError", "si", *_LATER
 
 
 def __getattr__(name: str) -> Any:
     if name == "__all__":
         return [*_OFFERED, *elements_of(_MODEL)]
-    if name == "spatial":
+    if name in _MODULES:
         from importlib import import_module
 
-        return import_module(".spatial", __name__)
+        return import_module(_MODULES[name], __name__)
     return loaded(name, __name__, _MODEL, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_OFFERED, *elements_of(_MODEL), "spatial"})
+    return sorted({*globals(), *_OFFERED, *elements_of(_MODEL), *_MODULES})

@@ -104,9 +104,21 @@ def test_a_planar_scene_loads_nothing_of_space():
 
 def test_help_loads_nothing_heavy():
     """The package, and the command with all its subcommands: what describes, computes or draws is loaded where it is used."""
-    program = "import sys, stiffmbs, stiffmbs.commands.main; print(*sys.modules)"
+    program = (
+        "import sys, atexit, stiffmbs; from stiffmbs.commands.main import main;"
+        "atexit.register(lambda: print(*sys.modules)); main(['--help'])"
+    )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "stiffmbs.commands.suspension.kc" in found.stdout.split()
     assert not {"numpy", "pydantic", "yaml", "sympy", "scipy", "rich"} & set(found.stdout.split())
+
+
+def test_a_command_loads_no_other():
+    """What fits or draws is not loaded for a run; a name that is none loads all, to suggest one."""
+    program = "import sys; from stiffmbs.commands.main import main; main.get_command(None, 'run'); print(*sys.modules)"
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "stiffmbs.commands.run" in found.stdout.split()
+    assert not {"stiffmbs.commands.fit", "stiffmbs.commands.plot"} & set(found.stdout.split())
 
 
 def test_a_warm_run_changes_package_rarely(monkeypatch):

@@ -179,3 +179,8 @@ def test_importing_the_package_loads_no_solver():
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("name", ["si.Length", "fields.OfTime", "spatial.Body"])
+def test_modules_are_attributes_of_the_package_from_the_start(name):
+    subprocess.run([sys.executable, "-c", f"import stiffmbs; stiffmbs.{name}"], capture_output=True, check=True)

@@ -5,10 +5,10 @@ The record is all that a later run needs, so that SymPy is imported only where a
 
 from __future__ import annotations
 
-import ast
 import inspect
 import json
 import logging
+import re
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
@@ -23,6 +23,7 @@ from .formula_shape import Shape
 from .kind import Kind, with_place
 from .machine import cache as store
 from .machine.description import Description
+from .machine.source_files import digest_of, python_files
 from .terms import TERM_SETS
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 RARE = ("all_levels", "all_levels_tangent")
 """Term sets that one formulation alone uses, index1: a third of the work of all, done when it is first asked for."""
 
+_INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
 LOGGER = logging.getLogger(__name__)
 
@@ -176,7 +178,7 @@ def _entry(kind: Kind, *part: str) -> str | None:
         return None
     return store.name_of(
         store.RECORD,
-        _compile_text(),
+        _own_files(),
         *texts,
         kind.element.__qualname__,
         repr(
@@ -209,9 +211,8 @@ def _is_shipped(element: type) -> bool:
 
 
 def _files(elements: list[type]) -> list[str]:
-    """The text of the files of classes of this package, and of what their equations may call."""
-    paths = [*(Path(inspect.getfile(element)) for element in elements), *sorted(_helpers(elements))]
-    return [path.read_text(encoding="utf-8") for path in paths]
+    """A digest of the files of classes of this package, and of what their equations may call."""
+    return [digest_of([*(Path(inspect.getfile(element)) for element in elements), *sorted(_helpers(elements))])]
 
 
 def _equations(kind: Kind) -> list[str]:
@@ -239,15 +240,14 @@ def _helpers(elements: list[type]) -> set[Path]:
 def _imported_later(module: str) -> set[Path]:
     """The files that the functions of a module import from, relative to it."""
     file = Path(inspect.getfile(sys.modules[module]))
-    tree = ast.parse(file.read_text(encoding="utf-8"))
-    inside = {node for each in ast.walk(tree) if isinstance(each, ast.FunctionDef) for node in ast.walk(each)}
-    imports = [node for node in inside if isinstance(node, ast.ImportFrom) and node.level and node.module]
-    found = [file.parents[node.level - 1].joinpath(*str(node.module).split(".")) for node in imports]
-    return {path.with_suffix(".py") for path in found if path.with_suffix(".py").is_file()}
+    imports = _INDENTED_IMPORT.findall(file.read_text(encoding="utf-8"))
+    found = [file.parents[len(dots) - 1].joinpath(*name.split(".")).with_suffix(".py") for dots, name in imports]
+    return {path for path in found if path.is_file()}
 
 
 @cache
-def _compile_text() -> str:
+def _own_files() -> str:
+    """A digest of what derives, and of what elements are described by."""
     from importlib.metadata import version
 
     here, describe = Path(__file__).parent, Path(__file__).parent.parent / "describe"
@@ -257,5 +257,4 @@ def _compile_text() -> str:
         here / "inputs",
         *(describe / name for name in ("", "formula", "units", "spatial")),
     )
-    files = [path for folder in folders for path in sorted(folder.glob("*.py"))]
-    return "\0".join([version("sympy"), *(path.read_text(encoding="utf-8") for path in files)])
+    return f"{version('sympy')} {digest_of(path for folder in folders for path in python_files(folder))}"

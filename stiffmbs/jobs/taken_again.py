@@ -17,11 +17,13 @@ from ..diagnostics.overlooked import Overlooked, overlooked, together
 from ..diagnostics.within_long_steps import overlooked_in_long_steps
 from ..solve import traits_of
 from ..solve.dynamics import OutputRows
-from ..solve.error_control.relaxation import Creep, creep_of
+from ..solve.error_control.relaxation import Creep, creep_of, creeps
 from ..solve.settings import changed
 from ..solve.trajectory import Outcome, Trajectory
 
 if TYPE_CHECKING:
+    from ..compile.system import System
+    from ..describe.settings import RunSettings
     from .run import Job
 
 ROUNDS, STARTS = 3, 1000
@@ -96,7 +98,7 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
         Integrates a job and reports it.
     """
     found = compute(job)
-    if not relaxed(job) or not len(found.rows.t):
+    if not relaxed(job) or not len(found.rows.t) or not creeps(*_compared(job, found), CREPT):
         return found
     creep = _creep(job, found)
     stopped = found.trajectory.outcome is Outcome.STOPPED
@@ -121,7 +123,12 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
 
 def _creep(job: Job, computed: Computed) -> Creep:
     breakpoints = job.dynamics.input_features(job.grid.start, job.grid.end).breakpoints
-    return creep_of(job.dynamics.system, computed.rows, computed.trajectory, job.settings, breakpoints)
+    return creep_of(*_compared(job, computed), breakpoints)
+
+
+def _compared(job: Job, computed: Computed) -> tuple[System, OutputRows, Trajectory, RunSettings]:
+    """What creep is told by."""
+    return job.dynamics.system, computed.rows, computed.trajectory, job.settings
 
 
 def relaxed(job: Job) -> bool:

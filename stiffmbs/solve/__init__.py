@@ -1,15 +1,13 @@
 """Initial values and integrators.  They see a `System`, never a kind of element."""
 
 from ..describe.settings import RunSettings
-from . import auto, bdf, kinematic
-from .explicit import projected
-from .solver import Registered, Traits
+from .solver import Traits, loaded_when_used
 
 SOLVERS = {
-    "auto": Registered(auto.solve, auto.traits),
-    "bdf": Registered(bdf.solve, bdf.traits),
-    "projected": Registered(projected.solve, projected.traits),
-    "kinematic": Registered(kinematic.solve, kinematic.traits),
+    "auto": loaded_when_used(".auto", __name__),
+    "bdf": loaded_when_used(".bdf", __name__),
+    "projected": loaded_when_used(".explicit.projected", __name__),
+    "kinematic": loaded_when_used(".kinematic", __name__),
 }
 """By the name in the settings; a new solver is one entry here, and its name in `RunSettings.solver`."""
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
 
 from ..describe.settings import RunSettings
-from .trajectory import Solver
+from .trajectory import Solver, Trajectory
 
 FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first"})
 """Settings that are read before a solver begins; every other one is for the solvers that declare it."""
@@ -67,3 +69,17 @@ class Registered:
 
     solve: Solver
     traits: Callable[[RunSettings], Traits]
+
+
+def loaded_when_used(module: str, package: str) -> Registered:
+    """The solver in a module of a package that has functions ``solve`` and ``traits``."""
+
+    def solve(*asked: Any) -> Trajectory:
+        found: Trajectory = import_module(module, package).solve(*asked)
+        return found
+
+    def traits(settings: RunSettings) -> Traits:
+        found: Traits = import_module(module, package).traits(settings)
+        return found
+
+    return Registered(solve, traits)

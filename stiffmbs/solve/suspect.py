@@ -72,10 +72,10 @@ def _hardest(dynamics: Dynamics, t: float) -> str:
     largest, name, k = max(_pulls(dynamics, t), default=(0.0, "", 0))
     if not largest > 0.0:
         return ""
-    return f"; '{name}' pulls hardest there ({_acceleration(dynamics.system, k)} by {largest:.3g})"
+    return f"; '{name}' pulls hardest there ({acceleration_name(dynamics.system, k)} by {largest:.3g})"
 
 
-def _acceleration(system: System, k: int) -> str:
+def acceleration_name(system: System, k: int) -> str:
     """The name of a velocity's rate; angular ones in space are about principal axes, which results do not know."""
     of_body = system.of_body
     if of_body.dimensions == 3 and k % of_body.n_u >= of_body.linear:

@@ -25,17 +25,18 @@ def own_directory() -> Path:
 @cache
 def _own() -> Folder:
     """The folder of all that depends on the package, processor and LLVM besides its source."""
-    from importlib.metadata import version
-
+    import llvmlite
     import llvmlite.binding as llvm
+
+    from ... import __version__
 
     parts = (
         FORMAT,
-        version("stiffmbs"),
+        __version__,
         llvm.get_process_triple(),
         llvm.get_host_cpu_name(),
         llvm.get_host_cpu_features().flatten(),
-        version("llvmlite"),
+        llvmlite.__version__,
     )
     return Folder(FOLDER, tag_of(*parts))
 

@@ -15,6 +15,7 @@ from typing import Any
 
 from . import cache as store
 from .description import Description
+from .source_files import digest_of, modules_within, python_files
 
 LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
@@ -80,17 +81,17 @@ def _compiled_source(source: str, name: str, signature: str, of: Description) ->
         exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations
         return names
 
-    entry = store.name_of(store.KERNEL, source, _language_text(), _called_text(GEOMETRY in source), signature)
+    entry = store.name_of(store.KERNEL, source, _language(), _called(GEOMETRY in source), signature)
     return _loaded(entry, _Source(((name, signature),), namespace, of.words, source))[name]
 
 
 @cache
-def _called_text(with_geometry: bool) -> str:
-    """The text of what generated sources call."""
+def _called(with_geometry: bool) -> str:
+    """A digest of what generated sources call."""
     here = Path(__file__).parent
     names = ("nonsmooth", "continuous_angle", "spline", "rotation_vector", "python_call")
     files = [here / "native" / f"{name}.py" for name in names]
-    return _joined(files + sorted((here / "geometry").glob("*.py")) * with_geometry)
+    return digest_of(files + sorted((here / "geometry").glob("*.py")) * with_geometry)
 
 
 @cache
@@ -100,27 +101,22 @@ def compiled_routines(module: str, signatures: Signatures, unrolled: bool) -> di
     Unrolled loops take LLVM a third longer.  Lists of a few entries are no faster by them (measured: 0 to 8 % slower on all
     examples), nor are products of dense blocks, but solutions with such blocks are (a car by blocks takes 6 to 8 % less).
     """
-    entry = store.name_of(store.ROUTINE, _language_text(), _native_text(), module, repr((signatures, unrolled)))
+    entry = store.name_of(store.ROUTINE, _language(), _native(), module, repr((signatures, unrolled)))
     words = f"the routines {module.rpartition('.')[2]}"
     return _loaded(entry, _Source(signatures, lambda: vars(importlib.import_module(module)), words, unrolled=unrolled))
 
 
 @cache
-def _language_text() -> str:
-    """The text of the translator."""
-    return _joined(sorted((Path(__file__).parent / "translate").glob("*.py")))
+def _language() -> str:
+    """A digest of the translator."""
+    return digest_of(python_files(Path(__file__).parent / "translate"))
 
 
 @cache
-def _native_text() -> str:
-    """The text of all native modules and of what they are laid out by: a routine may be built of any of them."""
+def _native() -> str:
+    """A digest of all native modules and of what they are laid out by: a routine may be built of any of them."""
     here = Path(__file__).parent
-    files = [*sorted(here.parents[1].glob("**/native/**/*.py")), here / "layout.py"]
-    return _joined(files)
-
-
-def _joined(files: list[Path]) -> str:
-    return "\0".join(path.read_text(encoding="utf-8") for path in files)
+    return digest_of([*modules_within(here.parents[1], "native"), here / "layout.py"])
 
 
 def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from importlib import import_module
 from types import MappingProxyType
 from typing import Annotated, Any
 
@@ -14,24 +15,29 @@ from pydantic_core import core_schema
 from ...errors import InputError
 from ..fields import NAME_PATTERN, sentence
 from ..files.quoted import quoted, written
-from .cosine_bump import CosineBump
-from .crg import CrgRoad
-from .flat import FlatRoad
-from .formula import FormulaRoad
-from .grid import GridRoad
-from .iso8608 import Iso8608Road
-from .profile import TableRoad
 from .road import Road
-from .sine_sweep import SineSweep
-from .step import StepRoad
 
-ROADS: Mapping[str, type[Road]] = MappingProxyType(
+ROADS: Mapping[str, str] = MappingProxyType(
     {
-        road.kind: road
-        for road in (FlatRoad, FormulaRoad, TableRoad, GridRoad, CrgRoad, StepRoad, CosineBump, SineSweep, Iso8608Road)
+        "flat": "flat:FlatRoad",
+        "formula": "formula:FormulaRoad",
+        "table": "profile:TableRoad",
+        "grid": "grid:GridRoad",
+        "crg": "crg:CrgRoad",
+        "step": "step:StepRoad",
+        "cosine_bump": "cosine_bump:CosineBump",
+        "sine_sweep": "sine_sweep:SineSweep",
+        "iso8608": "iso8608:Iso8608Road",
     }
 )
-"""The kinds of roads."""
+"""The kinds of roads: the file and the class of each, which is loaded where a scene has one."""
+
+
+def kind_of_road(kind: str) -> type[Road]:
+    """The class of a kind of roads."""
+    file, _, name = ROADS[kind].partition(":")
+    road: type[Road] = getattr(import_module(f".{file}", __package__), name)
+    return road
 
 
 def read_road(found: object, context: Mapping[str, Any] | None) -> Road:
@@ -49,7 +55,7 @@ def read_road(found: object, context: Mapping[str, Any] | None) -> Road:
     if not isinstance(kind, str) or kind not in ROADS:
         expected = ", ".join(f"'{each}'" for each in ROADS)
         raise ValueError(f"found the type {written(kind)} of a road, expected one of {expected}")
-    return ROADS[kind].model_validate(found, context=dict(context or {}))
+    return kind_of_road(kind).model_validate(found, context=dict(context or {}))
 
 
 class _RoadField:
@@ -61,7 +67,10 @@ class _RoadField:
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         name = {"type": "string", "description": "the name of a road of the scene"}
-        ways = [handler(core_schema.definitions_schema(road.__pydantic_core_schema__, [])) for road in ROADS.values()]
+        ways = [
+            handler(core_schema.definitions_schema(road.__pydantic_core_schema__, []))
+            for road in map(kind_of_road, ROADS)
+        ]
         return {"anyOf": [name, *ways]}
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 from ..fields import Measured
 
 Anything = Annotated[float, Measured("value")]
+Number = Annotated[float, Measured("number")]
 Angle = Annotated[float, Measured("angle")]
 Length = Annotated[float, Measured("length")]
 Time = Annotated[float, Measured("time")]
@@ -35,5 +36,6 @@ PositiveLength = Annotated[float, Measured("length", above=0)]
 NumberOrZero = Annotated[float, Measured("number", at_least=0)]
 LengthNotZero = Annotated[float, Measured("length", other_than=0)]
 NumberNotZero = Annotated[float, Measured("number", other_than=0)]
+PositiveValue = Annotated[float, Measured("value", above=0)]
 ValueNotZero = Annotated[float, Measured("value", other_than=0)]
 PositiveNumber = Annotated[float, Measured("number", above=0)]

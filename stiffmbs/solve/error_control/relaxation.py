@@ -101,6 +101,13 @@ def _heaviest(system: System) -> np.ndarray:
     return system.per_velocity(mass, inertia + mass * system.size**2)
 
 
+def creeps(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, limit: float) -> bool:
+    """Whether anything of a run may creep by more tolerances than a limit: a bound at a tenth of the cost of `creep_of`."""
+    least = float(absolute_tolerances(system, settings)[system.n_q :].min())
+    off = max(float(np.abs(trajectory.u[: len(rows.t)][block] - rows.u[block]).max()) for block in blocks(len(rows.t)))
+    return not max(off, _slip(system, rows, settings)) <= limit * least
+
+
 def creep_of(
     system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, breakpoints: np.ndarray
 ) -> Creep:
@@ -129,10 +136,13 @@ def creep_of(
             largest, row, velocity = float(of_rows[k]), block.start + k, int(off[k].argmax())
         release(rows.u, trajectory.u)
     joint = system.equations[int(np.abs(rows.lam[row]).argmax())][0]
-    slip = creep_of_velocities(settings, system) * float(np.abs(rows.lam[-1]).max()) / float(system.mass.max())
-    return Creep(
-        total / count, slip / float(absolute.min()), system.name_of(velocity, system.of_body.velocities), joint
-    )
+    at_end = _slip(system, rows, settings) / float(absolute.min())
+    return Creep(total / count, at_end, system.name_of(velocity, system.of_body.velocities), joint)
+
+
+def _slip(system: System, rows: OutputRows, settings: RunSettings) -> float:
+    """What the multipliers of the last instant let velocities creep by, by their size."""
+    return creep_of_velocities(settings, system) * float(np.abs(rows.lam[-1]).max()) / float(system.mass.max())
 
 
 def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings) -> float:

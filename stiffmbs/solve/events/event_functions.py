@@ -7,6 +7,8 @@ import numpy as np
 from ...compile.law_zones import zones_of
 from ...compile.machine.layout import EVENT_SEARCH, fill
 from ...compile.state import State
+from ...compile.system import System
+from ...compile.terms import TERM_SETS
 
 NODES = 8
 """States that describe a step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
@@ -57,7 +59,7 @@ class EventSearch:
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": zones.first, "edges": zones.edges, "overlap": zones.overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
-            "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
+            **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
 
@@ -65,3 +67,16 @@ class EventSearch:
         """Forget the last step: the integrator starts anew."""
         self._cells["ready"] = 0
         self.found[:] = 0
+
+
+def _calls(system: System) -> dict[str, np.ndarray | int]:
+    """Which call of a kernel computes each function, and room for which calls matter: all, until a step shows less."""
+    places, terms = system.places["event_function"], TERM_SETS["event_function"]
+    call = np.zeros(system.n_values("event_function"), dtype=np.int64)
+    writing = [g for g, group in enumerate(system.groups) if system.kernel("event_function", group) is not None]
+    for number, g in enumerate(writing):
+        group = system.groups[g]
+        for k, term in enumerate(terms):
+            first = int(places[g, 1 + k])
+            call[first : first + group.count * group.entries[term]] = number
+    return {"n_calls": len(writing), "call": call, "near": np.ones(len(writing), dtype=np.int64)}

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...describe.settings import RunSettings
+from ...errors import SolverError
 from ..algebraic_states import no_value_ahead
 from ..dynamics import Dynamics
 from ..events.chattering import Chattering
@@ -22,6 +23,7 @@ from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
+from .rounding import Rounding
 from .routines import ADVANCE
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
@@ -76,6 +78,7 @@ class AdaptiveRun:
         self._stable_step = StableStep(scheme, dynamics)
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
+        self._rounding = Rounding(dynamics, settings.rtol, grid.start, grid.end)
         self._begun = 0  # steps before the present segment
 
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:
@@ -144,6 +147,7 @@ class AdaptiveRun:
                 continue
             if status == PAUSED:
                 self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
+                self._leave_to_rounding()
                 if bounds:
                     stable_step.look(work, self._grid.end)
                     if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
@@ -160,6 +164,13 @@ class AdaptiveRun:
             self._events += 1
             self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
         return status
+
+    def _leave_to_rounding(self) -> None:
+        """Stop where steps follow rounding alone; another solver may go on."""
+        reason = self._rounding.look(self.work)
+        if reason:
+            self.left = True
+            raise SolverError(f"stopped at t = {self.work.t:.9g} s: {reason}")
 
     def _looks(self, most: int, leaving: Leaving | None) -> tuple[int, int]:
         """Counts of steps, and of those that stability held back, at which the next look is due."""

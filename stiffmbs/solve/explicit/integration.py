@@ -67,7 +67,7 @@ class Integration:
             "t": grid.start, "t_before": grid.start, "h": settings.step,
             "n_event_functions": n_event_functions, "end_at_event": END_AT_EVENT.address if self._watch.n else 0, "signs": np.zeros(n_event_functions),
             "watch": self._watch.table,
-            "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n),
+            "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n), "weight": np.zeros(n),
             "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": len(times), "times": times, "long_steps": self._long_steps.table,
             "capacity": self.capacity, "row_t": np.empty(self.capacity), "row_y": np.empty((self.capacity, n)),

@@ -20,6 +20,13 @@ times the tolerance where the estimate said 0.4 and the scheme of order 5 said 1
 
 
 @compiled
+def _weigh(x):
+    """One over the tolerance of each number of the state, over the step that was tried."""
+    for i in range(x.n):
+        x.weight[i] = 1.0 / (x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i])))
+
+
+@compiled
 def _squares(x, c, row):
     """The mean square of the difference to an embedded scheme, over the tolerance (without the factor h)."""
     for i in range(x.n):
@@ -27,20 +34,29 @@ def _squares(x, c, row):
     add_stages(x, x.difference, shifted(c.errors, row * c.extended), c.stages + 1, 1.0)
     total = 0.0
     for i in range(x.n):
-        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
-        ratio = x.difference[i] / scale
+        ratio = x.difference[i] * x.weight[i]
         total += ratio * ratio
     return total / x.n
 
 
 @compiled
-def error_of(x, c, h):
+def _error_of(x, c, h):
     """The estimated error of the step over the tolerance."""
     first = _squares(x, c, 0)
     if c.n_errors == 1:
         return h * sqrt(first)
     both = first + 0.01 * _squares(x, c, 1)
     return h * max(first / sqrt(both), sqrt(first) / MOST_BELOW) if both != 0.0 else 0.0
+
+
+@compiled
+def _squared(x, other):
+    """The squared distance of the new state from another, in tolerances."""
+    total = 0.0
+    for i in range(x.n):
+        ratio = (x.y[i] - other[i]) * x.weight[i]
+        total += ratio * ratio
+    return total
 
 
 @compiled
@@ -71,15 +87,10 @@ def trusted_error(x, c, h):
     than the whole step is long.  Where stability holds steps back stages go as far, too: an estimate by one scheme tells it
     then, unless it is far smaller or the stage sees another law.
     """
-    error = error_of(x, c, h)
-    astray = 0.0
-    way = 0.0
-    for i in range(x.n):
-        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
-        off, moved = (x.y[i] - x.y_stage[i]) / scale, (x.y[i] - x.y_before[i]) / scale
-        astray += off * off
-        way += moved * moved
-    if not (astray > way and astray > x.n):
+    _weigh(x)
+    error = _error_of(x, c, h)
+    astray = _squared(x, x.y_stage)
+    if not astray > x.n or not astray > _squared(x, x.y_before):
         return error
     unseen = c.n_errors == 2 or error * error * x.n < UNSEEN * UNSEEN * astray
     return max(error, UNTRUSTED) if unseen or _sees_other_laws(x, h) else error

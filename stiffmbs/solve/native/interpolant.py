@@ -53,8 +53,7 @@ def _sound(x, c):
     by_rates = 0.0
     by_stages = 0.0
     for i in range(x.n):
-        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
-        weight = 1.0 / (scale * scale)
+        weight = x.weight[i] * x.weight[i]
         of_stages = 0.0
         for k in range(3, 3 + c.n_dense):
             of_stages += p[k * x.n + i] * p[k * x.n + i]

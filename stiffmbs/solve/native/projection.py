@@ -44,6 +44,9 @@ def _by_frozen_factors(r, s, t, tolerance):
 @compiled
 def back_to_constraints(x, s, m, t):
     """Bring q and u of the state at hand, the end of a step, to both constraints; 0 or a negative status."""
+    if s.n_c == 0:
+        take_unit_length(s)
+        return 0
     if x.eliminates:
         r = eliminated_view(x.eliminated)
         if r.ready and _by_frozen_factors(r, s, t, x.tolerance):

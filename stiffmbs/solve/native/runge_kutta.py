@@ -15,7 +15,7 @@ from stiffmbs.compile.machine.native.access import (
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.error_estimate import trusted_error
-from stiffmbs.solve.native.event_search.explicit_events import RETRIED, end_at_event, retaken
+from stiffmbs.solve.native.event_search.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
 from stiffmbs.solve.native.fastest_rate import fastest_rate
 from stiffmbs.solve.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, next_row
@@ -145,6 +145,7 @@ def _shortest_to_event(x, c, s, m, explicit):
     if status == 0:
         status = call_int(x.end_at_event, (explicit,))
     if status == 0 and x.at_event:
+        x.at_event = AT_ANOTHER_LAW
         return 0
     copied(x.y, x.y_before, x.n)
     x.t = x.t_before
@@ -183,8 +184,9 @@ def advance(end, steps, held, own_steps, explicit):
             return stored
         if x.t >= end:
             return AT_END
-        if x.at_event:
+        if x.at_event == AT_ANOTHER_LAW:
             return AT_EVENT
+        x.at_event = 0
         far_beyond = x.far_beyond
         status = _step(x, c, s, m, end)
         if x.end_at_event:

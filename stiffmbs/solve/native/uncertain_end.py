@@ -35,7 +35,6 @@ def uncertain_end(x, c, h):
     rates = shifted(x.k, c.stages * x.n)
     total = 0.0
     for i in range(x.n_q, x.n):
-        scale = x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i]))
-        change = h * rates[i] * POSITION_ROUNDING / distance**3 / scale
+        change = h * rates[i] * POSITION_ROUNDING / distance**3 * x.weight[i]
         total += change * change
     return total > HARMFUL * HARMFUL * x.n

@@ -19,12 +19,10 @@ UNKNOWN = 8.0
 """Times that a function may be further from the cubic than where it was looked at."""
 STEEP = 8.0
 """Times that a rate at an end must be larger than the change between the ends for the function to be one that turns round."""
-CLEAR = 4.0
-"""Times that a function must be further from zero than its change in a step to be taken for far from it."""
 WIDER = 2.0
 """Times the change and the rates in a step that no bound lies further from its ends (those of `_bound` lie within 1.8 of them)."""
-TURNED, HARDLY_TURNED = 1.0, 0.3
-"""rad, by which a body may turn in a step without a look inside, or at rates: those at the ends tell nothing of whole turns."""
+TURNED = 1.0
+"""rad, by which a body may turn in a step without a look inside: rates at the ends tell nothing of whole turns."""
 
 event_search_view = view_of("EventSearch", EVENT_SEARCH)
 
@@ -52,7 +50,7 @@ def zone(w, k, value):
 
 
 @compiled
-def _edge(w, k, number):
+def edge(w, k, number):
     """The edge between the zones `number` and `number` + 1 of function k; the first or last one beyond those there are."""
     first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
     if w.period[k] > 0.0:
@@ -73,9 +71,9 @@ def beyond(w, k, value, one, other, least):
     """Whether a function at a value is in a zone that is neither of two, further than it overlaps with these and than `least`."""
     here, low, high = zone(w, k, value), min(one, other), max(one, other)
     if here > high:
-        return value - _edge(w, k, high) > max(least, _overlap(w, k, high))
+        return value - edge(w, k, high) > max(least, _overlap(w, k, high))
     if here < low:
-        return _edge(w, k, low - 1) - value > max(least, _overlap(w, k, low - 1))
+        return edge(w, k, low - 1) - value > max(least, _overlap(w, k, low - 1))
     return False
 
 
@@ -139,27 +137,12 @@ def reaches(w, k, start, start_rate, end, end_rate, missed):
 
 
 @compiled
-def _turned(w, q_before, q_after, most):
+def turned(w, q_before, q_after, most):
     """Whether a body has turned by more than an angle."""
-    turned = 0.0
+    farthest = 0.0
     for k in range(w.n_angles):
-        turned = max(turned, abs(q_after[w.angle[k]] - q_before[w.angle[k]]))
-    return turned > most
-
-
-@compiled
-def clear(w, h, q_before, q_after):
-    """Whether all functions are so far from zero that rates need not be looked at; rates at the end are then those of the step."""
-    if w.n > w.n_event_functions or _turned(w, q_before, q_after, HARDLY_TURNED):
-        return False
-    for k in range(w.n):
-        change = w.value_after[k] - w.value_before[k]
-        nearest = min(abs(w.value_after[k]), abs(w.value_before[k]))
-        if not nearest > CLEAR * (abs(change) + h * abs(w.rate_before[k])):
-            return False
-    for k in range(w.n):
-        w.rate_after[k] = (w.value_after[k] - w.value_before[k]) / h
-    return True
+        farthest = max(farthest, abs(q_after[w.angle[k]] - q_before[w.angle[k]]))
+    return farthest > most
 
 
 @compiled
@@ -177,24 +160,11 @@ def cubic(start, start_rate, end, end_rate, x):
 
 
 @compiled
-def _note_zones(w):
-    """Keep the edges about the values at the start of the step."""
-    for k in range(w.n):
-        value = w.value_before[k]
-        if w.zone_low[k] < value <= w.zone_high[k]:
-            continue
-        number = zone(w, k, value)
-        endless = w.period[k] > 0.0
-        w.zone_low[k] = _edge(w, k, number - 1) if endless or number > 0 else -float("inf")
-        w.zone_high[k] = (
-            _edge(w, k, number) if endless or number < w.first_edge[k + 1] - w.first_edge[k] else float("inf")
-        )
-
-
-@compiled
 def _note_apart(w, h):
     """Note how far each function stays from the edges of its zone, by bounds wider than those of `_bound`; no number above 0 where that is not known."""
     for k in range(w.n):
+        if not w.near[w.call[k]]:
+            continue
         start, end = w.value_before[k], w.value_after[k]
         start_rate, end_rate = h * w.rate_before[k], h * w.rate_after[k]
         missed = abs(w.m[k] - cubic(start, start_rate, end, end_rate, LOOKED_AT))
@@ -205,13 +175,15 @@ def _note_apart(w, h):
 
 @compiled
 def suspicious(w, h, q_before, q_after):
-    """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, allow an event."""
-    if _turned(w, q_before, q_after, TURNED):
+    """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, allow an event.
+
+    The zones at its start are noted (`note_zones`), and which kernels have a function near their edges.
+    """
+    if turned(w, q_before, q_after, TURNED):
         return True
-    _note_zones(w)
     _note_apart(w, h)
     for k in range(w.n):
-        if w.apart[k] > 0.0:
+        if not w.near[w.call[k]] or w.apart[k] > 0.0:
             continue
         start, start_rate, end, end_rate = (
             w.value_before[k],

@@ -23,6 +23,7 @@ from stiffmbs.solve.native.event_search.bounds import (
     shift_ends,
     suspicious,
 )
+from stiffmbs.solve.native.event_search.nearby import note_zones
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
 from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state, weighted
@@ -34,6 +35,8 @@ FARTHEST_PAST = 1e-6
 MOST_RETAKEN, BISECTIONS = 8, 40
 BEFORE_END, ALL = 1.0, 2.0
 """Which stages must not have seen another law: those at the end of a step that has been cut to a change may be just behind it."""
+AT_ANOTHER_LAW, IN_ANOTHER_ZONE = 1, 2
+"""What a step has ended at: an event that integrators start anew from, or an edge of a law's zone, where they go on."""
 MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT = 1.0, 0.2, 1, 2
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
 
@@ -134,6 +137,7 @@ def _event_within(x, c, s, m, until):
         w.ready = 1
     _note_rates(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
     _look_within(x, c, s)
+    note_zones(w)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
     if _stages_have_changed(x, c, s, until):
@@ -206,7 +210,6 @@ def _go_past(x, c, ahead):
     for i in range(x.n):
         x.y[i] += ahead * rates[i]
     x.t += ahead
-    x.at_event = 1
 
 
 @compiled
@@ -284,7 +287,15 @@ def _ended_at_event(x, c, s, m):
     if not error <= MOST_ERROR:
         return _left(x, c, error)
     _go_past(x, c, _way_past(x, c, s, 2.0 * behind, FARTHEST_PAST * h))
+    x.at_event = IN_ANOTHER_ZONE if _goes_on(x, s) else AT_ANOTHER_LAW
     return 0
+
+
+@compiled
+def _goes_on(x, s):
+    """Whether the next step may go on as from any other: an argument has come into another zone of its law, which is no new law."""
+    event_search_view(x.watch).ready = 0
+    return not (_any_found(x) or _changed(x, _values(x, s, x.y, x.t)))
 
 
 @compiled

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
-from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, evaluate_some, load
 from stiffmbs.solve.native.calls import call_int, int32
 from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
-    clear,
     event_search_view,
     noted,
     noted_rates,
     shift_ends,
     suspicious,
 )
+from stiffmbs.solve.native.event_search.nearby import note_mean_rates, note_near
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK
@@ -26,16 +26,13 @@ than this part of the time are not told from it."""
 
 
 @compiled
-def _note_rates(c, t, ahead, value, rate):
-    """Rates of all event functions at the state in c.y, by their values there and a time `ahead` later, which may be negative."""
-    s = state_view(c.state)
-    e = equations_view(c.equations)
-    w = event_search_view(c.watch)
+def _go_straight(c, s, ahead):
+    """Load the state to which the one in c.y goes at its present rates, in a time that may be negative."""
     y, yp = array_of(c, c.y), array_of(c, c.yp)
+    e = equations_view(c.equations)
     for k in range(e.n):
         c.probe[k] = y[k] + ahead * yp[k]
     load(s, e, c.probe, yp)
-    noted_rates(rate, value, evaluate(s, SWITCH, t + ahead), ahead, w.n)
 
 
 def look_at_start(toward, ida):
@@ -51,7 +48,8 @@ def look_at_start(toward, ida):
         c.seen = UNSEEN
         keep_row(w, s, 0)
         noted(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
-        _note_rates(c, c.returned, ahead, w.value_before, w.rate_before)
+        _go_straight(c, s, ahead)
+        noted_rates(w.rate_before, w.value_before, evaluate(s, SWITCH, c.returned + ahead), ahead, w.n)
     return int32(OK)
 
 
@@ -70,17 +68,22 @@ def look_within(ida):
         evaluate(s, SWITCH, c.returned)
     c.seen = UNSEEN
     noted(w.value_after, floats(s.values[SWITCH]), w.n)
-    if clear(w, h, w.row, s.q):
+    nearby = note_near(w, h, w.row, s.q)
+    if not nearby:
+        note_mean_rates(w, h)
         keep_row(w, s, 0)
         w.begun = c.returned
         shift_ends(w)
         return int32(0)
-    _note_rates(c, c.returned, -DIFFERENCE * h, w.value_after, w.rate_after)
+    ahead = -DIFFERENCE * h
+    _go_straight(c, s, ahead)
+    noted_rates(w.rate_after, w.value_after, evaluate_some(s, SWITCH, c.returned + ahead, w.near), ahead, w.n)
+    note_mean_rates(w, h)
     place = begun + LOOKED_AT * h
     if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
         return int32(0)
     load(s, e, c.output, array_of(c, c.yp))
-    noted(w.m, evaluate(s, SWITCH, place), w.n)
+    noted(w.m, evaluate_some(s, SWITCH, place, w.near), w.n)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):

@@ -39,6 +39,18 @@ def barely_held(slope: float) -> Model:
     return model
 
 
+def nearly_repeated(slope: float) -> Model:
+    """A pendulum on a pin, and an equation of its reach that holds a pushed block by a slope alone."""
+    model = Model("Nearly repeated", gravity=(0, -GRAVITY))
+    bar = model.add("bar", Body(mass=1, inertia=1 / 12, position=(0.5, 0)))
+    model.add("block", Body(mass=1, inertia=1))
+    model.add("rail", JOINTS["prismatic"](i="block", j="ground"))
+    model.add("pin", JOINTS["revolute"](i=bar.at(-0.5, 0), j="ground"))
+    model.add("reach", JOINTS["equation"](zero=f"bar.x^2 + bar.y^2 - 0.25 + {slope!r}*block.x"))
+    model.add("push", FORCES["force"](i="block", j="ground", force=("2 N", "0 N")))
+    return model
+
+
 def swing_error(solution: Solution) -> float:
     """Largest error of the bar's angle against elliptic functions, rad."""
     expected = swing(solution.t, np.pi / 2, bar_rate(1.0))
@@ -59,5 +71,12 @@ CASES = (
             partial(barely_held, slope), swing_error, ALLOWED, duration=2.0, points=101, rtol=1e-7, solver=solver,
         )
         for slope in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6) for solver in ("bdf", "projected")
+    ),
+    *(
+        simulation(
+            f"block held by a slope of {slope:.0e} of an equation that its pendulum fulfils, {solver}", "angle against elliptic functions",
+            partial(nearly_repeated, slope), swing_error, ALLOWED, duration=2.0, points=101, rtol=1e-7, solver=solver,
+        )
+        for slope in (1e-5, 1e-6, 1e-7, 4e-8) for solver in ("bdf", "auto", "projected")
     ),
 )  # fmt: skip

@@ -1,0 +1,42 @@
+"""A group of commands whose files are loaded when they are called."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import click
+
+from ..process import Process
+from .logging_options import with_logging_options
+
+
+class Subcommands(Process):
+    """A group whose commands have a file each: a run need not load what draws or fits.
+
+    Parameters
+    ----------
+    files : mapping of str to str
+        The module of each command in `stiffmbs.commands`. Behind a colon its name there, where that is another.
+    """
+
+    def __init__(self, *arguments: Any, files: Mapping[str, str] | None = None, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.files = {} if files is None else files
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        """Names of all commands, in the order of the alphabet."""
+        return sorted(self.files)
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """The command of a name; None where there is none."""
+        for wanted in [name] if name in self.files else self.files:  # all of them, to suggest one that is alike
+            if wanted not in self.commands:
+                self.add_command(with_logging_options(self._loaded(wanted)), wanted)
+        return super().get_command(context, name)
+
+    def _loaded(self, name: str) -> click.Command:
+        module, _, own_name = self.files[name].partition(":")
+        command: click.Command = getattr(import_module(f"..{module}", __package__), own_name or name)
+        return command

@@ -1,0 +1,32 @@
+"""The package's own files that entries of the cache depend on, and digests of what stands in them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+PYTHON = ".py"
+NOT_READ = "__pycache__"
+
+
+def digest_of(files: Iterable[Path]) -> str:
+    """A name for the contents of some files, in their order."""
+    found = hashlib.sha256()
+    for file in files:
+        found.update(file.read_bytes() + b"\0")
+    return found.hexdigest()
+
+
+def python_files(folder: Path) -> list[Path]:
+    """The modules in a folder, by name."""
+    return [folder / name for name in sorted(os.listdir(folder)) if name.endswith(PYTHON)]
+
+
+def modules_within(package: Path, folder: str) -> Iterator[Path]:
+    """The modules in all folders of a name within a package, and in the folders of these, by name."""
+    for place, folders, names in os.walk(package):
+        folders[:] = sorted(set(folders) - {NOT_READ})
+        if folder in Path(place).relative_to(package).parts:
+            yield from (Path(place, name) for name in sorted(names) if name.endswith(PYTHON))
