@@ -91,7 +91,7 @@ def _called(with_geometry: bool) -> str:
     here = Path(__file__).parent
     names = ("nonsmooth", "continuous_angle", "spline", "rotation_vector", "python_call")
     files = [here / "native" / f"{name}.py" for name in names]
-    return digest_of(files + sorted((here / "geometry").glob("*.py")) * with_geometry)
+    return digest_of(files + python_files(here / "geometry") * with_geometry)
 
 
 @cache
