@@ -81,7 +81,8 @@ def test_middles_of_boxes_and_cylinders():
 
 def test_pairs_that_are_not_solved_are_refused():
     with pytest.raises(
-        InputError, match=r"CONTACT/1: found PLANE and PLANE, expected SPHERE and PLANE, .*, or two of SPHERE, ELLIPSOID"
+        InputError,
+        match=r"CONTACT/1: found PLANE and PLANE, expected SPHERE and PLANE, .*, or two of SPHERE, ELLIPSOID",
     ):
         contact(1, 1)
     with pytest.raises(InputError, match="found no RADIUS, expected a number above zero"):
