@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..describe.element import JointName
 from ..describe.formula.formula import Formula
-from ..describe.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
-from ..describe.formula.text import UNIT
+from ..describe.formula.nodes import TIME, is_measure, is_reaction, joint_of, measured_markers
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
 from ..describe.table import Table
+from .formula_parts import FormulaParts
 from .table_values import spline_data
 
 if TYPE_CHECKING:
@@ -29,12 +29,12 @@ REACTION = "reaction"
 STATE = "state"
 """Before the slot of a state in a formula's shape."""
 TAKEN_OUT = "taken_out"
-"""Under which a formula keeps what stands in it in place of placeholders."""
+"""Under which a formula keeps what placeholders stand for in it."""
 OWN = "own_"
 """Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
 
 
-class FormulaShape(ast.NodeTransformer):
+class FormulaShape(ast.NodeVisitor):
     """Takes numbers, bodies, measures and tables out of a formula.
 
     Bodies become ``b0.x``, states ``state0``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
@@ -45,10 +45,12 @@ class FormulaShape(ast.NodeTransformer):
     def __init__(self, formula: Formula, model: Compilable, data: ElementData, shape_of: ShapeOf) -> None:
         self.formula, self.model, self.data, self._shape_of = formula, model, data, shape_of
         self.numbers: list[float] = []
+        self.constants: list[ast.expr] = []
         self.measures: list[tuple[str, tuple[Any, ...]]] = []
         self.tables: list[Table] = []
         self.reactions: list[tuple[str, str]] = []
-        self._found: dict[str, ast.AST] = {}
+        self._found: dict[int, ast.AST] = {}
+        self._parts = FormulaParts(formula)
 
     def shape(self) -> Shape:
         """The formula's shape; its numbers and markers are appended to the data."""
@@ -70,7 +72,7 @@ class FormulaShape(ast.NodeTransformer):
 
     def _read(self) -> str:
         """What is left of the formula once numbers, markers and tables are taken out."""
-        return ast.unparse(self.visit(copy.deepcopy(self.formula.tree)))
+        return ast.unparse(self.visit(self.formula.tree))
 
     def _read_once(self) -> str:
         """The same of a formula without states, kept with it: studies compile the same formulas again and again.
@@ -80,20 +82,25 @@ class FormulaShape(ast.NodeTransformer):
         kept, before = self.formula.kept, (TAKEN_OUT, tuple(self.data.bodies))
         if before not in kept:
             text = self._read()
-            kept[before] = text, list(self.data.bodies), self.numbers, self.measures, self.tables, self.reactions
-        text, self.data.bodies, self.numbers, self.measures, self.tables, self.reactions = map(copy.copy, kept[before])
+            kept[before] = text, list(self.data.bodies), self.constants, self.measures, self.tables, self.reactions
+        text, bodies, constants, measures, tables, reactions = kept[before]
+        self.data.bodies, self.measures, self.tables, self.reactions = map(
+            copy.copy, (bodies, measures, tables, reactions)
+        )
+        self.numbers = [formula_value(self.formula, node) for node in constants]
         return str(text)
 
     def visit(self, node: ast.AST) -> Any:
         """A placeholder for a number, and the number noted."""
-        constant = _constant_value(node, self.formula)
-        if constant is not None:
-            self.numbers.append(constant)
+        assert isinstance(node, ast.expr)
+        part = self._parts.of(node)
+        if part.constant:
+            self.constants.append(node)
+            self.numbers.append(formula_value(self.formula, node))
             return ast.Name(f"p{len(self.numbers) - 1}")
-        text = ast.unparse(node)
-        if text not in self._found:
-            self._found[text] = super().visit(node)
-        return self._found[text]
+        if part.number not in self._found:
+            self._found[part.number] = super().visit(node)
+        return self._found[part.number]
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
         match node:
@@ -138,7 +145,7 @@ class FormulaShape(ast.NodeTransformer):
             self.tables,
             self.reactions,
         )
-        tree: ast.AST = inner.visit(copy.deepcopy(output.tree))
+        tree: ast.AST = inner.visit(output.tree)
         return tree
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
@@ -147,17 +154,3 @@ class FormulaShape(ast.NodeTransformer):
             self.measures.append((OWN + node.attr, (MarkerReference(body=node.value.id),)))
             return ast.Name(f"measure{len(self.measures) - 1}")
         return ast.Attribute(ast.Name(f"b{self.data.slot(node.value.id)}"), node.attr)
-
-
-def _constant_value(node: ast.AST, formula: Formula) -> float | None:
-    """The value of a part of a formula that holds neither time, coordinates, measures nor variables."""
-    if not isinstance(node, ast.expr):
-        return None
-    for part in ast.walk(node):
-        if is_named(part) or (
-            isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)
-        ):
-            return None
-        if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
-            return None
-    return formula_value(formula, node)

@@ -206,15 +206,25 @@ def written_scene(model: Any) -> WrittenScene:
     Raises
     ------
     InputError
-        When the file cannot be read, or the model cannot be written as a scene.
+        When the file cannot be read, the scene was changed since, or the model cannot be written as a scene.
     """
     from ..describe.model_text import model_text
     from ..describe.scene import read_scene
     from ..jobs.run import data_of
 
     data = data_of(model)
+    if isinstance(data, Scene) and not _as_written(data):
+        raise InputError(
+            "study: found a changed copy of a scene, expected a scene as it was read; give the changes as values"
+        )
     if not isinstance(data, Scene) or data.written is None:
         data = read_scene(model_text(data))
     if data.written is None:
         raise InputError("study: found a scene that was not read from text, expected a file, a scene or a model")
     return data.written
+
+
+def _as_written(scene: Scene) -> bool:
+    """Whether a scene is what it was read from, and no changed copy of that."""
+    as_read = scene.validated.scene
+    return as_read is None or as_read is scene or bool(as_read == scene)
