@@ -71,7 +71,7 @@ def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.nd
         violations[k], coefficients[k] = values[V.source], values[source]
     gaps, sizes = np.zeros((2, len(outputs), system.n_c))
     gaps[:, V.row] = np.abs(violations)
-    np.add.at(sizes, (slice(None), row), np.abs(coefficients * way.u[outputs][:, column]))
+    np.add.at(sizes.T, row, np.abs(coefficients * way.u[outputs][:, column]).T)
     excess = (gaps - np.maximum(UNFOLLOWED_PART * sizes, UNFOLLOWED_VELOCITY))[:, rows]
     wrong = np.flatnonzero(np.any(excess > 0, axis=1))
     if not len(wrong):
