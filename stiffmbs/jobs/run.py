@@ -386,4 +386,4 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    yield from job.dynamics.kept("settings notes", job.settings, lambda: (*settings_notes(job.settings, system),))
+    yield from settings_notes(job.settings, system)
