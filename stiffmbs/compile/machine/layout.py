@@ -220,7 +220,7 @@ NATIVE_IDA = Layout({
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
-    "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
+    "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
     "long_steps": INTS,
@@ -230,7 +230,7 @@ NATIVE_IDA = Layout({
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
 
 Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
-last step, size of the one that it will try next; output points served, tiny steps in succession, whether the last event
+last step, size of the one that it will try next; where it was last told to stop; output points served, tiny steps in succession, whether the last event
 was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
 of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call; the time for which the state holds the values of event functions."""
 MOST_STEPS, HISTORY_WIDTH = 2048, 3
