@@ -61,9 +61,13 @@ class QuickEnd:
 
     @classmethod
     def of_the_command(cls) -> QuickEnd:
-        """One that is called as the process ends, after all that is registered later; other programs end in their own ways."""
+        """One that is called as the process ends, after all that is registered later.
+
+        Other programs end in their own ways, and so does a command for which something was registered earlier, as by a
+        ``sitecustomize``: that would not be called.
+        """
         end = cls()
-        if _is_the_command():
+        if _is_the_command() and not atexit._ncallbacks():
             atexit.register(end)
         return end
 

@@ -23,6 +23,7 @@ from stiffmbs.describe.spatial.forces.magic_formula_tyre import MagicFormulaTyre
 from stiffmbs.describe.spatial.forces.python_force import PythonForce as _PythonForce
 from stiffmbs.describe.spatial.forces.shared import LineForce as _LineForce
 from stiffmbs.describe.spatial.forces.shared import SpringDamper as _SpringDamper
+from stiffmbs.describe.spatial.forces.solid_impact import SolidImpact as _SolidImpact
 from stiffmbs.describe.spatial.forces.sphere_box_impact import SphereBoxImpact as _SphereBoxImpact
 from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
 from stiffmbs.describe.spatial.forces.sphere_cylinder_impact import SphereCylinderImpact as _SphereCylinderImpact
@@ -376,6 +377,7 @@ class PointOnCurve(_PointOnCurve):
         y: given.Curve | None = ...,
         radius: given.Curve | None = ...,
         z: given.Curve | None = ...,
+        height: given.Curve | None = ...,
         type: Literal["point_on_curve"] = ...,
     ) -> None: ...
 
@@ -435,6 +437,28 @@ class Screw(_Screw):
         j: given.Marker,
         pitch: given.Number,
         type: Literal["screw"] = ...,
+    ) -> None: ...
+
+class SolidImpact(_SolidImpact):
+    """Two ellipsoids, boxes or cylinders that press on each other at one point."""
+    def __init__(
+        self,
+        *,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        damping: given.Number = ...,
+        depth: given.Number = ...,
+        static_friction: given.Number | None = ...,
+        friction: given.Number | None = ...,
+        stiction_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        i_shape: Literal["ellipsoid", "box", "cylinder"],
+        i_size: given.Numbers,
+        j_shape: Literal["ellipsoid", "box", "cylinder"],
+        j_size: given.Numbers,
+        type: Literal["solid_impact"] = ...,
     ) -> None: ...
 
 class SphereBoxImpact(_SphereBoxImpact):

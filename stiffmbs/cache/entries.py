@@ -115,6 +115,21 @@ class Folder:
             if secret is not None:
                 _put(directory / name, self._code(secret, name, content) + content)
 
+    def keep_newest(self, most: int, most_bytes: int) -> None:
+        """Where there are more entries, or more bytes in them, remove those that were written first until half as much is left."""
+        with suppress(OSError):
+            found = sorted(
+                (entry.stat().st_mtime_ns, entry.stat().st_size, entry.path) for entry in os.scandir(self.path)
+            )
+            count, size = len(found), sum(of_entry for _, of_entry, _ in found)
+            if count <= most and size <= most_bytes:
+                return
+            for _, of_entry, path in found:
+                if count <= most // 2 and size <= most_bytes // 2:
+                    return
+                os.unlink(path)
+                count, size = count - 1, size - of_entry
+
     def _code(self, secret: bytes, name: str, content: bytes) -> bytes:
         return hmac.digest(secret, b"\0".join((self.tag.encode(), name.encode(), content)), "sha256")
 

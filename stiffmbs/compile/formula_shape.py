@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..describe.element import JointName
@@ -29,12 +30,70 @@ REACTION = "reaction"
 STATE = "state"
 """Before the slot of a state in a formula's shape."""
 TAKEN_OUT = "taken_out"
-"""Under which a formula keeps what stands in it in place of placeholders."""
+"""Under which a formula keeps what placeholders stand for in it."""
 OWN = "own_"
 """Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
 
 
-class FormulaShape(ast.NodeTransformer):
+@dataclass(frozen=True)
+class Part:
+    """A part of a formula.
+
+    Attributes
+    ----------
+    number : int
+        The same for parts that say the same word for word.
+    constant : bool
+        Whether it holds neither time, coordinates, measures, states nor the field's own variables.
+    """
+
+    number: int
+    constant: bool
+
+
+class FormulaParts:
+    """What is known of the parts of a formula; each is looked at once.
+
+    Parameters
+    ----------
+    formula : Formula
+    """
+
+    def __init__(self, formula: Formula) -> None:
+        self._values = formula.values
+        self._varying = {TIME, *formula.variables, *formula.tables, *formula.states}
+        self._known: dict[int, Part] = {}
+        self._numbers: dict[tuple[object, ...], int] = {}
+
+    def of(self, node: ast.expr) -> Part:
+        """A part by its node in the formula's tree."""
+        if id(node) not in self._known:
+            self._known[id(node)] = self._read(node)
+        return self._known[id(node)]
+
+    def _read(self, node: ast.expr) -> Part:
+        match node:
+            case ast.BinOp(left, operator, right):
+                return self._of_parts((type(operator),), left, right)
+            case ast.UnaryOp(operator, operand):
+                return self._of_parts((type(operator),), operand)
+            case ast.Call(ast.Name(name), arguments):
+                return self._of_parts((ast.Call, name), *arguments, constant=not is_named(node) and name not in self._varying)  # fmt: skip
+            case ast.Attribute(ast.Name(owner), name):
+                return self._part((owner, name), f"{UNIT}.{name}" in self._values and owner not in self._varying)
+            case ast.Name(name):
+                return self._part((name,), name not in self._varying)
+        return self._part((ast.dump(node),), isinstance(node, ast.Constant))
+
+    def _of_parts(self, says: tuple[object, ...], *nodes: ast.expr, constant: bool = True) -> Part:
+        parts = [self.of(node) for node in nodes]
+        return self._part((*says, *(part.number for part in parts)), constant and all(part.constant for part in parts))
+
+    def _part(self, says: tuple[object, ...], constant: bool) -> Part:
+        return Part(self._numbers.setdefault(says, len(self._numbers)), constant)
+
+
+class FormulaShape(ast.NodeVisitor):
     """Takes numbers, bodies, measures and tables out of a formula.
 
     Bodies become ``b0.x``, states ``state0``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
@@ -45,10 +104,12 @@ class FormulaShape(ast.NodeTransformer):
     def __init__(self, formula: Formula, model: Compilable, data: ElementData, shape_of: ShapeOf) -> None:
         self.formula, self.model, self.data, self._shape_of = formula, model, data, shape_of
         self.numbers: list[float] = []
+        self.constants: list[ast.expr] = []
         self.measures: list[tuple[str, tuple[Any, ...]]] = []
         self.tables: list[Table] = []
         self.reactions: list[tuple[str, str]] = []
-        self._found: dict[str, ast.AST] = {}
+        self._found: dict[int, ast.AST] = {}
+        self._parts = FormulaParts(formula)
 
     def shape(self) -> Shape:
         """The formula's shape; its numbers and markers are appended to the data."""
@@ -70,7 +131,7 @@ class FormulaShape(ast.NodeTransformer):
 
     def _read(self) -> str:
         """What is left of the formula once numbers, markers and tables are taken out."""
-        return ast.unparse(self.visit(copy.deepcopy(self.formula.tree)))
+        return ast.unparse(self.visit(self.formula.tree))
 
     def _read_once(self) -> str:
         """The same of a formula without states, kept with it: studies compile the same formulas again and again.
@@ -80,20 +141,25 @@ class FormulaShape(ast.NodeTransformer):
         kept, before = self.formula.kept, (TAKEN_OUT, tuple(self.data.bodies))
         if before not in kept:
             text = self._read()
-            kept[before] = text, list(self.data.bodies), self.numbers, self.measures, self.tables, self.reactions
-        text, self.data.bodies, self.numbers, self.measures, self.tables, self.reactions = map(copy.copy, kept[before])
+            kept[before] = text, list(self.data.bodies), self.constants, self.measures, self.tables, self.reactions
+        text, bodies, constants, measures, tables, reactions = kept[before]
+        self.data.bodies, self.measures, self.tables, self.reactions = map(
+            copy.copy, (bodies, measures, tables, reactions)
+        )
+        self.numbers = [formula_value(self.formula, node) for node in constants]
         return str(text)
 
     def visit(self, node: ast.AST) -> Any:
         """A placeholder for a number, and the number noted."""
-        constant = _constant_value(node, self.formula)
-        if constant is not None:
-            self.numbers.append(constant)
+        assert isinstance(node, ast.expr)
+        part = self._parts.of(node)
+        if part.constant:
+            self.constants.append(node)
+            self.numbers.append(formula_value(self.formula, node))
             return ast.Name(f"p{len(self.numbers) - 1}")
-        text = ast.unparse(node)
-        if text not in self._found:
-            self._found[text] = super().visit(node)
-        return self._found[text]
+        if part.number not in self._found:
+            self._found[part.number] = super().visit(node)
+        return self._found[part.number]
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
         match node:
@@ -138,7 +204,7 @@ class FormulaShape(ast.NodeTransformer):
             self.tables,
             self.reactions,
         )
-        tree: ast.AST = inner.visit(copy.deepcopy(output.tree))
+        tree: ast.AST = inner.visit(output.tree)
         return tree
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
@@ -147,17 +213,3 @@ class FormulaShape(ast.NodeTransformer):
             self.measures.append((OWN + node.attr, (MarkerReference(body=node.value.id),)))
             return ast.Name(f"measure{len(self.measures) - 1}")
         return ast.Attribute(ast.Name(f"b{self.data.slot(node.value.id)}"), node.attr)
-
-
-def _constant_value(node: ast.AST, formula: Formula) -> float | None:
-    """The value of a part of a formula that holds neither time, coordinates, measures nor variables."""
-    if not isinstance(node, ast.expr):
-        return None
-    for part in ast.walk(node):
-        if is_named(part) or (
-            isinstance(part, ast.Name) and part.id in (TIME, *formula.variables, *formula.tables, *formula.states)
-        ):
-            return None
-        if isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values:
-            return None
-    return formula_value(formula, node)

@@ -214,7 +214,8 @@ def _rates_of_states(values: Mapping[str, StateValue], model: Compilable, data: 
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
-    return _parts({name: getattr(element, name) for name in type(element).model_fields}, model, data)
+    values = vars(element)  # getattr asks pydantic for each
+    return _parts({name: values[name] for name in type(element).__pydantic_fields__}, model, data)
 
 
 def _parts(values: Mapping[str, Any], model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:

@@ -125,7 +125,7 @@ class Element(Described):
     def parts(self, part: builtins.type) -> Iterator[tuple[str, Any]]:
         """The element's markers, formulas, or joint names: every value of a type, by field name, in order."""
         fields = vars(self)  # getattr asks pydantic for each
-        for name in type(self).model_fields:
+        for name in type(self).__pydantic_fields__:
             value = fields[name]
             for item in value if isinstance(value, tuple) else (value,):
                 if isinstance(item, part):

@@ -71,6 +71,7 @@ class Scene(ModelData):
     notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
     _written: WrittenScene | None = PrivateAttr(default=None)
+    _validated: Unchanged = PrivateAttr(default_factory=Unchanged)
     _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
     _held_at_start: Scene | None = PrivateAttr(default=None)
 
@@ -115,6 +116,11 @@ class Scene(ModelData):
     def written(self) -> WrittenScene | None:
         """What the scene was read from, to read it again with other values; None where it was made in another way."""
         return self._written
+
+    @property
+    def validated(self) -> Unchanged:
+        """What need not be validated again where it is read with other values; that of another scene in a changed copy."""
+        return self._validated
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
@@ -218,6 +224,7 @@ def made_scene(
         When it is no valid scene.
     """
     scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    known = unchanged or Unchanged()
     parts = found.get("parts")
     found, changes = placed_in_use(unshared(found), changes)
     found, chosen, changes = _chosen(found, changes, source)
@@ -232,13 +239,13 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        scene = _validated(found, replaced, in_parts, chosen, folder, unchanged)
+        scene = _validated(found, replaced, in_parts, chosen, folder, known)
     except _Located as error:
         message = as_written(str(error), parts)
         there = error.path if message == str(error) else ("parts", *error.path[1:])
         where = _place(error.path, changes, lambda _: line_of(there))
         raise InputError(f"{source}, {where}{message}") from None
-    scene._written = scene_as_written
+    scene._written, scene._validated = scene_as_written, known
     if scene.stages:
         scene._stage_scenes = _stage_scenes(scene, source)
     elif scene.at_start:
@@ -320,7 +327,7 @@ def _validated(
     in_parts: Sequence[tuple[str, Any]],
     chosen: Mapping[str, Any],
     folder: Path | None,
-    unchanged: Unchanged | None,
+    unchanged: Unchanged,
 ) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"), replaced)
@@ -338,8 +345,7 @@ def _validated(
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
     raw["tables"], raw["roads"] = tables, context["roads"]
     written_entries = dict(raw)
-    if unchanged:
-        raw = unchanged.put_into(raw, context)
+    raw = unchanged.put_into(raw, context)
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
@@ -349,8 +355,7 @@ def _validated(
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
     scene._quantities = parameters
-    if unchanged:
-        unchanged.keep(written_entries, context, scene)
+    unchanged.keep(written_entries, context, scene)
     return scene
 
 

@@ -49,25 +49,33 @@ def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
     rows = np.flatnonzero(dynamics.system.active & ~dynamics.system.holonomic)
     if not len(rows):
         return None
-    last = 0
-    for output in np.unique(np.linspace(0, len(way.t) - 1, MOST_OUTPUTS).astype(int)).tolist():
-        if _worst(dynamics, rows, way, output):
-            return next(found for k in range(last, output + 1) if (found := _worst(dynamics, rows, way, k)))
-        last = output
-    return None
+    outputs = np.unique(np.linspace(0, len(way.t) - 1, MOST_OUTPUTS).astype(int))
+    seen = _first(dynamics, rows, way, outputs)
+    if seen is None:
+        return None
+    before = outputs[max(int(np.searchsorted(outputs, seen.output)) - 1, 0)]
+    return _first(dynamics, rows, way, np.arange(before, seen.output + 1))
 
 
-def _worst(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, output: int) -> Unfollowed | None:
-    """Of some equations that which is off most at an output, if by too much."""
+def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
+    """Of some equations that which is off most at the first of some outputs at which any is off by too much."""
     system, state = dynamics.system, dynamics.state
     V, J = system.term("motion", "V"), system.term("motion", "J")
-    u = way.u[output]
-    state.q[:], state.u[:] = way.q[output], u
-    state.evaluate("motion", float(way.t[output]))
-    values = state.values["motion"]
-    gaps, sizes = np.zeros(system.n_c), np.zeros(system.n_c)
-    gaps[V.row] = np.abs(values[V.source])
-    np.add.at(sizes, J.row, np.abs(values[J.source] * u[J.column]))
-    row = int(rows[np.argmax(gaps[rows] - np.maximum(UNFOLLOWED_PART * sizes[rows], UNFOLLOWED_VELOCITY))])
-    wrong = gaps[row] > max(UNFOLLOWED_PART * sizes[row], UNFOLLOWED_VELOCITY)
-    return Unfollowed(output, row, float(gaps[row])) if wrong else None
+    used = np.isin(J.row, rows)
+    row, column, source = J.row[used], J.column[used], J.source[used]
+    violations, coefficients = np.empty((len(outputs), len(V.source))), np.empty((len(outputs), len(source)))
+    for k, output in enumerate(outputs.tolist()):
+        state.q[:], state.u[:] = way.q[output], way.u[output]
+        state.evaluate("motion", float(way.t[output]))
+        values = state.values["motion"]
+        violations[k], coefficients[k] = values[V.source], values[source]
+    gaps, sizes = np.zeros((2, len(outputs), system.n_c))
+    gaps[:, V.row] = np.abs(violations)
+    np.add.at(sizes.T, row, np.abs(coefficients * way.u[outputs][:, column]).T)
+    excess = (gaps - np.maximum(UNFOLLOWED_PART * sizes, UNFOLLOWED_VELOCITY))[:, rows]
+    wrong = np.flatnonzero(np.any(excess > 0, axis=1))
+    if not len(wrong):
+        return None
+    k = int(wrong[0])
+    worst = int(rows[np.argmax(excess[k])])
+    return Unfollowed(int(outputs[k]), worst, float(gaps[k, worst]))

@@ -89,7 +89,7 @@ def renumberable(job: Job) -> bool:
 
 def _moved(before: Element, after: Element) -> bool:
     """Whether a force acts at other markers."""
-    return [marker for _, marker in before.markers()] != [marker for _, marker in after.markers()]
+    return list(before.markers()) != list(after.markers())
 
 
 def _same_structure(before: ModelData, after: ModelData) -> bool:
@@ -186,16 +186,12 @@ def _change(system: System, name: str, force: Element, data: ModelData) -> Chang
     element = group.names.index(name)
     index, values = group.index[element], found.flat()
     first = int(index[2 * kind.n_bodies])
-    starts = np.append(group.index[:, 2 * kind.n_bodies], len(group.numbers) - 1)
+    last = element + 1 == len(group.names)
+    end = len(group.numbers) - 1 if last else int(group.index[element + 1, 2 * kind.n_bodies])
     bodies = [system.bodies[k] if k < len(system.bodies) else GROUND for k in group.bodies[element]]
     rows = index[2 * kind.n_bodies + 1 :][: kind.n_joints]
     joints = [system.equations[row][0] for row in rows]
     states = [system.states[k - system.first_state] for k in group.states[element]]
-    if (
-        len(values) != starts[element + 1] - first
-        or bodies != found.bodies
-        or joints != found.joints
-        or states != found.states
-    ):
+    if len(values) != end - first or bodies != found.bodies or joints != found.joints or states != found.states:
         return None
     return Change(group, element, force, first, values)

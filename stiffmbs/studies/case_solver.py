@@ -18,7 +18,7 @@ from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
 from ..jobs.number_plan import NumberPlan, number_plan
 from ..jobs.renumber import renumbered
-from ..jobs.run import Job, prepare, solved
+from ..jobs.run import Finished, Job, finished, prepare, solved
 from ..results.channels import channels_of
 from ..results.solution import Solution
 from ..solve.settings import changed
@@ -123,7 +123,7 @@ class CaseSolver:
     def row(self, case: int, values: Sequence[Any]) -> Row:
         """A case with its outputs, or with what went wrong."""
         try:
-            solution = solved(self._job_of_case(values))
+            solution = finished(self._job_of_case(values))
             done = solution.outcome is Outcome.DONE
             outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
         except NotFollowed:  # something looks at the described forces after all
@@ -188,7 +188,7 @@ class CaseSolver:
         return found
 
 
-def _kept(output: Output, solution: Solution, done: bool) -> float | np.ndarray:
+def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
     """An output of a run; a reduction of one that stopped early is not known."""
     if not done and not output.is_series:
         output.value(solution)
@@ -206,15 +206,25 @@ def written_scene(model: Any) -> WrittenScene:
     Raises
     ------
     InputError
-        When the file cannot be read, or the model cannot be written as a scene.
+        When the file cannot be read, the scene was changed since, or the model cannot be written as a scene.
     """
     from ..describe.model_text import model_text
     from ..describe.scene import read_scene
     from ..jobs.run import data_of
 
     data = data_of(model)
+    if isinstance(data, Scene) and not _as_written(data):
+        raise InputError(
+            "study: found a changed copy of a scene, expected a scene as it was read; give the changes as values"
+        )
     if not isinstance(data, Scene) or data.written is None:
         data = read_scene(model_text(data))
     if data.written is None:
         raise InputError("study: found a scene that was not read from text, expected a file, a scene or a model")
     return data.written
+
+
+def _as_written(scene: Scene) -> bool:
+    """Whether a scene is what it was read from, and no changed copy of that."""
+    as_read = scene.validated.scene
+    return as_read is None or as_read is scene or bool(as_read == scene)

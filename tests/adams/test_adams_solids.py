@@ -43,6 +43,21 @@ def test_pairs_of_solids(i, j, kind, sizes):
     assert (force["damping"], force["depth"]) == pytest.approx((1e4, 1e-4)) and "friction" not in force
 
 
+@pytest.mark.parametrize(
+    ("i", "j", "shapes", "sizes"),
+    [
+        (5, 2, ("ellipsoid", "ellipsoid"), ([0.08, 0.08, 0.08], [0.4, 0.2, 0.1])),
+        (4, 3, ("box", "cylinder"), ([0.1, 0.06, 0.04], [0.08, 0.08, 0.3])),
+        (6, 4, ("cylinder", "box"), ([0.08, 0.08, 0.3], [0.1, 0.06, 0.04])),
+        (2, 6, ("ellipsoid", "cylinder"), ([0.4, 0.2, 0.1], [0.08, 0.08, 0.3])),
+    ],
+)
+def test_two_solids_with_whole_sizes(i, j, shapes, sizes):
+    force = contact(i, j)["forces"]["CONTACT_1"]
+    assert force["type"] == "solid_impact" and (force["i_shape"], force["j_shape"]) == shapes
+    assert (force["i_size"], force["j_size"]) == tuple(pytest.approx(size) for size in sizes)
+
+
 def test_friction_has_its_velocities_in_si():
     force = contact(1, 3, RUBBING)["forces"]["CONTACT_1"]
     names = ("static_friction", "friction", "stiction_velocity", "friction_velocity")
@@ -66,9 +81,10 @@ def test_middles_of_boxes_and_cylinders():
 
 def test_pairs_that_are_not_solved_are_refused():
     with pytest.raises(
-        InputError, match="CONTACT/1: found BOX and CYLINDER, expected SPHERE and PLANE, SPHERE and SPHERE"
+        InputError,
+        match=r"CONTACT/1: found PLANE and PLANE, expected SPHERE and PLANE, .*, or two of SPHERE, ELLIPSOID",
     ):
-        contact(4, 3)
+        contact(1, 1)
     with pytest.raises(InputError, match="found no RADIUS, expected a number above zero"):
         made("GRAPHICS/1, PLANE, RM=1\nGRAPHICS/3, CYLINDER, CM=22, LENGTH=300\nCONTACT/1, IGEOM=3, JGEOM=1, " + LAW)
 

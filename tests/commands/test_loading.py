@@ -1,6 +1,7 @@
 """How the command is loaded."""
 
 import gc
+import os
 import subprocess
 import sys
 
@@ -14,3 +15,13 @@ def test_the_garbage_collector_waits_for_the_command_to_be_loaded_and_for_nothin
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout.split() == ["False", "True", "True"]
     assert gc.isenabled()  # of a program that imports the package
+
+
+def test_what_was_registered_for_the_end_of_the_process_before_the_command_is_called(tmp_path):
+    (tmp_path / "sitecustomize.py").write_text("import atexit; atexit.register(print, 'called')")
+    path = os.pathsep.join((str(tmp_path), *filter(None, sys.path)))
+    found = subprocess.run(
+        [sys.executable, "-m", "stiffmbs", "--version"], capture_output=True, text=True, check=True,
+        env={**os.environ, "PYTHONPATH": path},
+    )  # fmt: skip
+    assert found.stdout.split()[-1] == "called"

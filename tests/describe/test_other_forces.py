@@ -4,6 +4,7 @@ import copy
 
 import pytest
 
+from stiffmbs.compile.kind import sorted_out
 from stiffmbs.describe.files.other_forces import OtherForces
 from stiffmbs.describe.files.unchanged import Unchanged
 from stiffmbs.describe.scene import made_scene, read_scene
@@ -15,6 +16,7 @@ bodies: {a: {mass: 1, inertia: 1, position: [2*L, 0]}, b: {mass: 1, inertia: 1, 
 forces:
   one: {type: spring_damper, i: a, j: ground, stiffness: 2*k, damping: c, free_length: 1}
   two: {type: spring_damper, i: b, j: ground, stiffness: 5*(1 N/m)^(n/2), free_length: L/3}
+  law: {type: force, i: a, force: [0, "-k*sin(t)*dy(a, b)*(1 m/L)^n - k*a.y"]}
   "more{i}": {for: i in 1..2, type: spring_damper, i: b, j: a, stiffness: 7, free_length: "{i}"}
 """
 
@@ -45,6 +47,16 @@ def test_forces_read_alone_make_the_scene_that_is_read_as_a_whole(names, values)
     assert found is not None
     assert found == expected()
     assert found.parameters == expected().parameters
+
+
+def test_a_formula_with_other_parameters_has_the_shape_of_one_that_is_read():
+    found, expected = both(("k",), (100.0,), (30.0,))
+    (kind, data), (same_kind, as_read) = (
+        sorted_out("law", scene.forces["law"], scene) for scene in (found, expected())
+    )
+    assert kind == same_kind
+    assert data.numbers == as_read.numbers
+    assert -30.0 in data.numbers or 30.0 in data.numbers
 
 
 @pytest.mark.parametrize(

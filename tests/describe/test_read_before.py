@@ -1,6 +1,7 @@
 """YAML files whose content is kept from the run before: the same scene, and never that of another text."""
 
 import json
+import os
 
 import pytest
 
@@ -42,6 +43,24 @@ def test_a_changed_file_is_read_anew_and_takes_the_place_of_the_old_one(scene, r
         assert read_yaml_file(f"a: {k}", "scene", scene) == {"a": k}
     assert len(reads) == 3
     assert len(list(folder_of_files().path.iterdir())) == 1
+
+
+@pytest.mark.parametrize(("files", "size"), [(4, 10_000), (100, 600)])
+def test_few_files_are_kept_the_latest_ones(scene, reads, monkeypatch, files, size):
+    """By their number or their size: a fifth file is one too many, as are 600 bytes."""
+    monkeypatch.setattr(read_before, "MOST_FILES", files)
+    monkeypatch.setattr(read_before, "MOST_BYTES", size)
+    scenes = [scene.with_name(f"{k}.yaml") for k in range(5)]
+    for k, file in enumerate(scenes):
+        read_yaml_file(f"a: {'x' * 60}", "scene", file)
+        for entry in folder_of_files().path.iterdir():
+            if k < 4 and entry.stat().st_mtime_ns > 1e18:
+                os.utime(entry, ns=(k, k))
+    assert len(list(folder_of_files().path.iterdir())) == 2
+    del reads[:]
+    for file in reversed(scenes[3:]):
+        read_yaml_file(f"a: {'x' * 60}", "scene", file)
+    assert not reads
 
 
 @pytest.mark.parametrize("text", ["1: a", "a: 2026-11-21", "a: !!set {b}", "a: !!binary aGk="])

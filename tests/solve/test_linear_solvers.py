@@ -173,7 +173,7 @@ def test_two_equal_constraints_are_left_to_pivots(relaxed):
     assert solver.counted("refused") == 1
 
 
-@pytest.mark.parametrize(("name", "blocks"), [("door", False), ("governor", True)])
+@pytest.mark.parametrize(("name", "blocks"), [("cart_pendulum", False), ("governor", True)])
 def test_blocks_are_compiled_for_where_they_save_time(examples, name, blocks):
     solution = stiffmbs.run(examples / f"{name}.yaml", solver="bdf", duration=1e-3)
     assert solution.solver["linear_solver"].startswith("blocks") is blocks

@@ -114,6 +114,29 @@ def test_lengths_that_assembly_follows():
     assert found.to["L"] == pytest.approx(slope(place, "L", 0.35), rel=1e-7)
 
 
+def test_a_start_that_no_joint_changes():
+    """A throw: x = (v0 + x0/s) t and y = x0 - g t^2/2."""
+    text = """
+parameters: {x0: 2 m, v0: 3 m/s}
+gravity: [0, -10]
+bodies: {ball: {mass: 1, inertia: 1, position: [0, x0], velocity: [v0 + x0/(1 s), 0]}}
+run: {duration: 0.5}
+"""
+    found = sensitivities(stiffmbs.read_scene(text), ["x0", "v0"], "final(ball.x + 2*ball.y)")
+    assert found.value == pytest.approx(2.5 + 2 * (2 - 1.25), rel=1e-8)
+    assert found.to == pytest.approx({"x0": 2.5, "v0": 0.5}, rel=1e-8)
+
+
+def test_a_changed_copy_of_a_scene_is_refused():
+    """What it was read from says nothing of the change."""
+    scene = stiffmbs.read_scene(SLED)
+    same = sensitivities(scene.model_copy(), ["k"], "final(sled.x)")
+    assert same.to == sensitivities(scene, ["k"], "final(sled.x)").to
+    longer = scene.model_copy(update={"run": scene.run.model_copy(update={"duration": 3.0})})
+    with pytest.raises(InputError, match="a changed copy of a scene"):
+        sensitivities(longer, ["k"], "final(sled.x)")
+
+
 def test_a_start_in_equilibrium():
     text = SLED.replace("-k*sled.x", "9 - k*sled.x") + "start: equilibrium\n"
     found = sensitivities(stiffmbs.read_scene(text), ["k", "c"], "final(sled.x)")

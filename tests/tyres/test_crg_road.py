@@ -186,3 +186,25 @@ def test_a_straight_road_leads_from_its_start_to_its_end(tmp_path):
         InputError, match=r"START_PHI = 0\.5, but the reference line leads from its start to its end at 0\.785 rad"
     ):
         CrgRoad(file=file)
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [
+        ("reference_line_end_s=0.1", r"END_S = 0\.1, expected 0\.05, the slope at the end"),
+        ("reference_line_end_b=0.02", r"END_B = 0\.02, expected 0, the banking"),
+        ("reference_line_end_z=1", r"END_Z = 1, expected 0\.2, the level"),
+    ],
+)
+def test_a_header_that_contradicts_itself_at_the_end_is_refused(tmp_path, stated, said):
+    head = "$ROAD_CRG\nreference_line_increment=1\nreference_line_start_s=0.05\n{}\n$\n"
+    rest = (
+        "$KD_DEFINITION\n#:LRFI\nD:long section at v = -1,m\nD:long section at v = 1,m\n$\n$$$$\n"
+        + "   0.00000   0.00000\n" * 5
+    )
+    file = tmp_path / "sloping.crg"
+    file.write_text(head.format("reference_line_end_s=0.05\nreference_line_end_b=0\nreference_line_end_z=0.2") + rest)
+    np.testing.assert_allclose(CrgRoad(file=file).file.heights[:, 0], 0.05 * np.arange(5))
+    file.write_text(head.format(stated) + rest)
+    with pytest.raises(InputError, match=said):
+        CrgRoad(file=file)

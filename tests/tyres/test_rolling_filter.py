@@ -113,6 +113,44 @@ class Dunes(Road):
     kind = "endless_dunes"
 
 
+class ShiftedKerb(StepRoad):
+    """A kerb that is counted from another place."""
+
+    kind = "shifted_kerb"
+
+    origin: float = 0.0
+
+    @staticmethod
+    def place(r, e, x, y):
+        return x - r.origin, y
+
+
+class ScaledTable(TableRoad):
+    """A table whose heights are scaled."""
+
+    kind = "scaled_table"
+
+    scale: float = 1.0
+
+    @staticmethod
+    def height(r, x, y):
+        return r.scale * r.profile(x)
+
+
+def test_a_filtered_road_of_the_users_own_keeps_its_other_fields():
+    sizes = {"start": 0.1, "length": 0.001, "rise": 0.05, "filter_radius": RADIUS}
+    plain, shifted = (
+        reported(wheel(VerticalTyre(i="wheel", radius=0.3, stiffness=1e5, road=road), 0.3))["deflection"]
+        for road in (StepRoad(**sizes), ShiftedKerb(**sizes, origin=5.0))
+    )
+    assert plain > 0.01
+    assert shifted == pytest.approx(0, abs=1e-9)
+    flat = Table(table=[(-3, 0.01), (3, 0.01)])
+    road = ScaledTable(profile=flat, scale=2.0, filter_radius=RADIUS)
+    found = reported(wheel(VerticalTyre(i="wheel", radius=0.3, stiffness=1e5, road=road), 0.3))["deflection"]
+    assert found == pytest.approx(0.02, rel=1e-6)
+
+
 def test_a_wheel_climbs_a_filtered_kerb():
     """It stands a hand before the kerb, on the circle about its edge."""
     kerb = StepRoad(start=0.1, length=0.001, rise=0.05, filter_radius=RADIUS)

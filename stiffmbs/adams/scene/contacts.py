@@ -14,7 +14,7 @@ from ..functions.translate import Translation
 from ..statements.contact import PLANE, SPHERE, Contact, Friction, Shape, read_shape
 from ..statements.fault import of_each
 from .mechanism import Mechanism
-from .solids import PAIRS, between_solids
+from .solids import between_solids, is_swapped
 
 TORQUE = "_torque"
 SLOW = 1e-6
@@ -38,8 +38,8 @@ def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> d
 
 def swapped(contact: Contact, mechanism: Mechanism) -> bool:
     """Whether the scene's force is on the part of JGEOM."""
-    first, second = (_shape(contact, ident, mechanism).sort for ident in contact.shapes)
-    return (first, second) not in ((SPHERE, PLANE), *PAIRS)
+    first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
+    return is_swapped(first, second)
 
 
 def _shape(contact: Contact, ident: int, mechanism: Mechanism) -> Shape:

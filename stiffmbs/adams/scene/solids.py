@@ -19,6 +19,8 @@ PAIRS = {
     (BOX, PLANE): "box_plane_impact",
     (ELLIPSOID, PLANE): "ellipsoid_plane_impact",
 }
+SHAPES = {SPHERE: "ellipsoid", ELLIPSOID: "ellipsoid", CYLINDER: "cylinder", BOX: "box"}
+"""Of solids, any two of which may be in contact, by the scene's names."""
 
 
 def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mechanism) -> dict[str, Any]:
@@ -29,23 +31,44 @@ def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mec
     DatasetFault
         When no element is between such shapes.
     """
-    one, other = (first, second) if (first.sort, second.sort) in PAIRS else (second, first)
+    one, other = (second, first) if is_swapped(first, second) else (first, second)
     kind = PAIRS.get((one.sort, other.sort))
-    if kind is None:
+    if kind is None and not (one.sort in SHAPES and other.sort in SHAPES):
         known = ", ".join(" and ".join(pair) for pair in ((SPHERE, PLANE), *PAIRS))
-        raise contact.fault(f"found {first.sort} and {second.sort}, expected {known}")
+        raise contact.fault(f"found {first.sort} and {second.sort}, expected {known}, or two of {', '.join(SHAPES)}")
     units = mechanism.dataset.units
     made: dict[str, Any] = {
-        "type": kind,
+        "type": kind or "solid_impact",
         "i": _middle(one, contact, mechanism),
         "j": _middle(other, contact, mechanism),
         **_law(contact, units),
     }
+    if kind is None:
+        return made | _solid("i", one, units) | _solid("j", other, units)
     if (one.sort, other.sort) == (SPHERE, SPHERE):
         sizes = {"radius": one.sizes[0], "other_radius": other.sizes[0]}
     else:
         sizes = _sizes(one, with_sphere=False) | _sizes(other, with_sphere=one.sort == SPHERE)
     return made | {name: plain(size * units.length) for name, size in sizes.items()}
+
+
+def is_swapped(first: Shape, second: Shape) -> bool:
+    """Whether the scene's element has the second shape at its marker i."""
+    pairs = ((SPHERE, PLANE), *PAIRS)
+    return (first.sort, second.sort) not in pairs and (second.sort, first.sort) in pairs
+
+
+def _solid(end: str, shape: Shape, units: Units) -> dict[str, Any]:
+    """Shape and whole sizes at one end of a contact of two solids."""
+    if shape.sort == CYLINDER:
+        radius, length = shape.sizes
+        whole: tuple[float, ...] = (2 * radius, 2 * radius, abs(length))
+    elif shape.sort == BOX:
+        whole = tuple(map(abs, shape.sizes))
+    else:
+        whole = tuple(2 * semi for semi in (shape.sizes if shape.sort == ELLIPSOID else 3 * shape.sizes))
+    sizes = [plain(size * units.length) for size in whole]
+    return {f"{end}_shape": SHAPES[shape.sort], f"{end}_size": sizes}
 
 
 def _sizes(shape: Shape, with_sphere: bool) -> dict[str, float]:

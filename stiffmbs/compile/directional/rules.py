@@ -119,6 +119,23 @@ def _python_call(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
     ))  # fmt: skip
 
 
+def _common_normal(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
+    component, *pose = arguments
+    if all(part is None for part in moved[1:]):
+        return None
+    normal = [called("common_normal", number(k), *pose) for k in range(3)]
+    return added(*(
+        multiplied(called("common_normal_slope", component, number(k), *normal, *pose), part)
+        for k, part in enumerate(moved[1:])
+    ))  # fmt: skip
+
+
+def _common_normal_slope(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
+    if all(part is None for part in moved[2:]):
+        return None
+    raise InputError("found a contact of solids whose second derivatives are needed, expected another contact")
+
+
 def _none(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
     return None
 
@@ -143,5 +160,6 @@ RULES: dict[str, Rule] = {
     "greater": _extreme(1), "less": _extreme(-1), "step": _step("step"), "step5": _step("step5"),
     "sign": _none, "copysign": _none, "floor": _none, "int": _none,
     "spline": _spline, "rotation_vector": _rotation_vector, "python_call": _python_call,
+    "common_normal": _common_normal, "common_normal_slope": _common_normal_slope,
 }  # fmt: skip
 """By the names of the functions in kernels."""

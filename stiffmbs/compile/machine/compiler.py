@@ -21,6 +21,8 @@ LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
 _ONE_AT_A_TIME = RLock()
 """Threads may need the same routine at once: one compiles it, the others find it."""
+GEOMETRY = f"{__package__}.geometry"
+"""The modules that sources of solids in contact call."""
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
@@ -79,16 +81,17 @@ def _compiled_source(source: str, name: str, signature: str, of: Description) ->
         exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations
         return names
 
-    entry = store.name_of(store.KERNEL, source, _language(), _called(), signature)
+    entry = store.name_of(store.KERNEL, source, _language(), _called(GEOMETRY in source), signature)
     return _loaded(entry, _Source(((name, signature),), namespace, of.words, source))[name]
 
 
 @cache
-def _called() -> str:
+def _called(with_geometry: bool) -> str:
     """A digest of what generated sources call."""
-    native = Path(__file__).parent / "native"
+    here = Path(__file__).parent
     names = ("nonsmooth", "continuous_angle", "spline", "rotation_vector", "python_call")
-    return digest_of(native / f"{name}.py" for name in names)
+    files = [here / "native" / f"{name}.py" for name in names]
+    return digest_of(files + python_files(here / "geometry") * with_geometry)
 
 
 @cache

@@ -199,7 +199,7 @@ states, of `width` numbers, at the nodes.  Cells: times the usual step beyond wh
 is the mean; rows there is room for (0 where none is kept), rows kept, the usual step."""
 
 EXPLICIT = Layout({
-    "dynamics": INTS, "eliminated": INTS, "eliminates": INT, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
+    "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
     "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
@@ -220,7 +220,7 @@ NATIVE_IDA = Layout({
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
-    "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
+    "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
     "long_steps": INTS,
@@ -230,7 +230,7 @@ NATIVE_IDA = Layout({
 of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
 
 Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
-last step, size of the one that it will try next; output points served, tiny steps in succession, whether the last event
+last step, size of the one that it will try next; where it was last told to stop; output points served, tiny steps in succession, whether the last event
 was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
 of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call; the time for which the state holds the values of event functions."""
 MOST_STEPS, HISTORY_WIDTH = 2048, 3

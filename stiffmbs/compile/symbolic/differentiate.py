@@ -67,6 +67,14 @@ class Derivatives:
             self._chain[symbol] = {v: self.partial(x, v) for v in state if v in self._variables[symbol]}
         return self._functions[x]
 
+    def at_extremum(self, x: sp.Expr, at: Mapping[sp.Symbol, sp.Expr], state: Iterable[sp.Symbol]) -> sp.Expr:
+        """A symbol for an expression at those values of some symbols where it is largest or least: it does not change with them."""
+        symbol = self._new("extreme", x.xreplace(at))
+        self._chain[symbol] = {
+            v: self.named(self.partial(x, v).xreplace(at)) for v in state if v in self._variables[symbol]
+        }
+        return symbol
+
     def composed(self, x: sp.Expr, variables: Sequence[sp.Symbol], state: Iterable[sp.Symbol]) -> sp.Expr:
         """A symbol for an expression of a few variables: its derivatives by the state go through those by the variables."""
         if x not in self._functions:

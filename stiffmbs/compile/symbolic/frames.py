@@ -9,6 +9,7 @@ from typing import Any
 import sympy as sp
 
 from ...errors import InputError
+from .common_normal import common_normal
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
 from .read import read
@@ -272,6 +273,16 @@ class SymbolicElement:
     def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
         """The integral of a law from 0 to x, for a potential; None where there is no simple one."""
         return integral(law, x)
+
+    def common_normal(self, way: Any, axes: Any, first: Any, second: Any) -> sp.Matrix:
+        """The unit normal between two solids, each a sum of ellipsoids (`stiffmbs.compile.symbolic.common_normal`)."""
+        return self.named(common_normal(way, axes, first, second))
+
+    def at_extremum(self, function: Callable[[list[sp.Symbol]], Any], at: Any) -> sp.Expr:
+        """A function of variables at those values of them where it is largest or least."""
+        variables = [sp.Symbol(f"extremal{k}", real=True) for k in range(len(at))]
+        values = dict(zip(variables, at, strict=True))
+        return self.derivatives.at_extremum(self.read(function(variables)), values, self._state)
 
 
 class SymbolicComponent:

@@ -9,7 +9,9 @@ from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
 from ...describe.formula.functions import FUNCTIONS
+from ..machine import compiler
 from ..terms import KERNEL_ARGUMENTS, TERM_SETS
+from .common_normal import CommonNormal, CommonNormalSlope
 from .continuous_angle import ContinuousAngle, counter
 from .derive import Derived
 from .nonsmooth import NonsmoothBase, Step
@@ -39,6 +41,8 @@ HEADER = (
 """What kernels may call."""
 PYTHON = "from stiffmbs.compile.machine.native.python_call import python_call\n"
 """Before the header of kernels that call Python functions."""
+GEOMETRY = f"from {compiler.GEOMETRY}.common_normal import common_normal, common_normal_slope\n"
+"""Before the header of kernels of solids in contact."""
 
 
 class _Printer(PythonCodePrinter):
@@ -75,8 +79,18 @@ class _Printer(PythonCodePrinter):
 
     def _print_PythonCall(self, expr: PythonCall) -> str:
         address, count, output, by, *arguments = expr.args
-        given = [f"{x}.0" if x.is_Integer else self._print(x) for x in arguments]
-        return f"python_call({address}, {int(count)}, {int(output)}, {int(by)}, {', '.join(given)})"
+        return f"python_call({address}, {int(count)}, {int(output)}, {int(by)}, {self._numbers(arguments)})"
+
+    def _print_CommonNormal(self, expr: CommonNormal) -> str:
+        component, *pose = expr.args
+        return f"common_normal({int(component)}, {self._numbers(pose)})"
+
+    def _print_CommonNormalSlope(self, expr: CommonNormalSlope) -> str:
+        component, by, *pose = expr.args
+        return f"common_normal_slope({int(component)}, {int(by)}, {self._numbers(pose)})"
+
+    def _numbers(self, arguments: Iterable[sp.Expr]) -> str:
+        return ", ".join(f"{x}.0" if x.is_Integer else self._print(x) for x in arguments)
 
     def _print_RotationVector(self, expr: RotationVector) -> str:
         h, order = expr.args
@@ -181,5 +195,6 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
         for (k, entries, n, _), result in zip(outputs, results, strict=True)
     ]
     lines = [f"def {name}({KERNEL_ARGUMENTS}):", "    for e in range(count):", *(f"        {line}" for line in body)]
-    header = PYTHON + HEADER if any("python_call(" in line for line in body) else HEADER
-    return header + "\n".join(lines) + "\n"
+    wanted = {PYTHON: "python_call(", GEOMETRY: "common_normal("}
+    imports = [text for text, call in wanted.items() if any(call in line for line in body)]
+    return "".join([*imports, HEADER]) + "\n".join(lines) + "\n"

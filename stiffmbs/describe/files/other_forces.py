@@ -7,13 +7,15 @@ setting names is left to `stiffmbs.describe.scene.made_scene`, and so is whateve
 from __future__ import annotations
 
 import copy
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
 from ...errors import InputError
 from ..element import Force
+from ..formula.field import READ_BEFORE
+from ..formula.formula import Formula
 from ..parts.options import CHOOSE, OPTIONS
 from ..scene import Scene
 from ..units.units import Quantity
@@ -46,6 +48,14 @@ class OtherForces:
         self._replaced = replaced_parameters(self._content, replaced)
         self._changed: frozenset[str] = frozenset()
         self._affected = self._found(written)
+        self._formulas = dict(self._read_before())
+
+    def _read_before(self) -> Iterator[tuple[tuple[str, tuple[str, ...], bool], Formula]]:
+        """The formulas of the forces that the values stand in."""
+        scene = self._unchanged.scene
+        for name in self.affected if scene else ():
+            for _, formula in scene.forces[name].parts(Formula):  # type: ignore[union-attr]
+                yield (formula.text, formula.variables, formula.velocities), formula
 
     def _found(self, written: WrittenScene) -> frozenset[str] | None:
         """The forces that the values stand in; None where they stand elsewhere too."""
@@ -94,7 +104,7 @@ class OtherForces:
             scene.check_elements({f"{FORCES}.{name}": force for name, force in forces.items()})
         except (InputError, PydanticError, ValueError):
             return None
-        scene._quantities = parameters
+        scene._quantities, scene._written = parameters, None
         return scene
 
     def followed(self, values: Sequence[Any]) -> tuple[Record, Scene] | None:
@@ -143,6 +153,7 @@ class OtherForces:
             if name.startswith(f"{FORCES}."):
                 set_value(content, name, value)
         forces = self._unchanged.scene.forces
+        context = {**context, READ_BEFORE: self._formulas}
         return {
             name: type(forces[name]).model_validate(entry, context=context) for name, entry in content[FORCES].items()
         }

@@ -1,6 +1,6 @@
 """YAML files that were read before: their content is kept on disk, as reading it takes longer than much else of a short run.
 
-There is one entry for a file, which a change of the file replaces.
+There is one entry for a file, which a change of the file replaces.  Where there are many, those that were written first go.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ FILE = "file"
 """How the names of the entries begin."""
 LARGEST = 1_000_000
 """Characters of what is kept of a file: aliases can stand for much."""
+MOST_FILES, MOST_BYTES = 1000, 20_000_000
+"""That are kept."""
 
 
 def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
@@ -41,6 +43,7 @@ def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
     found = read_yaml(text, source)
     if _is_plain(found) and len(content := json.dumps(found)) <= LARGEST:
         folder_of_files().write(name, f"{version}{content}".encode())
+        folder_of_files().keep_newest(MOST_FILES, MOST_BYTES)
     return found
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -32,17 +33,30 @@ class Unchanged:
         self.scene: Scene | None = None
         self.context: Mapping[str, Any] = {}
         self._raw: Mapping[str, Any] = {}
-        self._names: dict[tuple[str, str], frozenset[str]] = {}
+
+    def __eq__(self, other: object) -> bool:
+        """Scenes are equal whatever is kept of their reading."""
+        return isinstance(other, Unchanged)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[type[Unchanged], tuple[()]]:
+        """Copies hold nothing, as their scene is another object."""
+        return Unchanged, ()
 
     def keep(self, raw: Mapping[str, Any], context: Mapping[str, Any], scene: Scene) -> None:
         """Remember a scene with its entries before they were validated; only the first one is."""
         if self.scene is not None:
             return
         self.scene, self._raw, self.context = scene, raw, context
-        self._names = {
+
+    @cached_property
+    def _names(self) -> dict[tuple[str, str], frozenset[str]]:
+        """The words of each entry."""
+        return {
             (section, name): names_in(entry)
             for section in (*REUSED, "variables")
-            for name, entry in (raw.get(section) or {}).items()
+            for name, entry in (self._raw.get(section) or {}).items()
         }
 
     def put_into(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Container, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Annotated, Any
 
@@ -27,6 +27,10 @@ from .nodes import TAKERS, TIME, reading_order
 from .state_names import with_states
 from .text import UNIT, FormulaError, as_written, parse
 from .variables import with_variables
+
+READ_BEFORE = "formulas"
+"""The key in the context of a validation of formulas by their texts, variables and whether they may hold velocities: those that were
+read with the same names."""
 
 
 def formula_text(found: Any, expected: str = "a formula") -> str:
@@ -100,9 +104,23 @@ class FormulaOf:
             self.coordinates or self.states
         ):  # built in Python, where the model that it will belong to is not known
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
-        formula = self._made(found, parameters, tables, variables, names)
+        before = (context.get(READ_BEFORE) or {}).get((found, self.variables, self.velocities))
+        if before is None:
+            formula = self._made(found, parameters, tables, variables, names)
+        else:
+            formula = self._with_parameters(before, parameters, names)
         self._check(formula, names.inputs)
         return formula
+
+    def _with_parameters(self, before: Formula, parameters: Mapping[str, Quantity], names: Names) -> Formula:
+        """The formula that the same text gives with other parameters."""
+        used = dict(self.quantities(before.text, before.tree, parameters, before.states))
+        return replace(
+            before,
+            values={name: quantity.value for name, quantity in used.items()},
+            dimension=self.dimension_of(before.tree, used, before.tables, names.states),
+            parameters={name: quantity for name, quantity in used.items() if name in parameters},
+        )
 
     def _made(
         self,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 from ..marker import MarkerReference
@@ -14,6 +13,42 @@ from ..units.units import Quantity
 from .dimension import UNKNOWN, Known
 from .nodes import is_measure, is_reaction, joint_of, measured_markers, reading_order
 from .text import UNIT
+
+USED = "used"
+"""Under which a formula keeps what its tree uses."""
+
+
+@dataclass(frozen=True)
+class Used:
+    """What a tree uses of a model, in reading order.
+
+    Attributes
+    ----------
+    coordinates : tuple of (body, coordinate)
+    measures : tuple of (function, markers)
+    reactions : tuple of (component, joint)
+    """
+
+    coordinates: tuple[tuple[str, str], ...]
+    measures: tuple[tuple[str, tuple[MarkerReference, ...]], ...]
+    reactions: tuple[tuple[str, str], ...]
+
+
+def used_by(tree: ast.expr) -> Used:
+    """What a tree uses of a model.
+
+    Raises
+    ------
+    FormulaError
+        When a measure or a reaction has other arguments than markers, or a joint.
+    """
+    nodes = list(reading_order(tree))
+    attributes = [node for node in nodes if isinstance(node, ast.Attribute)]
+    return Used(
+        tuple((x.value.id, x.attr) for x in attributes if isinstance(x.value, ast.Name) and x.value.id != UNIT),
+        tuple((x.func.id, measured_markers(x)) for x in nodes if is_measure(x)),  # type: ignore[attr-defined]
+        tuple((x.func.id, joint_of(x)) for x in nodes if is_reaction(x)),  # type: ignore[attr-defined]
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +77,8 @@ class Formula:
         The text with the scene's variables in their places; empty where the scene has none.
     states : tuple of str
         The states of the model that it uses, by their full names.
+    kept : dict
+        What is worked out of the tree once, by what it is; shared with formulas that differ by values alone.
     """
 
     text: str
@@ -54,38 +91,26 @@ class Formula:
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
     expanded: str = ""
     states: tuple[str, ...] = ()
+    kept: dict[Any, Any] = field(default_factory=dict)
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
         """The (body, coordinate) pairs that it uses, in reading order."""
-        yield from self._coordinates
-
-    @cached_property
-    def _coordinates(self) -> list[tuple[str, str]]:
-        attributes = [node for node in reading_order(self.tree) if isinstance(node, ast.Attribute)]
-        return [(x.value.id, x.attr) for x in attributes if isinstance(x.value, ast.Name) and x.value.id != UNIT]
+        yield from self._used.coordinates
 
     def measures(self) -> Iterator[tuple[str, tuple[MarkerReference, ...]]]:
         """The measures that it uses with their markers, in reading order."""
-        yield from self._measures
-
-    @cached_property
-    def _measures(self) -> list[tuple[str, tuple[MarkerReference, ...]]]:
-        calls = [node for node in reading_order(self.tree) if is_measure(node)]
-        return [(node.func.id, measured_markers(node)) for node in calls]  # type: ignore[attr-defined]
+        yield from self._used.measures
 
     def reactions(self) -> Iterator[tuple[str, str]]:
         """The components of reactions that it uses, with their joints, in reading order."""
-        yield from self._reactions
+        yield from self._used.reactions
 
-    @cached_property
-    def _reactions(self) -> list[tuple[str, str]]:
-        calls = [node for node in reading_order(self.tree) if is_reaction(node)]
-        return [(node.func.id, joint_of(node)) for node in calls]  # type: ignore[attr-defined]
-
-    @cached_property
-    def kept(self) -> dict[Any, Any]:
-        """What is worked out of it once, by what it is; nothing at first."""
-        return {}
+    @property
+    def _used(self) -> Used:
+        if USED not in self.kept:
+            self.kept[USED] = used_by(self.tree)
+        used: Used = self.kept[USED]
+        return used
 
     def bodies(self) -> Iterator[str]:
         """The bodies that it names, some more than once."""

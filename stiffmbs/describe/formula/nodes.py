@@ -18,8 +18,10 @@ def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
     """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
     yield tree
     match tree:
-        case ast.Attribute():
+        case ast.Attribute() | ast.Name() | ast.Constant():
             return
+        case ast.BinOp(left, _, right):
+            children = [left, right]
         case ast.Call(_, arguments):
             children = [] if is_named(tree) else arguments
         case _:

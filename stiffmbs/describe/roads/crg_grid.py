@@ -18,6 +18,8 @@ UNITS = {"phi": "rad", "slope": "m/m", "banking": "m/m"}
 """Of the channels of the reference line."""
 SAME_HEADING = 1e-3
 """rad, between a heading that is given and the one from start to end."""
+SAME_AT_END = {"S": 1e-3, "B": 1e-3, "Z": 1e-2}
+"""Between slope, banking, and level (m), as the header states them at the end and as they are there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +94,9 @@ def read_crg(path: Path) -> CrgGrid:
         records[:, line[name]] if name in line else np.full(len(u), number) for name, number in straight.items()
     )
     level = get("REFERENCE_LINE_START_Z", 0.0) + _summed(slope * header.u[1])
+    _check_end(
+        header.numbers, {"S": slope[-1], "B": banking[-1], **({} if "slope" in line else {"Z": level[-1]})}, path
+    )
     return CrgGrid(
         str(path), u, v, records[:, columns] + level[:, None] + banking[:, None] * v,
         get("REFERENCE_LINE_START_X", 0.0) + _summed(np.cos(phi) * header.u[1]),
@@ -113,6 +118,17 @@ def _heading(numbers: dict[str, float], path: Path) -> float:
             f"{path}: found REFERENCE_LINE_START_PHI = {given:g}, but the reference line leads from its start to its end at {found:.3g} rad"
         )
     return found if given is None else given
+
+
+def _check_end(numbers: dict[str, float], found: dict[str, float], path: Path) -> None:
+    """Refuse a header that states another end than slope and banking lead to: heights would be wrong along the whole road."""
+    for letter, value in found.items():
+        stated = numbers.get(f"REFERENCE_LINE_END_{letter}")
+        if stated is not None and not abs(stated - value) <= SAME_AT_END[letter]:
+            name = {"S": "slope", "B": "banking", "Z": "level"}[letter]
+            raise InputError(
+                f"{path}: found REFERENCE_LINE_END_{letter} = {stated:g}, expected {value:.4g}, the {name} at the end of the reference line"
+            )
 
 
 def _summed(steps: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from ..element import Symbolic
+from ..element import Component, Symbolic
 from ..table import Table
 from ..units import si
 from .road import Road, clipped
@@ -51,9 +51,10 @@ class TableRoad(Road):
 
     def in_equations(self) -> dict[str, Any]:
         """Its tables, rolled over by a disc with `filter_radius`."""
-        tables = {name: getattr(self, name) for name in ("profile", "left", "right")}
-        filtered = {name: table and through_filter(table, self.filter_radius) for name, table in tables.items()}
-        return {"friction": self.friction, "track": self.track, **filtered}
+        own = dict(Component.in_equations(self))
+        radius = own.pop("filter_radius")
+        filtered = {name: own[name] and through_filter(own[name], radius) for name in ("profile", "left", "right")}
+        return {**own, **filtered}
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

@@ -73,7 +73,7 @@ class Road(Component):
             return own
         from .rolling_filter import rolled_profile
 
-        return {"friction": self.friction, "rolled": rolled_profile(self.profile_heights, extent, radius)}
+        return {**own, "rolled": rolled_profile(self.profile_heights, extent, radius)}
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

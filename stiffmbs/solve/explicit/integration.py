@@ -110,6 +110,15 @@ class Integration:
         self._cells["stable"] = value
 
     @property
+    def eliminates(self) -> bool:
+        """Whether accelerations come by elimination, where pivots keep digits, and not always from the whole system."""
+        return bool(self._cells["eliminates"])
+
+    @eliminates.setter
+    def eliminates(self, value: bool) -> None:
+        self._cells["eliminates"] = value
+
+    @property
     def q(self) -> np.ndarray:
         """Positions reached."""
         return self._arrays["y"][: self._n_q]

@@ -27,10 +27,9 @@ PAIRED = (0.25, 3.0, 0.75, 1.0)
 """The same where columns are taken in pairs: their loops cost as much as some ten updates."""
 BLOCKS = (0.05, 50.0, 0.04, 5.0, 11.0)
 """ns for an update in blocks of bodies and joints, for a node; in a solution for an entry of full blocks, an unknown, and a node."""
-WORTH_COMPILING = 3000.0
-"""ns that blocks have to save in one factorisation and its solutions, or a machine's first run is not compiled for them.  Where
-they save less, whole runs of the examples take 1 to 13 ms and are from 40 % faster to 20 % slower without them; the first takes
-0.5 s less."""
+WORTH_COMPILING = 200.0
+"""ns that blocks have to save in one factorisation and its solutions, or a machine's first run is not compiled for them, 0.5 s.
+Where they are estimated to save 200 to 3000, runs of the examples take 0 to 21 % less with them; where less, up to 10 % more."""
 WITH_ZEROS = 8
 """Numbers that the blocks hold at the most, relative to the entries of a triangle of full ones."""
 SUPERLU = (0.5, 0.75, 600.0, 8.0)

@@ -89,7 +89,9 @@ def _see_inputs(c, stop):
         call_int(c.next_step_of, (c.memory, address_of(c.next_size)))
         first = c.size == 0.0
         cut = (first or c.next_size > longest) and t + STRETCHED * longest < stop
-        call_int(c.stop_at, (c.memory, t + longest if cut else stop))
+        if cut or c.stopping != stop:
+            c.stopping = t + longest if cut else stop
+            call_int(c.stop_at, (c.memory, c.stopping))
 
 
 @compiled
@@ -214,6 +216,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
     The first step's size follows from the distance to the first output time, as in IDA's own mode for them.
     """
     c = native_ida_view(ida)
+    c.stopping = stop
     c.served = 0
     c.recorded = 0
     c.traced = 0
@@ -231,6 +234,7 @@ def advance(count, times, stop, most, y_out, yp_out, ida):
 def steps(most, stop, t_out, y_out, ida):
     """At most `most` steps towards `stop`, each of them reported; returns IDA's last flag."""
     c = native_ida_view(ida)
+    c.stopping = stop
     c.served = 0
     c.recorded = 0
     c.traced = 0

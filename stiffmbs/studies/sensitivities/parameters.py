@@ -12,6 +12,8 @@ from ...describe.files.unchanged import Unchanged
 from ...describe.files.written_scene import WrittenScene
 from ...describe.scene import Scene, made_scene
 from ...errors import InputError
+from ...jobs.run import data_of
+from ..case_solver import written_scene
 
 STEP = 1e-4
 """Change of a parameter, relative to it, by which what a scene is set up with is differentiated; absolute, in SI units, where the
@@ -36,7 +38,16 @@ class Scenes:
     def __init__(self, written: WrittenScene, unchanged: Unchanged | None = None) -> None:
         self._written, self._unchanged = written, unchanged or Unchanged()
         self._other_forces: dict[tuple[str, ...], OtherForces] = {}
-        self.known = self._read(())
+        as_read = self._unchanged.scene
+        self.known = as_read if as_read and as_read.written is written else self._read(())
+
+    @classmethod
+    def of_model(cls, model: Any) -> Scenes:
+        """Of a model, a scene or a file; errors as for `written_scene`."""
+        data = data_of(model)
+        if isinstance(data, Scene) and data.validated.scene is data and not (data.stages or data.at_start):
+            return cls(written_scene(data), data.validated)
+        return cls(written_scene(data))
 
     def at(self, changes: Sequence[tuple[str, Any]]) -> Scenes:
         """Scenes that differ by one value from one with other values; errors as for `changed`."""

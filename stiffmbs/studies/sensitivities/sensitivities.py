@@ -20,7 +20,6 @@ from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome
 from ...solve.variations.along_run import AlongRun
 from ...solve.variations.recorded import Recorder
-from ..case_solver import written_scene
 from ..outputs import outputs_of
 from .channels import changed_channels, changed_requests
 from .formulas import Formula
@@ -104,7 +103,7 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     if not names or len(set(names)) < len(names):
         raise InputError(f"to: found {', '.join(names) or 'no parameter'}, expected one parameter or more, each once")
     (output,) = outputs_of(of)
-    scenes = Scenes(written_scene(scene))
+    scenes = Scenes.of_model(scene)
     asked = changed(scenes.known.run, settings)
     for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
         job = prepare(scenes.known, differentiable(changed(asked, {"rtol": rtol})))

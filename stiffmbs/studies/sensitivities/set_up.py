@@ -149,16 +149,22 @@ class SetUp:
         system, numbers = self._job.dynamics.system, self.numbers
         if self._quick and not self._start_follows(numbers):
             return np.zeros(system.n_q), np.zeros(system.n_u)
+        if self._described and not (system.n_c or system.n_counters or system.algebraic.any()):  # nothing moves it
+            return self.derivative([s.q for s in self._systems]), self.derivative([s.u for s in self._systems])
         starts = [self._started(scene, other) for scene, other in zip(self.scenes, self._systems, strict=True)]
         return self.derivative([start.q for start in starts]), self.derivative([start.u for start in starts])
 
     def _start_follows(self, numbers: Numbers) -> bool:
         """Whether the start may change where bodies stay as they are described."""
-        job = self._job
-        if getattr(job.data, "start", "described") != "described":
+        if not self._described:
             return True
-        groups = job.dynamics.system.groups
+        groups = self._job.dynamics.system.groups
         return any(groups[g].record.n_equations or groups[g].record.n_counters for g in numbers.moved)
+
+    @property
+    def _described(self) -> bool:
+        """Whether a run starts as described, but for what brings it to the constraints."""
+        return bool(getattr(self._job.data, "start", "described") == "described")
 
     def _started(self, scene: Scene, system: System) -> Any:
         dynamics = Dynamics(replace(system, active=self._job.dynamics.system.active))

@@ -34,6 +34,7 @@ class Code:
         self._lines: Lines = []
         self._count = 0
         self._targets: set[str] = set()
+        self._kept: dict[str, Value] = {}
 
     def lines(self) -> Iterator[str]:
         """All instructions."""
@@ -104,6 +105,13 @@ class Code:
         name = f"%{self.name('array')}"
         self._entry.append(f"{name} = alloca [{count} x double]")
         return Value("floats", name)
+
+    def kept(self, name: str, count: int) -> Value:
+        """Memory for some doubles that all instructions under a name share; the first is not a number at the start."""
+        if name not in self._kept:
+            self._kept[name] = self.array(count)
+            self._entry.append(f"store double 0x7FF8000000000000, ptr {self._kept[name].text}")
+        return self._kept[name]
 
     def load(self, variable: Value) -> Value:
         """The value of a variable."""

@@ -160,6 +160,7 @@ def restart(t, end, restarts):
     if _begin(w, c, t, _newton(w, s, t)) < 0:
         return int32(UNFINISHED)
     call_int(c.stop_at, (c.memory, end))
+    c.stopping = end
     c.served = 0
     c.recorded = 0
     c.traced = 0

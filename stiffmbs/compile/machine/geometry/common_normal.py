@@ -1,0 +1,198 @@
+"""The common normal of two convex solids, in kernels (`stiffmbs.compile.symbolic.common_normal`).
+
+The normal n of unit length makes n.d - h_i(n) - h_j(n) largest, for d from the centre of j to that of i: that is the distance of the
+solids, or minus the depth of their overlap.  Of solids apart there is one such normal, and for solids that overlap a little it goes
+on from that of their cores, which are thinner all around.  A normal between the cores is where h_i + h_j is least with n.d given, a
+convex problem.  Boyd and Vandenberghe, Convex Optimization (2004), sec. 8.2; Ong and Gilbert, Growth distances, IEEE Transactions
+on Robotics and Automation 12 (1996) 888-903.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from ..native.access import compiled, shifted
+from ..translate.code import Code, constant
+from ..translate.values import Operand, Value, builtin
+from .ellipsoids import POSE, SQUARES, TURN, ellipsoids, reach, support, thinnest, times
+from .on_sphere import across, along, curvature, made_definite, moved, solved, take_unit_length
+from .room import room
+
+THINNER = 0.2
+"""Each stage has its ellipsoids thinner by this factor: Newton's method for one starts near the solution for the next."""
+STAGES = 16
+"""From the cores to the solids."""
+MOST_STEPS, MOST_HALVINGS = 60, 30
+POLISHES = 4
+"""Steps of Newton's method after the last one that could be told to come nearer."""
+FLAT, ROUGHLY = 1e-14, 1e-8
+"""Part of the size of the solids below which a step promises no change of the distance that could be told from rounding, and that
+at which the stages before the last end."""
+
+
+def _posed(code: Code, arguments: tuple[Operand, ...]) -> Value:
+    array = code.array(len(arguments))
+    for k, argument in enumerate(arguments):
+        code.store(code.item(array, constant(k)), code.converted(argument, "float"))
+    return array
+
+
+@builtin
+def common_normal(code: Code, component: Operand, *pose: Operand) -> Value | None:
+    """A component of the normal in the axes of j, from j to i; the components of one pose are found together."""
+    known = code.kept("common_normal", POSE + 3)
+    return code.unit.called(code, _component, [code.integer(component), _posed(code, pose), known])
+
+
+@builtin
+def common_normal_slope(code: Code, component: Operand, by: Operand, *normal_and_pose: Operand) -> Value | None:
+    """The derivative of a component by an entry of the pose, at the normal."""
+    normal, pose = _posed(code, normal_and_pose[:3]), _posed(code, normal_and_pose[3:])
+    return code.unit.called(code, _slope, [code.integer(component), code.integer(by), normal, pose])
+
+
+@compiled
+def _grow(m, t, n):
+    """Move n on its plane across t to where the support function is least."""
+    h, k, g, p, trial = room(10), room(3), room(2), room(2), room(3)
+    for _ in range(MOST_STEPS):
+        support(m, n, h)
+        g[0], g[1] = along(shifted(h, 1), t), along(shifted(h, 1), shifted(t, 3))
+        curvature(h, t, 0.0, k)
+        made_definite(k)
+        solved(k, g, p)
+        promised = g[0] * p[0] + g[1] * p[1]
+        size = 1.0
+        if promised <= ROUGHLY * h[0]:
+            return
+        for _ in range(MOST_HALVINGS):
+            moved(n, t, p, -size, trial)
+            if reach(m, trial) <= h[0] - 1e-4 * size * promised:
+                break
+            size *= 0.5
+        if reach(m, trial) >= h[0]:
+            return
+        for c in range(3):
+            n[c] = trial[c]
+
+
+@compiled
+def _part(m, d, n, flat, polishes):
+    """Turn the unit vector n to where n.d - h(n) is largest to a part `flat` of the size, and by some steps more."""
+    h, k, g, p, trial, t = room(10), room(3), room(2), room(2), room(3), room(6)
+    u = shifted(t, 3)
+    polished = 0
+    for _ in range(MOST_STEPS):
+        support(m, n, h)
+        distance = along(n, d) - h[0]
+        across(n, t)
+        g[0], g[1] = along(d, t) - along(shifted(h, 1), t), along(d, u) - along(shifted(h, 1), u)
+        curvature(h, t, distance, k)
+        made_definite(k)
+        solved(k, g, p)
+        promised = g[0] * p[0] + g[1] * p[1]
+        if promised <= flat * h[0]:
+            polished += 1
+        length = sqrt(p[0] * p[0] + p[1] * p[1])
+        step = 0.5 / length if length > 0.5 else 1.0
+        for _ in range(MOST_HALVINGS):
+            moved(n, t, p, step, trial)
+            take_unit_length(trial)
+            if polished > 0 or along(trial, d) - reach(m, trial) >= distance + 1e-4 * step * promised:
+                break
+            step *= 0.5
+        for c in range(3):
+            n[c] = trial[c]
+        if polished > polishes:
+            return
+
+
+@compiled
+def find_normal(pose, n):
+    """The unit vector along which the solids of a pose are furthest apart, or overlap least."""
+    m, t = room(54), room(6)
+    for c in range(3):
+        n[c] = pose[c]
+    if along(n, n) == 0.0:
+        n[2] = 1.0
+    take_unit_length(n)
+    across(n, t)
+    last = thinnest(pose)
+    fat = 1.0
+    while fat > last:
+        fat = max(fat * THINNER, last)
+        ellipsoids(pose, fat, 1.0, m)
+        _grow(m, t, n)
+    take_unit_length(n)
+    for stage in range(STAGES + 1):
+        ellipsoids(pose, 0.0, 1.0 - stage / STAGES, m)
+        if stage < STAGES:
+            _part(m, pose, n, ROUGHLY, 0)
+        else:
+            _part(m, pose, n, FLAT, POLISHES)
+
+
+@compiled
+def _component(component, pose, known):
+    """By the last pose and its normal, if the pose is the same."""
+    same = True
+    for k in range(POSE):
+        if known[k] != pose[k]:
+            same = False
+            break
+    n = shifted(known, POSE)
+    if not same:
+        find_normal(pose, n)
+        for k in range(POSE):
+            known[k] = pose[k]
+    return n[component]
+
+
+@compiled
+def _changed(pose, m, n, by, change):
+    """The derivative of d minus the support function's gradient by an entry of the pose.
+
+    Of M n/s with s^2 = n.M n it is M' n/s - M n (n.M' n)/(2 s^3), and M' is that of R D R^T.
+    """
+    for c in range(3):
+        change[c] = 1.0 if by == c else 0.0
+    r, v, w = shifted(pose, TURN), room(3), room(3)
+    for term in range(6):
+        at = SQUARES + 3 * term
+        for c in range(3):
+            v[c] = 0.0
+        if TURN <= by < SQUARES and term < 3:
+            row = (by - TURN) // 3
+            column = by - TURN - 3 * row
+            square = pose[at + column]
+            v[row] += square * (r[column] * n[0] + r[3 + column] * n[1] + r[6 + column] * n[2])
+            for c in range(3):
+                v[c] += square * r[3 * c + column] * n[row]
+        elif at <= by < at + 3 and term < 3:
+            column = by - at
+            part = r[column] * n[0] + r[3 + column] * n[1] + r[6 + column] * n[2]
+            for c in range(3):
+                v[c] = part * r[3 * c + column]
+        elif at <= by < at + 3:
+            v[by - at] = n[by - at]
+        g = shifted(m, 9 * term)
+        s = times(g, n, w)
+        if s > 0.0:
+            longer = 0.5 * along(v, n) / (s * s)
+            for c in range(3):
+                change[c] -= (v[c] - longer * (g[c] * w[0] + g[3 + c] * w[1] + g[6 + c] * w[2])) / s
+
+
+@compiled
+def _slope(component, by, n, pose):
+    """By the implicit function theorem: (t^T h'' t + gap) p = t^T (d - h')' and n' = t p."""
+    m, h, t, k, g, p, change = room(54), room(10), room(6), room(3), room(2), room(2), room(3)
+    ellipsoids(pose, 0.0, 0.0, m)
+    support(m, n, h)
+    gap = along(n, pose) - h[0]
+    across(n, t)
+    curvature(h, t, gap, k)
+    _changed(pose, m, n, by, change)
+    g[0], g[1] = along(change, t), along(change, shifted(t, 3))
+    solved(k, g, p)
+    return p[0] * t[component] + p[1] * t[3 + component]

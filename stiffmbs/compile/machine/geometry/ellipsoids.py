@@ -1,0 +1,126 @@
+"""Solids as Minkowski sums of ellipsoids, in kernels: their support functions and the derivatives of these.
+
+Each solid is a sum of up to three ellipsoids about one middle, so that its support function is h(n) = sum sqrt(n^T M n).
+
+A pose is an array: d, the matrix R whose columns are the axes of the first solid, then the squares of the semi-axes of the three
+ellipsoids of the first solid along its axes and of those of the second one; all in the axes of the second.  An ellipsoid that is
+not there has zeros.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from ..native.access import compiled, shifted
+from .room import room
+
+TURN, SQUARES, POSE = 3, 12, 30
+"""Where R and the squares begin in a pose, and its length."""
+CORE = 0.5
+"""How much thinner the core is, as a part of half the least size."""
+
+
+@compiled
+def ellipsoids(pose, fat, thinner, m):
+    """The matrices G with M = G^T G: semi-axes times axes row by row.
+
+    They are those of the solids made thinner by a part of the way to their cores; each semi-axis is at least a part `fat` of its
+    ellipsoid's largest.
+    """
+    for term in range(6):
+        squares = shifted(pose, SQUARES + 3 * term)
+        core = thinner * CORE * least(shifted(pose, SQUARES if term < 3 else SQUARES + 9)) if thinner > 0.0 else 0.0
+        largest = thinned(max(squares[0], max(squares[1], squares[2])), core)
+        for row in range(3):
+            size = max(thinned(squares[row], core), fat * largest)
+            for c in range(3):
+                if term < 3:
+                    m[9 * term + 3 * row + c] = size * pose[TURN + 3 * c + row]
+                else:
+                    m[9 * term + 3 * row + c] = size if c == row else 0.0
+
+
+@compiled
+def thinned(square, core):
+    """A semi-axis; those of edges, which are far thinner than half the least size, stay."""
+    size = sqrt(square)
+    return size - core if size > core else size
+
+
+@compiled
+def least(squares):
+    """Half the least size of a solid: the least semi-axis of one ellipsoid, or the least of the largest ones of several."""
+    if squares[3] == 0.0:
+        return sqrt(min(squares[0], min(squares[1], squares[2])))
+    least = max(squares[0], max(squares[1], squares[2]))
+    for term in range(1, 3):
+        largest = max(squares[3 * term], max(squares[3 * term + 1], squares[3 * term + 2]))
+        if largest > 0.0:
+            least = min(least, largest)
+    return sqrt(least)
+
+
+@compiled
+def thinnest(pose):
+    """The least ratio of semi-axes of an ellipsoid."""
+    ratio = 1.0
+    for term in range(6):
+        at = SQUARES + 3 * term
+        largest = max(pose[at], max(pose[at + 1], pose[at + 2]))
+        least = min(pose[at], min(pose[at + 1], pose[at + 2]))
+        if largest > 0.0:
+            ratio = min(ratio, sqrt(least / largest))
+    return ratio
+
+
+@compiled
+def times(g, n, w):
+    """w = G n, and its length."""
+    for row in range(3):
+        w[row] = g[3 * row] * n[0] + g[3 * row + 1] * n[1] + g[3 * row + 2] * n[2]
+    return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+
+
+@compiled
+def reach(m, n):
+    """h(n)."""
+    w = room(3)
+    total = 0.0
+    for term in range(6):
+        total += times(shifted(m, 9 * term), n, w)
+    return total
+
+
+@compiled
+def support(m, n, h):
+    """h[0] = h(n), its gradient h[1:4], and its second derivatives h[4:10]: xx, yy, zz, xy, xz, yz.
+
+    Of s = |G n| with w = G n/s the gradient is G^T w, and the second derivative Q^T Q/s with Q = G - w (G^T w)^T.
+    """
+    w = room(3)
+    for k in range(10):
+        h[k] = 0.0
+    for term in range(6):
+        g = shifted(m, 9 * term)
+        s = times(g, n, w)
+        if s > 0.0:
+            inverse = 1.0 / s
+            for row in range(3):
+                w[row] *= inverse
+            x = g[0] * w[0] + g[3] * w[1] + g[6] * w[2]
+            y = g[1] * w[0] + g[4] * w[1] + g[7] * w[2]
+            z = g[2] * w[0] + g[5] * w[1] + g[8] * w[2]
+            h[0] += s
+            h[1] += x
+            h[2] += y
+            h[3] += z
+            for row in range(3):
+                part = w[row]
+                a, b, c = g[3 * row] - part * x, g[3 * row + 1] - part * y, g[3 * row + 2] - part * z
+                p, q, r = a * inverse, b * inverse, c * inverse
+                h[4] += a * p
+                h[5] += b * q
+                h[6] += c * r
+                h[7] += a * q
+                h[8] += a * r
+                h[9] += b * r
