@@ -377,6 +377,7 @@ class PointOnCurve(_PointOnCurve):
         y: given.Curve | None = ...,
         radius: given.Curve | None = ...,
         z: given.Curve | None = ...,
+        height: given.Curve | None = ...,
         type: Literal["point_on_curve"] = ...,
     ) -> None: ...
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..solve.missing_rows import reported
 from ..studies.case_solver import CaseSolver
 from ..studies.sweep import Study, study_of
 from .benchmark import Row
@@ -54,12 +55,14 @@ class StudyRuns:
         study = study_of(self.scene(), {}, None, 0, [self.output], varied)
         expected = study.solve()[self.output].values
         before = _memory()
-        off, bare, alone = 0.0, [], []
+        off, bare, evaluated, alone = 0.0, [], [], []
         clock: dict[str, list[float]] = {name: [] for name in WAYS}
         with ProcessPoolExecutor(2, get_context("spawn")) as processes:
             study.solve(executor=processes)  # which start, and compile
             for _ in range(rounds):
-                bare.append(_bare(study))
+                integrating, evaluating = _bare(study)
+                bare.append(integrating)
+                evaluated.append(evaluating)
                 for way, spent in clock.items():
                     begun, used = time.perf_counter(), time.process_time()
                     found = study.solve(2 if way == "2 threads" else None, processes if way == "2 processes" else None)
@@ -67,14 +70,15 @@ class StudyRuns:
                     if way == "1 thread":
                         alone.append(time.process_time() - used)
                     off = max(off, float(np.max(np.abs(found[self.output].values - expected))))
-        integration, whole = min(bare), min(alone)
+        integration, evaluation, whole = min(bare), min(evaluated), min(alone)
         ratio = whole / integration
-        each = 1e3 * (whole - integration) / len(study.cases)
+        each, rest = (1e3 * spent / len(study.cases) for spent in (evaluation, whole - integration - evaluation))
         best = {way: min(spent) for way, spent in clock.items()}
         gains = {way: best["1 thread"] / spent for way, spent in best.items()}
         return [
             Row("integration", f"{len(study.cases)} cases alone, processor's time", 0.0, integration, True),
-            Row("study", f"processor's time; {ratio:.2f} of that, {each:.2f} ms more a case", off, whole, False),
+            Row("evaluation", f"forces and accelerations at output instants, {each:.2f} ms a case", 0.0, evaluation, True),
+            Row("study", f"processor's time; {ratio:.2f} of the integration; {rest:.2f} ms a case besides both", off, whole, False),
             *(
                 Row("study", f"{way}, by the clock; {gains[way]:.2f} times as fast as one", off, spent, False)
                 for way, spent in best.items()
@@ -91,12 +95,15 @@ def _memory() -> float:
     return most / (2**20 if sys.platform == "darwin" else 2**10)
 
 
-def _bare(study: Study) -> float:
-    """Time of the integrations of all cases, and of nothing else, by the processor's time, s."""
-    solver, spent = CaseSolver(study.task), 0.0
+def _bare(study: Study) -> tuple[float, float]:
+    """Processor's time of the integrations of all cases, and of their forces and accelerations at the output instants, s."""
+    solver, integrating, evaluating = CaseSolver(study.task), 0.0, 0.0
     for values in study.cases:
         job = solver.job(solver.scene(values))
         begun = time.process_time()
-        job.integrate()
-        spent += time.process_time() - begun
-    return spent
+        found = job.integrate()
+        integrated = time.process_time()
+        reported(job.dynamics, found, job.on_constraints)
+        integrating += integrated - begun
+        evaluating += time.process_time() - integrated
+    return integrating, evaluating

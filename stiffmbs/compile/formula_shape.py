@@ -5,15 +5,16 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..describe.element import JointName
 from ..describe.formula.formula import Formula
-from ..describe.formula.nodes import TIME, is_measure, is_reaction, joint_of, measured_markers
+from ..describe.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
+from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
 from ..describe.marker import MarkerReference
 from ..describe.table import Table
-from .formula_parts import FormulaParts
 from .table_values import spline_data
 
 if TYPE_CHECKING:
@@ -32,6 +33,64 @@ TAKEN_OUT = "taken_out"
 """Under which a formula keeps what placeholders stand for in it."""
 OWN = "own_"
 """Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a formula.
+
+    Attributes
+    ----------
+    number : int
+        The same for parts that say the same word for word.
+    constant : bool
+        Whether it holds neither time, coordinates, measures, states nor the field's own variables.
+    """
+
+    number: int
+    constant: bool
+
+
+class FormulaParts:
+    """What is known of the parts of a formula; each is looked at once.
+
+    Parameters
+    ----------
+    formula : Formula
+    """
+
+    def __init__(self, formula: Formula) -> None:
+        self._values = formula.values
+        self._varying = {TIME, *formula.variables, *formula.tables, *formula.states}
+        self._known: dict[int, Part] = {}
+        self._numbers: dict[tuple[object, ...], int] = {}
+
+    def of(self, node: ast.expr) -> Part:
+        """A part by its node in the formula's tree."""
+        if id(node) not in self._known:
+            self._known[id(node)] = self._read(node)
+        return self._known[id(node)]
+
+    def _read(self, node: ast.expr) -> Part:
+        match node:
+            case ast.BinOp(left, operator, right):
+                return self._of_parts((type(operator),), left, right)
+            case ast.UnaryOp(operator, operand):
+                return self._of_parts((type(operator),), operand)
+            case ast.Call(ast.Name(name), arguments):
+                return self._of_parts((ast.Call, name), *arguments, constant=not is_named(node) and name not in self._varying)  # fmt: skip
+            case ast.Attribute(ast.Name(owner), name):
+                return self._part((owner, name), f"{UNIT}.{name}" in self._values and owner not in self._varying)
+            case ast.Name(name):
+                return self._part((name,), name not in self._varying)
+        return self._part((ast.dump(node),), isinstance(node, ast.Constant))
+
+    def _of_parts(self, says: tuple[object, ...], *nodes: ast.expr, constant: bool = True) -> Part:
+        parts = [self.of(node) for node in nodes]
+        return self._part((*says, *(part.number for part in parts)), constant and all(part.constant for part in parts))
+
+    def _part(self, says: tuple[object, ...], constant: bool) -> Part:
+        return Part(self._numbers.setdefault(says, len(self._numbers)), constant)
 
 
 class FormulaShape(ast.NodeVisitor):

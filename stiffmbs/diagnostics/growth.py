@@ -11,6 +11,7 @@ from ..compile.system import System
 from ..solve.dynamics import Dynamics, OutputRows
 from ..solve.events.divergence import SPEED_OF_LIGHT, UNBOUNDED_MOTION, exponential, reaches
 from ..solve.storage import blocks, release
+from .glance import Glance
 
 RESOLVED = 1e-6
 """Part of the mechanism's size that rounding of coordinates may take."""
@@ -18,7 +19,7 @@ OPEN, DRIFTED = 1e-6, 1e-2
 """Parts of the mechanism's size by which a joint may be open: on the constraints, and where drift is shown as it is."""
 
 
-def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Iterator[str]:
+def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None) -> Iterator[str]:
     """What no motion of the scene can be, a sentence each.
 
     Parameters
@@ -29,9 +30,11 @@ def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Ite
         Of the run.
     on_constraints : bool
         Whether states are brought back to the constraints; else their drift is shown as it is.
+    seen : Glance or None
+        What the rows show at a glance.
     """
     with np.errstate(all="ignore"):
-        grown = _grown(dynamics.system, rows)
+        grown = "" if seen and _within_bounds(dynamics, seen) else _grown(dynamics.system, rows)
         if grown:
             yield grown
         open_joint = _open_joint(dynamics, rows, on_constraints)
@@ -39,17 +42,31 @@ def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Ite
             yield open_joint
 
 
+def _within_bounds(dynamics: Dynamics, seen: Glance) -> bool:
+    """Whether a glance shows that nothing has grown, as in nearly all runs."""
+    furthest, fastest = dynamics.kept("bounds of growth", None, lambda: _bounds(dynamics.system))
+    return seen.width_q <= furthest and seen.width_u <= fastest
+
+
+def _bounds(system: System) -> tuple[float, float]:
+    """Widths of coordinates and of velocities up to which nothing has grown beyond sense."""
+    if not system.bodies:
+        return np.inf, np.inf
+    limit, resolved = _limits(system)
+    return min(limit, resolved) / reaches(system).max(), SPEED_OF_LIGHT / system.per_velocity(1.0, system.size).max()
+
+
+def _limits(system: System) -> tuple[float, float]:
+    """Distances, m, beyond which growth makes no sense, and beyond which rounding takes what is resolved."""
+    return UNBOUNDED_MOTION * system.size, RESOLVED * system.size / float(np.finfo(float).eps)
+
+
 def _grown(system: System, rows: OutputRows) -> str:
     """A sentence on growth beyond sense; empty where there is none."""
     if not system.bodies:
         return ""
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
-    limit, resolved = UNBOUNDED_MOTION * system.size, RESOLVED * system.size / np.finfo(float).eps
-    if (
-        _width(rows.q) * np.max(of_places, initial=0.0) <= min(limit, resolved)
-        and _width(rows.u) * np.max(of_rates) <= SPEED_OF_LIGHT
-    ):
-        return ""  # of nearly all runs; not with nan
+    limit, resolved = _limits(system)
     far, speed = np.empty(len(rows.t)), np.empty(len(rows.t))
     for block in blocks(len(rows.t)):
         far[block] = np.max(np.abs(rows.q[block] - rows.q[0]) * of_places, axis=1)
@@ -65,15 +82,6 @@ def _grown(system: System, rows: OutputRows) -> str:
         what = f"where rounding takes more than {RESOLVED:.0e} of the mechanism's size of {system.size:.3g} m"
         return _growth_sentence(system, rows, far, resolved, what)
     return ""
-
-
-def _width(values: np.ndarray) -> float:
-    """A bound on how far any column comes from its start and from zero; nan where one of the values is."""
-    low = high = 0.0
-    for block in blocks(len(values)):
-        low, high = np.minimum(low, values[block].min()), np.maximum(high, values[block].max())
-        release(values)
-    return float(high - low)
 
 
 def _connected(system: System) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..solve.dynamics import Dynamics, OutputRows
+from .glance import Glance
 from .growth import senseless
 from .lost_turns import lost_turns_sentence
 from .singular_passage import singular_passage_sentence
@@ -26,7 +27,7 @@ class MotionNotes:
     uncertain: tuple[str, ...]
 
 
-def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> MotionNotes:
+def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None) -> MotionNotes:
     """What there is to say of a motion.
 
     Parameters
@@ -36,9 +37,11 @@ def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> 
     rows : OutputRows
     on_constraints : bool
         Whether the states are brought back to the constraints, so that drift is not shown.
+    seen : Glance or None
+        What the rows show at a glance.
     """
     return MotionNotes(
-        tuple(senseless(dynamics, rows, on_constraints)),
+        tuple(senseless(dynamics, rows, on_constraints, seen)),
         (
             *(singular_passage_sentence(dynamics, rows) if rows.lam.size else ()),
             *(lost_turns_sentence(dynamics, rows) if dynamics.system.n_counters else ()),

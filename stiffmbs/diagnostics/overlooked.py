@@ -109,8 +109,10 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
 
 
-def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Numbers of the rows that contradict the next one beyond `OVERLOOKED_PART`, where both are inside one step.
+def contradicting_rows(
+    rows: OutputRows, mass: np.ndarray, steps: np.ndarray, part: float = OVERLOOKED_PART
+) -> np.ndarray:
+    """Numbers of the rows that contradict the next one, where both are inside one step.
 
     Parameters
     ----------
@@ -119,11 +121,13 @@ def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) ->
         Weights.
     steps : ndarray
         Ends of the steps, s.
+    part : float
+        Of the larger acceleration, beyond which they do.
     """
     found = np.empty(len(rows.t), dtype=np.int64)
     t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
     *of_rows, at_steps, at_found = addresses(t, u, acceleration, mass, steps, found)
-    count = CONTRADICTING_ROWS.call(len(t), len(mass), *of_rows, OVERLOOKED_PART, len(steps), at_steps, at_found)
+    count = CONTRADICTING_ROWS.call(len(t), len(mass), *of_rows, part, len(steps), at_steps, at_found)
     return found[:count]
 
 

@@ -19,9 +19,13 @@ from ..describe.requests.order import units
 from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..diagnostics.far_away import refuse_far_away
+from ..diagnostics.glance import glance_at
 from ..diagnostics.motion import motion_notes
+from ..diagnostics.overlooked import OVERLOOKED_PART
 from ..errors import AssemblyError, InputError
-from ..results.of_run import results_of_run
+from ..results.channels import named, series_of
+from ..results.energy_balance_notes import may_be_broken
+from ..results.of_run import RunResults, results_of_run
 from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..solve import SOLVERS
@@ -252,37 +256,94 @@ def run(
     return solved(prepare(data, settings, start_from, **changes), watch)
 
 
-@np.errstate(all="ignore")  # a diverged run has numbers that overflow, and notes that say so
-def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
-    """Integrate what was prepared, and turn it into channels; errors as for `run`."""
+@dataclass(frozen=True)
+class Finished:
+    """A job that was integrated and examined.
+
+    Attributes
+    ----------
+    job : Job
+    trajectory : Trajectory
+    rows : OutputRows
+    outcome : Outcome
+    message : str
+    notes : tuple of str
+    structure : StructureNotes
+    examined : RunResults or None
+        Channels and energy balance; None where a glance has shown that there is nothing to say of them.
+    """
+
+    job: Job
+    trajectory: Trajectory
+    rows: OutputRows
+    outcome: Outcome
+    message: str
+    notes: tuple[str, ...]
+    structure: StructureNotes
+    examined: RunResults | None
+
+    @property
+    def time(self) -> np.ndarray:
+        """Output instants, s."""
+        return self.rows.t
+
+    def __getitem__(self, channel: str) -> np.ndarray:
+        if self.examined:
+            return named(self.examined.channels, channel)
+        return series_of(self.job.data, self.job.dynamics.system, self.rows, channel)
+
+    @cached_property
+    def results(self) -> RunResults:
+        """Channels and energy balance."""
+        return self.examined or _results(self.job, self.trajectory, self.rows)
+
+
+@np.errstate(all="ignore")  # a diverged run has numbers that overflow
+def _results(job: Job, trajectory: Trajectory, rows: OutputRows) -> RunResults:
+    return results_of_run(job.data, job.dynamics.system, rows, job.settings, trajectory.step_times)
+
+
+@np.errstate(all="ignore")
+def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
+    """Integrate what was prepared, and examine it; errors as for `run`."""
     computed, overlooked = seen_through(job, lambda job: on_exact_constraints(job, lambda job: _computed(job, watch)))
-    trajectory, rows = computed.trajectory, computed.rows
+    trajectory, rows, seen = computed.trajectory, computed.rows, computed.seen
     if not len(rows.t):
         raise AssemblyError(
             f"no accelerations could be computed at the start: {failure(job.dynamics, rows.status, job.grid.start)}"
         )
+    outcome, message = _ending(job, rows, trajectory)
+    sound = seen and not (may_be_broken(seen.missing, seen.exchanged) or job.data.requests)
+    examined = None if sound else _results(job, trajectory, rows)
+    of_motion = motion_notes(job.dynamics, rows, job.on_constraints, seen)
+    structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
+    broken, undefined = (examined.broken_balance, examined.undefined) if examined else ((), ())
+    wrong = (*(of_motion.senseless or broken), *of_motion.uncertain, *undefined)
+    notes = (*_notes(job, trajectory, structure), *overlooked, *computed.left_out, *wrong)
+    return Finished(job, trajectory, rows, outcome, message, notes, structure, examined)
+
+
+def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
+    """Integrate what was prepared, and turn it into channels; errors as for `run`."""
+    found = finished(job, watch)
+    trajectory, rows, results, structure = found.trajectory, found.rows, found.results, found.structure
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
     if job.on_constraints:
         statistics["drift"] = float(np.fmax.reduce(rows.drift))
-    outcome, message = _ending(job, rows, trajectory)
-    system = job.dynamics.system
-    found = results_of_run(job.data, system, rows, job.settings, trajectory.step_times)
-    of_motion = motion_notes(job.dynamics, rows, job.on_constraints)
-    structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
-    wrong = (*(of_motion.senseless or found.broken_balance), *of_motion.uncertain, *found.undefined)
     return Solution(
-        name=job.data.name, time=rows.t, channels=found.channels, outcome=outcome, message=message,
-        notes=(*_notes(job, trajectory, structure), *overlooked, *computed.left_out, *wrong), solver=statistics,
-        history=trajectory.history, balance=found.balance, not_unique=structure.not_unique,
+        name=job.data.name, time=rows.t, channels=results.channels, outcome=found.outcome, message=found.message,
+        notes=found.notes, solver=statistics, history=trajectory.history, balance=results.balance, not_unique=structure.not_unique,
         requested=units(job.data.outputs()) if job.data.requests else {}, figure=job.data.figure if isinstance(job.data, Scene) else None,
-        presolve=structure.of_presolve, turns=found.turns,
+        presolve=structure.of_presolve, turns=results.turns,
     )  # fmt: skip
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and report it."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
-    return Computed(trajectory, *reported(job.dynamics, trajectory, job.on_constraints))
+    rows, left_out = reported(job.dynamics, trajectory, job.on_constraints)
+    seen = glance_at(job.dynamics.system, rows, trajectory.step_times, OVERLOOKED_PART)
+    return Computed(trajectory, rows, left_out, seen)
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:

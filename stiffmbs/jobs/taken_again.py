@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..diagnostics.glance import Glance
 from ..diagnostics.overlooked import Overlooked, overlooked, together
 from ..diagnostics.within_long_steps import overlooked_in_long_steps
 from ..solve import traits_of
@@ -41,11 +42,12 @@ LESS = 0.5
 
 @dataclass(frozen=True)
 class Computed:
-    """A trajectory, what is reported of it, and notes on instants that are left out."""
+    """A trajectory, what is reported of it, notes on instants that are left out, and what the rows show at a glance."""
 
     trajectory: Trajectory
     rows: OutputRows
     left_out: list[str]
+    seen: Glance | None
 
 
 def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
@@ -81,8 +83,9 @@ def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
     if not system.has_laws:
         return None
     long_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.long_steps
+    of_rows = computed.seen is None or computed.seen.contradicting
     found = [
-        overlooked(system, computed.rows, trajectory, job.settings),
+        overlooked(system, computed.rows, trajectory, job.settings) if of_rows else None,
         *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
     ]
     return together([each for each in found if each is not None])

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..describe.model_data import ModelData
+from ..describe.parts.names import owner_of
+from ..errors import ChannelError
 from ..presolve.subsystems import counters_of
 from ..solve.dynamics import OutputRows
 from .body_axes import in_own_axes
@@ -36,6 +40,34 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     from .requests import requested
 
     return channels | requested(model, rows.t, channels, counters(model, system, rows.q))
+
+
+def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """A channel by its name.
+
+    Raises
+    ------
+    ChannelError
+        When there is none of this name; names those near it.
+    """
+    try:
+        return channels[name]
+    except KeyError:
+        owner = owner_of(str(name))
+        near = [other for other in channels if owner_of(other) == owner] or list(channels)[:12]
+        raise ChannelError(f"found no channel '{name}', expected one such as {', '.join(near)}") from None
+
+
+def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> np.ndarray:
+    """One channel; that of a joint or force without the others.
+
+    Raises
+    ------
+    ChannelError
+        When there is none of this name.
+    """
+    at = -1 if model.requests else system.reported.get(name, -1)
+    return rows.values[:, at] if at >= 0 else named(channels_of(model, system, rows), name)
 
 
 def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:

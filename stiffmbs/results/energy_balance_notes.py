@@ -62,13 +62,18 @@ def balance_notes(
     steps : ndarray
         Ends of the solver's own steps, s; empty where it does not tell them.
     """
-    if not balance.furthest > BROKEN * balance.scale:
+    if not may_be_broken(balance.furthest, balance.scale):
         return
     allowed = may_be_missing(system, balance, rows, settings)
     if balance.keeps_energy:
         yield from _changed(system, balance, rows, settings, allowed)
     else:
         yield from _left(system, balance, rows, steps, allowed)
+
+
+def may_be_broken(missing: float, exchanged: float) -> bool:
+    """Whether a balance in which some energy is missing is worth a closer look, J."""
+    return missing > BROKEN * exchanged
 
 
 def may_be_missing(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> float:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from ..describe.figure import Figure
-from ..describe.parts.names import owner_of
-from ..errors import ChannelError, InputError
+from ..errors import InputError
 from ..solve.storage import release
 from ..solve.trajectory import History, Outcome
+from .channels import named
 from .energy_balance import Balance
 from .error_bars import ErrorBar
 from .scales import UNITS, kind_of
@@ -110,12 +110,7 @@ class Solution(Mapping[str, np.ndarray]):
         return self.time
 
     def __getitem__(self, channel: str) -> np.ndarray:
-        try:
-            return self.channels[channel]
-        except KeyError:
-            owner = owner_of(str(channel))
-            near = [name for name in self.channels if owner_of(name) == owner] or list(self.channels)[:12]
-            raise ChannelError(f"found no channel '{channel}', expected one such as {', '.join(near)}") from None
+        return named(self.channels, channel)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.channels)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -74,12 +75,16 @@ class Registered:
 def loaded_when_used(module: str, package: str) -> Registered:
     """The solver in a module of a package that has functions ``solve`` and ``traits``."""
 
+    @cache
+    def loaded() -> Any:
+        return import_module(module, package)
+
     def solve(*asked: Any) -> Trajectory:
-        found: Trajectory = import_module(module, package).solve(*asked)
+        found: Trajectory = loaded().solve(*asked)
         return found
 
     def traits(settings: RunSettings) -> Traits:
-        found: Traits = import_module(module, package).traits(settings)
+        found: Traits = loaded().traits(settings)
         return found
 
     return Registered(solve, traits)

@@ -19,7 +19,7 @@ from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
 from ..jobs.number_plan import NumberPlan, number_plan
 from ..jobs.renumber import renumbered
-from ..jobs.run import Job, prepare, solved
+from ..jobs.run import Finished, Job, finished, prepare, solved
 from ..results.channels import channels_of
 from ..results.solution import Solution
 from ..solve.settings import changed
@@ -124,7 +124,7 @@ class CaseSolver:
     def row(self, case: int, values: Sequence[Any]) -> Row:
         """A case with its outputs, or with what went wrong."""
         try:
-            solution = solved(self._job_of_case(values))
+            solution = finished(self._job_of_case(values))
             done = solution.outcome is Outcome.DONE
             outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
         except NotFollowed:  # something looks at the described forces after all
@@ -189,7 +189,7 @@ class CaseSolver:
         return found
 
 
-def _kept(output: Output, solution: Solution, done: bool) -> float | np.ndarray:
+def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
     """An output of a run; a reduction of one that stopped early is not known."""
     if not done and not output.is_series:
         output.value(solution)

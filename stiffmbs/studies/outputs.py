@@ -6,18 +6,26 @@ import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..describe.parts.names import owner_of
 from ..errors import ChannelError, InputError
-from ..results.solution import Solution
 
 Series = np.ndarray
 TIME = "time"
 FORMULAS = 256
 """Of which the trees are kept."""
+
+
+class Reported(Protocol):
+    """A solution, or what stands for one: output instants, and channels by name."""
+
+    @property
+    def time(self) -> np.ndarray: ...
+
+    def __getitem__(self, channel: str, /) -> np.ndarray: ...
 
 
 def _peak(t: Series, x: Series) -> float:
@@ -71,7 +79,7 @@ class Output:
     name: str
     text: str
 
-    def value(self, solution: Solution) -> float | np.ndarray:
+    def value(self, solution: Reported) -> float | np.ndarray:
         """The number, or the series over the output instants, of a run.
 
         Raises
@@ -185,7 +193,7 @@ def _is_series(node: ast.AST) -> bool:
     return channel_of(node) is not None
 
 
-def _value(node: ast.AST, solution: Solution) -> Any:
+def _value(node: ast.AST, solution: Reported) -> Any:
     match node:
         case ast.Constant(value):
             return value

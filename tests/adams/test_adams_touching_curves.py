@@ -125,6 +125,15 @@ def test_a_follower_flies_when_its_curves_no_longer_touch(tmp_path):
         stiffmbs.load_scene(tmp_path / "cam.adm")
 
 
+def test_curves_that_are_drawn_further_apart_than_the_smaller_one_is_wide_do_not_touch():
+    for follower, across in ((120, 0), (50, 30)):
+        roller = np.add(ellipse(10, 10), (0, 0, across))
+        with pytest.raises(
+            InputError, match=r"CVCV/6: found curves that do not touch: as drawn they come no nearer than 0\.0"
+        ):
+            read_adams(dataset(ellipse(40, 40), roller, (0, 0), follower, "CLOSED"))
+
+
 def test_a_pair_without_a_curve_or_with_a_stated_velocity_is_refused():
     text = dataset(ellipse(40, 40), FACE, (15, 0), 40)
     with pytest.raises(InputError, match="CVCV/6: found CURVE = 5, expected the number of a CURVE"):

@@ -101,9 +101,13 @@ def _body(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
     """A slight body at the point of contact, its x axis along the tangent and its z axis across the plane of the second curve."""
     first, second = _curves(pair, mechanism)
     near, also_near = (_ground_point(start, pair, mechanism) for start in pair.starts)
-    point, tangent = first_touch(first, second, (near, also_near))
+    start = first_touch(first, second, (near, also_near))
+    if start.apart > start.size:
+        raise pair.fault(
+            f"found curves that do not touch: as drawn they come no nearer than {start.apart:.6g} m, expected them to touch"
+        )
     z = second.initial.axes[:, 2]
-    frame = Frame(point, np.column_stack([tangent, np.cross(z, tangent), z]))
+    frame = Frame(start.point, np.column_stack([start.tangent, np.cross(z, start.tangent), z]))
     places = (mechanism.placed(marker).initial.point for marker in mechanism.dataset.markers.values())
     moment = plain(massless_moment(mechanism.least, places))
     moving = {"open": ["velocity", "omega"]} if mechanism.moves_at_start else {}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .laid_curves import LaidCurve
@@ -10,19 +12,31 @@ SAMPLES = 400
 """Points of a curve among which the search looks for its start."""
 
 
-def first_touch(
-    first: LaidCurve, second: LaidCurve, near: tuple[np.ndarray | None, np.ndarray | None]
-) -> tuple[np.ndarray, np.ndarray]:
-    """A point near which two curves touch, and the unit tangent of the second one there, in ground axes.
+@dataclass(frozen=True, eq=False)
+class Touching:
+    """Where two curves come nearest to touching, in ground axes.
+
+    Attributes
+    ----------
+    point, tangent : ndarray, shape (3,)
+        In the middle between both, m; the unit tangent of the second one there.
+    apart : float
+        Distance of the two, m.
+    size : float
+        Of the smaller curve, m.
+    """
+
+    point: np.ndarray
+    tangent: np.ndarray
+    apart: float
+    size: float
+
+
+def first_touch(first: LaidCurve, second: LaidCurve, near: tuple[np.ndarray | None, np.ndarray | None]) -> Touching:
+    """Where two curves touch, or nearly do.
 
     Points of the two are sought that are near each other and have parallel tangents: drawn curves may be apart, or cross.  Where a
     point `near` each curve is given, m, the search starts at the curve's nearest to that.
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        m.
-    ndarray, shape (3,)
     """
     from scipy.optimize import least_squares
 
@@ -40,7 +54,7 @@ def first_touch(
 
     found = least_squares(missed, [s[k], t[m]], xtol=1e-14, ftol=1e-14, gtol=1e-14).x
     (a, _), (b, b_way) = curves[0](found[:1]), curves[1](found[1:])
-    return (a[0] + b[0]) / 2, b_way[0]
+    return Touching((a[0] + b[0]) / 2, b_way[0], float(np.linalg.norm(a[0] - b[0])), size)
 
 
 class _Sampled:

@@ -17,8 +17,9 @@ from ..statements.constraints import TRANSLATIONAL, Joint
 from ..statements.fault import of_each
 from ..statements.friction import JointFriction
 from .coordinates import initial_displacement
-from .mechanism import Mechanism
+from .mechanism import Mechanism, Place
 
+AXES = "XYZ"
 TORQUE = "_torque"
 SLOW = 1e-6
 """Part of the stiction velocity that keeps the direction of sliding from being undefined at rest."""
@@ -42,6 +43,13 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
             f"{labels}: below STICTION_TRANSITION_VELOCITY the joint creeps, where Adams holds it within "
             "MAX_STICTION_DEFORMATION"
         )
+    crosses = ", ".join(
+        friction.label
+        for friction in _acting(mechanism)
+        if friction.yokes == "IJ" and mechanism.dataset.joints[friction.joint].kind in ARMS
+    )
+    if crosses:
+        yield f"{crosses}: both arms of the cross rub, as no YOKE is named"
 
 
 def _acting(mechanism: Mechanism) -> list[JointFriction]:
@@ -58,7 +66,9 @@ def _joint(friction: JointFriction, mechanism: Mechanism) -> Joint:
     return joint
 
 
-_KINDS = ("REVOLUTE", "TRANSLATIONAL", "CYLINDRICAL", "SPHERICAL")
+_KINDS = ("REVOLUTE", "TRANSLATIONAL", "CYLINDRICAL", "SPHERICAL", "UNIVERSAL", "HOOKE")
+ARMS = {"UNIVERSAL": "ZZ", "HOOKE": "XY"}
+"""The axes of markers I and J along which the arms of a cross are."""
 
 
 class _Rubbing:
@@ -68,7 +78,7 @@ class _Rubbing:
         self._f, self._joint, self._mechanism, self._translation = friction, joint, mechanism, translation
         i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
         self._places = i, j
-        self._ends = {"i": i.reference, "j": j.body, "frame": j.reference}
+        self._ends = {"i": i.reference, "j": j.body}
 
     def made(self) -> dict[str, Any]:
         """The elements of the scene."""
@@ -77,18 +87,36 @@ class _Rubbing:
             "TRANSLATIONAL": self._guide,
             "CYLINDRICAL": self._sleeve,
             "SPHERICAL": self._ball,
+            "UNIVERSAL": self._cross,
+            "HOOKE": self._cross,
         }
         return makers[self._joint.kind]()
 
     def _pin(self) -> dict[str, Any]:
+        return self._torque([None, None, self._about("Z", self._joint.j)], self._f.name)
+
+    def _cross(self) -> dict[str, Any]:
+        """Each arm is a pin in one of the two parts; what the cross weighs is no matter, so that both torques are between the parts."""
+        found: dict[str, Any] = {}
+        ends = zip(("I", "J"), ARMS[self._joint.kind], (self._joint.i, self._joint.j), self._places, strict=True)
+        for end, arm, marker, place in ends:
+            if end in self._f.yokes:
+                laws = [self._about(arm, marker) if axis == arm else None for axis in AXES]
+                found |= self._torque(laws, self._f.name + (TORQUE if found else ""), place)
+        return found
+
+    def _about(self, axis: str, marker: int) -> str:
+        """The torque that brakes a pin along an axis of a marker."""
         f = self._f
         load = self._sum(
-            ("REACTION_FORCE", f"{f.pin!r}*{self._across('F')} + {f.collar!r}*ABS({self._part('F', 'Z')})"),
-            ("BENDING_MOMENT", f"{f.pin / f.bending_arm!r}*{self._across('T')}"),
+            (
+                "REACTION_FORCE",
+                f"{f.pin!r}*{self._across('F', axis, marker)} + {f.collar!r}*ABS({self._part('F', axis, marker)})",
+            ),
+            ("BENDING_MOMENT", f"{f.pin / f.bending_arm!r}*{self._across('T', axis, marker)}"),
         )
-        speed = f"{f.pin!r}*{self._turning('Z')}"
-        law = f"-({self._coefficient(speed)})*({load}) - {self._preload(f.torque)}*({self._direction(speed)})"
-        return self._torque([None, None, law], self._f.name)
+        speed = f"{f.pin!r}*{self._turning(axis, marker)}"
+        return f"-({self._coefficient(speed)})*({load}) - {self._preload(f.torque)}*({self._direction(speed)})"
 
     def _guide(self) -> dict[str, Any]:
         f, speed = self._f, self._sliding("Z")
@@ -113,7 +141,7 @@ class _Rubbing:
 
     def _ball(self) -> dict[str, Any]:
         f = self._f
-        parts = [f"({f.ball!r}*{self._turning(axis)})" for axis in "XYZ"]
+        parts = [f"({f.ball!r}*{self._turning(axis)})" for axis in AXES]
         speed = self._speed(*parts)
         load = self._sum(("REACTION_FORCE", f"{f.ball!r}*{self._whole('F')}"))
         size = (
@@ -162,35 +190,38 @@ class _Rubbing:
         way = f"(DZ({self._joint.i},{self._joint.j},{self._joint.j}) - ({first!r}))"
         return f"({f.overlap!r} {'+' if f.growth > 0 else '-'} {way})"
 
-    def _turning(self, axis: str) -> str:
+    def _turning(self, axis: str, along: int | None = None) -> str:
         i, j = self._joint.i, self._joint.j
-        return f"W{axis}({i},{j},{j})"
+        return f"W{axis}({i},{j},{along or j})"
 
     def _sliding(self, axis: str) -> str:
         i, j = self._joint.i, self._joint.j
         return f"V{axis}({i},{j},{j},{j})"
 
-    def _part(self, letter: str, axis: str) -> str:
+    def _part(self, letter: str, axis: str, along: int | None = None) -> str:
         component = 4 * (letter == "T") + "MXYZ".index(axis) + 1
-        return f"JOINT({self._joint.ident},0,{component},{self._joint.j})"
+        return f"JOINT({self._joint.ident},0,{component},{along or self._joint.j})"
 
     def _whole(self, letter: str) -> str:
-        return self._root(letter, "XYZ")
+        return self._root(letter, AXES, self._joint.j)
 
-    def _across(self, letter: str) -> str:
-        """The load across the axis z of marker J."""
-        return self._root(letter, "XY")
+    def _across(self, letter: str, axis: str = "Z", along: int | None = None) -> str:
+        """The load across an axis of a marker, of J where none is named."""
+        return self._root(letter, AXES.replace(axis, ""), along or self._joint.j)
 
-    def _root(self, letter: str, axes: str) -> str:
+    def _root(self, letter: str, axes: str, along: int) -> str:
         units = self._mechanism.dataset.units
         tiny = TINY / units.of(force=1, length=1 if letter == "T" else 0) ** 2
-        return f"SQRT({' + '.join(f'{self._part(letter, axis)}**2' for axis in axes)} + {tiny!r})"
+        return f"SQRT({' + '.join(f'{self._part(letter, axis, along)}**2' for axis in axes)} + {tiny!r})"
 
     def _force(self, laws: list[str | None], name: str) -> dict[str, Any]:
-        return {name: {"type": "force", **self._ends, "force": [self._formula(law, 0) for law in laws]}}
+        frame = self._places[1].reference
+        return {name: {"type": "force", **self._ends, "frame": frame, "force": [self._formula(law, 0) for law in laws]}}
 
-    def _torque(self, laws: list[str | None], name: str) -> dict[str, Any]:
-        return {name: {"type": "torque", **self._ends, "torque": [self._formula(law, 1) for law in laws]}}
+    def _torque(self, laws: list[str | None], name: str, place: Place | None = None) -> dict[str, Any]:
+        frame = (place or self._places[1]).reference
+        torque = [self._formula(law, 1) for law in laws]
+        return {name: {"type": "torque", **self._ends, "frame": frame, "torque": torque}}
 
     def _formula(self, law: str | None, arm: int) -> str | int:
         if law is None:

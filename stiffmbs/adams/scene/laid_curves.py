@@ -1,4 +1,4 @@
-"""Curves of a dataset as a scene knows them: y and z over x, or the radius over the angle of a closed one in a plane.
+"""Curves of a dataset as a scene knows them: y and z over x, or radius and height over the angle of a closed one.
 
 The curve goes through the points of its MATRIX as a cubic spline.  Adams' goes through the same points by its own parameter, so that
 the two differ between them.
@@ -35,7 +35,7 @@ class LaidCurve:
     arguments, values : ndarray
         x and y, or angle and radius, of the points.
     off : ndarray or None
-        Their distances from the plane; None for a flat curve.
+        Their distances from the plane, with a sign; None for a flat curve.
     """
 
     owner: Place
@@ -69,8 +69,9 @@ class LaidCurve:
     @property
     def law(self) -> dict[str, Any]:
         """The fields of the joint that say the curve."""
-        found = {"radius" if self.closed else "y": self._table(self.values)}
-        return found if self.off is None else found | {"z": self._table(self.off)}
+        value, off = ("radius", "height") if self.closed else ("y", "z")
+        found = {value: self._table(self.values)}
+        return found if self.off is None else found | {off: self._table(self.off)}
 
     def _table(self, values: np.ndarray) -> dict[str, Any]:
         table = [[plain(a), plain(b)] for a, b in zip(self.arguments, values, strict=True)]
@@ -88,15 +89,9 @@ def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) 
     points, closed = _points(user, number, mechanism)
     frame = _plane(points, closed)
     seen = (points - frame.point) @ frame.axes
-    off = seen[:, 2]
-    flat = np.max(np.abs(off)) <= FLAT * np.max(np.ptp(points, axis=0))
-    if closed and not flat:
-        raise user.fault(
-            f"found a closed curve that leaves its plane by {np.max(np.abs(off)):.6g} m, expected a flat one"
-        )
-    return LaidCurve(
-        owner, frame, closed, *(_radius(user, seen) if closed else _height(user, seen)), None if flat else off
-    )
+    flat = np.max(np.abs(seen[:, 2])) <= FLAT * np.max(np.ptp(points, axis=0))
+    arguments, values, off = _round(user, seen) if closed else _across_its_way(user, seen)
+    return LaidCurve(owner, frame, closed, arguments, values, None if flat else off)
 
 
 def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarray, bool]:
@@ -145,25 +140,25 @@ def _across(x: np.ndarray) -> np.ndarray:
     return found
 
 
-def _height(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """x and y."""
+def _across_its_way(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x, y and z."""
     if np.any(np.diff(seen[:, 0]) <= 0):
         raise user.fault(
             "found an open curve that turns back on the way from its first point to its last, expected none"
         )
-    return seen[:, 0], seen[:, 1]
+    return seen[:, 0], seen[:, 1], seen[:, 2]
 
 
-def _radius(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The angle, anticlockwise, over one turn, and the distance from the middle."""
+def _round(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The angle, anticlockwise, over one turn, the distance from the axis through the middle, and z."""
     angles = np.unwrap(np.arctan2(seen[:, 1], seen[:, 0]))
-    radii = np.hypot(seen[:, 0], seen[:, 1])
+    radii, off = np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2].copy()
     if angles[-1] < angles[0]:
-        angles, radii = angles[::-1], radii[::-1]
+        angles, radii, off = angles[::-1], radii[::-1], off[::-1]
     turned = angles[-1] - angles[0]
     if np.any(np.diff(angles) <= 0) or abs(turned - 2 * np.pi) > 1e-6:
         raise user.fault(
             "found a closed curve that a line from its middle meets more than once, expected a convex or nearly convex one"
         )
-    angles[-1], radii[-1] = angles[0] + 2 * np.pi, radii[0]
-    return angles, radii
+    angles[-1], radii[-1], off[-1] = angles[0] + 2 * np.pi, radii[0], off[0]
+    return angles, radii, off

@@ -141,7 +141,7 @@ def read_beam(statement: Statement, units: Units) -> Beam:
     found = Arguments(statement, "BEAM", (*names, "FORMULATION"))
     if (found.text("FORMULATION") or "LINEAR").upper() != "LINEAR":
         raise found.fault(
-            f"found FORMULATION = {found.text('FORMULATION')}, expected LINEAR: beams here are linear about their straight shape",
+            f"found FORMULATION = {found.text('FORMULATION')}, expected LINEAR: the laws of the others are not published; several linear beams in a row bend as far",
             found.line("FORMULATION"),
         )
     for name in (*(name for name, _ in _SECTION), "EMODULUS", "GMODULUS"):

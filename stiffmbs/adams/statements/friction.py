@@ -10,6 +10,7 @@ from .text import Statement
 from .units import Units
 
 INPUTS = ("PRELOAD", "REACTION_FORCE", "BENDING_MOMENT", "TORSIONAL_MOMENT")
+YOKES = {"BOTH": "IJ", "I_YOKE": "I", "J_YOKE": "J"}
 OVERLAP = {"CONSTANT": 0, "INCREASE": 1, "DECREASE": -1}
 
 
@@ -32,6 +33,8 @@ class JointFriction(Numbered):
         How the overlap changes with the displacement: 0 for constant, 1 for as much, -1 for minus as much.
     force, torque : float
         Friction without any load.
+    yokes : str
+        Parts in which the arms of a cross rub: ``I``, ``J`` or ``IJ``.
     """
 
     joint: int
@@ -49,6 +52,7 @@ class JointFriction(Numbered):
     growth: int
     force: float
     torque: float
+    yokes: str
 
 
 _ABOVE_ZERO = {
@@ -61,7 +65,6 @@ LEFT_OUT = ("MAX_STICTION_DEFORMATION", "INACTIVE")
 _NOT_READ = (
     "MAX_FRICTION_FORCE",
     "MAX_FRICTION_TORQUE",
-    "YOKE",
     "BRISTLE_STIFFNESS",
     "BRISTLE_DAMPING",
     "VISCOUS_DAMPING",
@@ -74,6 +77,7 @@ ARGUMENTS = (
     "OVERLAP_DELTA",
     "EFFECT",
     "INPUTS",
+    "YOKE",
     *LEFT_OUT,
     *_NOT_READ,
 )
@@ -98,6 +102,7 @@ def read_friction(statement: Statement, units: Units) -> JointFriction:
         _inputs(found), numbers["PIN_RADIUS"], numbers["BALL_RADIUS"], numbers["FRICTION_ARM"],
         numbers["BENDING_REACTION_ARM"], numbers["REACTION_ARM"], numbers["INITIAL_OVERLAP"],
         OVERLAP[_one_word(found, "OVERLAP_DELTA", tuple(OVERLAP))], force, torque,
+        YOKES[_one_word(found, "YOKE", tuple(YOKES))],
     )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from ..table import Table
 M = TypeVar("M", bound=MarkerReference)
 TURN = 2 * math.pi
 CLOSED = 1e-9
-"""Change of the radius in a full turn, over the radius, from which a cam counts as open; tells it from rounding."""
+"""Change in a full turn, over the largest radius, from which a cam counts as open; tells it from rounding."""
 
 
 class Curve(Joint, Generic[M]):
@@ -47,17 +47,7 @@ class Curve(Joint, Generic[M]):
     @field_validator("radius")
     @classmethod
     def _closed(cls, radius: Formula | Table | None) -> Formula | Table | None:
-        match radius:
-            case Table(ends="periodic", table=((first, _), *_, (last, _))) if abs(last - first - TURN) <= 1e-9 * TURN:
-                return radius
-            case Table(ends=ends, table=((first, _), *_, (last, _))):
-                raise ValueError(
-                    f"found a table with {ends} ends over {last - first:.9g} rad, expected a periodic one over a full "
-                    f"turn, {TURN:.9g} rad"
-                )
-            case Formula():
-                _refuse_open(radius)
-        return radius
+        return repeating(radius)
 
     @model_validator(mode="after")
     def _one_curve(self) -> Self:
@@ -88,15 +78,38 @@ class PointOnCurve(Curve[Marker]):
         return [e.distance(e.i.point, e.j.point) - e.radius(atan2(d.dot(e.j.normal), d.dot(e.j.axis)))]
 
 
-def _refuse_open(radius: Formula) -> None:
+def repeating(law: Formula | Table | None) -> Formula | Table | None:
+    """A law of the polar angle, which has to be the same a turn on.
+
+    Raises
+    ------
+    ValueError
+        When it is not.
+    """
+    match law:
+        case Table(ends="periodic", table=((first, _), *_, (last, _))) if abs(last - first - TURN) <= 1e-9 * TURN:
+            return law
+        case Table(ends=ends, table=((first, _), *_, (last, _))):
+            raise ValueError(
+                f"found a table with {ends} ends over {last - first:.9g} rad, expected a periodic one over a full "
+                f"turn, {TURN:.9g} rad"
+            )
+        case Formula():
+            _refuse_open(law)
+    return law
+
+
+def _refuse_open(law: Formula) -> None:
     """Refuse a formula of the polar angle that is another one turn on, or two turns back."""
-    for angle in np.linspace(-TURN, TURN, 50):
-        here = formula_value(radius, angle=angle)
+    angles = np.linspace(-TURN, TURN, 50)
+    values = [formula_value(law, angle=angle) for angle in angles]
+    size = max(map(abs, values))
+    for angle, here in zip(angles, values, strict=True):
         for turns in (-2, 1):
-            there = formula_value(radius, angle=angle + turns * TURN)
-            if abs(there - here) > CLOSED * abs(here):
+            there = formula_value(law, angle=angle + turns * TURN)
+            if abs(there - here) > CLOSED * size:
                 raise ValueError(
-                    f"found '{radius.text}', which is {here:.6g} at angle {angle:.6g} and {there:.6g} at "
+                    f"found '{law.text}', which is {here:.6g} at angle {angle:.6g} and {there:.6g} at "
                     f"{angle + turns * TURN:.6g}, expected a formula that repeats every turn (of sin(angle) and "
                     "cos(angle)), or a periodic table"
                 )

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from ...element import Symbolic
 from ...formula.field import FormulaOf
 from ...formula.formula import Formula
-from ...joints.point_on_curve import Curve
+from ...joints.point_on_curve import TURN, Curve, repeating
 from ...table import Table
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
@@ -23,7 +23,8 @@ class PointOnCurve(Curve[Marker]):
     direction theta from x; a slot ``y`` = Y(x) has y - Y(x) = 0, a cam ``radius`` = R(theta) has rho - R(theta) = 0, R
     repeating after every turn.  Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
-    A slot may leave the plane by ``z`` = Z(x), as a bent wire does; else z = 0.
+    A slot may leave the plane by ``z`` = Z(x), as a bent wire does, and a cam by ``height`` = H(theta), which repeats as its
+    radius does; else z = 0.
 
     The curve should have no breakpoints.  The reaction is across the curve, without friction, and may pull: the point
     cannot lift off.  This is Adams' PTCV.
@@ -33,24 +34,40 @@ class PointOnCurve(Curve[Marker]):
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
         *Curve.forms,
         {"y": {"table": [[0, 0], [1, 0.1], [2, 0]]}, "z": {"table": [[0, 0], [1, 0.2], [2, 0.1]]}},
+        {
+            "radius": {"table": [[0, 0.1], [3, 0.2], [TURN, 0.1]], "ends": "periodic"},
+            "height": {"table": [[0, 0], [2, 0.1], [TURN, 0]], "ends": "periodic"},
+        },
     )
 
     z: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
         None, description="Z(x), m, of a slot: a formula of x or a table; in the plane without it"
     )
 
+    height: Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)] | None = (
+        Field(None, description="H(theta), m, of a cam: as its radius; in the plane without it")
+    )
+
+    @field_validator("height")
+    @classmethod
+    def _closed_in_height(cls, height: Formula | Table | None) -> Formula | Table | None:
+        return repeating(height)
+
     @model_validator(mode="after")
-    def _of_a_slot(self) -> Self:
+    def _of_one_kind(self) -> Self:
         if self.z is not None and self.y is None:
             raise ValueError("found z of a curve by its radius, expected it with y")
+        if self.height is not None and self.radius is None:
+            raise ValueError("found height of a slot, expected it with a radius")
         return self
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        """y - Y(x) of a slot, rho - R(theta) of a cam, and the distance from the plane."""
+        """y - Y(x) of a slot, rho - R(theta) of a cam, and what is beside the way out of the plane."""
         x, y, z = e.named([along(e.i, e.j, axis) for axis in (e.j.x, e.j.y, e.j.z)])
         if e.y is not None:
             return [y - e.y(x), z if e.z is None else z - e.z(x)]
         from sympy import atan2, sqrt
 
-        return [sqrt(x**2 + y**2) - e.radius(atan2(y, x)), z]
+        angle = e.named(atan2(y, x))
+        return [sqrt(x**2 + y**2) - e.radius(angle), z if e.height is None else z - e.height(angle)]
