@@ -26,9 +26,10 @@ class BesidePeers:
 
     def contestants(self) -> list[Contestant]:
         """This package's, without the yardsticks, and other tools."""
-        assert self.problem.task is not None
+        given = self.problem.task or self.problem.tree
+        assert given is not None
         own = [contestant for contestant in self.problem.contestants() if not contestant.peer]
-        return [*own, *peers(self.problem.task())]
+        return [*own, *peers(given())]
 
     def measured(self) -> list[Row]:
         """All contestants at all their settings."""

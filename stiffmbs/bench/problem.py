@@ -9,6 +9,7 @@ import numpy as np
 
 from .benchmark import Row
 from .contestant import Contestant
+from .peers.trees.tree import Tree
 from .sweep import Point, at_target, points
 from .task import Task
 
@@ -34,7 +35,9 @@ class Problem:
     rounds : int
         How often each contestant is timed at each tolerance.
     task : callable, optional
-        The problem as it is put to other tools.
+        A planar problem as it is put to other tools.
+    tree : callable, optional
+        The same of links on hinges in space.
     """
 
     name: str
@@ -44,6 +47,7 @@ class Problem:
     per_decade: int = 4
     rounds: int = 9
     task: Callable[[], Task] | None = None
+    tree: Callable[[], Tree] | None = None
 
     def measured(self, target: float = 1e-6) -> list[Row]:
         """All contestants at tolerances whose errors are about a target.

@@ -96,7 +96,8 @@ def _over_decades(chosen: Iterable[Benchmark], peers: bool) -> list[Benchmark]:
     from ..bench.peers import missing
     from ..bench.problem import Problem
 
-    problems = [benchmark for benchmark in chosen if isinstance(benchmark, Problem) and benchmark.task is not None]
+    known = [benchmark for benchmark in chosen if isinstance(benchmark, Problem)]
+    problems = [problem for problem in known if problem.task or (peers and problem.tree)]
     if not problems:
         _refuse("found no problem among these that other tools have a task in, expected one such as cart_pendulum")
     if not peers:

@@ -11,10 +11,12 @@ from collections.abc import Iterator
 
 from ..contestant import Contestant
 from ..task import Task
+from .trees.tree import Tree
 
-TOOLS = ("scipy", "casadi", "exudyn", "chapter")
-PACKAGES = ("exudyn", "casadi")
-"""Of the extra ``peers``: what this package itself does not need."""
+IN_THE_PLANE = ("scipy", "casadi", "exudyn", "chapter")
+TREES_IN_SPACE = ("exudyn", "mujoco", "pinocchio")
+PACKAGES = ("exudyn", "casadi", "mujoco", "pinocchio")
+"""Of the extra ``peers``, as they are imported: what this package itself does not need; Pinocchio is ``pin`` on PyPI."""
 
 
 def missing() -> tuple[str, ...]:
@@ -22,8 +24,9 @@ def missing() -> tuple[str, ...]:
     return tuple(package for package in PACKAGES if importlib.util.find_spec(package) is None)
 
 
-def peers(task: Task) -> Iterator[Contestant]:
+def peers(task: Task | Tree) -> Iterator[Contestant]:
     """All tools that are installed, on a problem."""
-    for name in TOOLS:
+    package, tools = (f"{__name__}.trees", TREES_IN_SPACE) if isinstance(task, Tree) else (__name__, IN_THE_PLANE)
+    for name in tools:
         if name not in missing():
-            yield from importlib.import_module(f"{__name__}.{name}").contestants(task)
+            yield from importlib.import_module(f"{package}.{name}").contestants(task)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import EXPLICIT, address, packed
+from ...compile.machine.layout import address, packed
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
@@ -14,6 +14,7 @@ from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog, LongSteps
 from ..events.step_bound import StepBound
 from ..initial import InitialValues
+from ..native.tables.steps import EXPLICIT
 from ..trajectory import Grid, Rows
 from .routines import END_AT_EVENT
 from .scheme import Scheme

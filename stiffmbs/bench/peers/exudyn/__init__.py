@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -31,12 +31,21 @@ THIRDS = 3
 """Parts of which the half car's output spacing is a multiple meet the breakpoints of its road."""
 
 
+class Built(Protocol):
+    """A mechanism built of Exudyn's items: its system, and what that has recorded."""
+
+    mbs: Any
+
+    def rows(self) -> tuple[np.ndarray, np.ndarray]:
+        """Recorded times, and what is compared at them."""
+
+
 def contestants(task: Task) -> Iterator[Contestant]:
     """Implicit steps; explicit ones where no constraints are left."""
     m, kinds = mechanism_of(task.scene), module().DynamicSolverType
     spacing = float(task.times[1] - task.times[0])
 
-    def contestant(name: str, build: Callable[[], Bodies | Tree], method: Any, parts: tuple[float, ...]) -> Contestant:
+    def contestant(name: str, build: Callable[[], Built], method: Any, parts: tuple[float, ...]) -> Contestant:
         newton = WITH_JOINTS if m.pins else WITHOUT
         steps = tuple(spacing / part for part in parts)
         return Contestant(
@@ -53,7 +62,7 @@ def contestants(task: Task) -> Iterator[Contestant]:
             yield contestant(f"Exudyn {name}", lambda: Bodies(m), getattr(kinds, name), explicit)
 
 
-def marching(built: Bodies | Tree, method: Any, times: np.ndarray, step: float, newton: tuple[float, float]) -> Solve:
+def marching(built: Built, method: Any, times: np.ndarray, step: float, newton: tuple[float, float]) -> Solve:
     """Steps of one length; rows at the output times that they meet, nan at the others."""
     exu, duration = module(), float(times[-1] - times[0])
     settings = exu.SimulationSettings()
