@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from ..layout import CALL
 from .access import call_kernel, compiled, floats, ints, shifted, state_view
 from .orientation import TURN_STRIDE, share_orientation
+from .tables import CALL
 
 POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH = range(6)
 CALL_WIDTH = len(CALL)
