@@ -51,7 +51,7 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
-    from ..describe.scene import read_scene
+    from ..describe.reading import read_scene
 
     file = None if str(path) == STANDARD_INPUT else Path(path)
     return read_scene(file_text(path), changes, source_name(path), file)

@@ -79,6 +79,14 @@ class InitialValues:
         )
 
 
+def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
+    """q' at consistent values, which the dynamics' state becomes: rates of states of the user's own follow from nothing that was there before."""
+    state = dynamics.state
+    state.q[:], state.u[:], state.lam[:] = start.q, start.u, start.lam
+    state.evaluate("acceleration", t)
+    return dynamics.position_rates(start.q, start.u)
+
+
 def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
     """Make the described start consistent.
 

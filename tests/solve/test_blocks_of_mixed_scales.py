@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stiffmbs.bench.problems.linear_algebra import with_pivots
-from stiffmbs.describe.scene import read_scene
+from stiffmbs.describe.reading import read_scene
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.ida.block_lu import BlockLU
 from stiffmbs.solve.native.tables.linear import BLOCK_LU
