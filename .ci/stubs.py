@@ -46,7 +46,7 @@ from .describe.model import Model as Model
 from .describe.own_elements import register as register
 from .describe.python_function import PythonFunction as PythonFunction
 from .describe.scene import Scene as Scene
-from .describe.scene import read_scene as read_scene
+from .describe.reading import read_scene as read_scene
 from .describe.schema import scene_schema as scene_schema
 from .describe.settings import RunSettings as RunSettings
 from .describe.settings import SteadyMotion as SteadyMotion

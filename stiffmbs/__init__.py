@@ -26,7 +26,7 @@ _LATER = {
     "LinearSystem": ".describe.states.linear_system", "Marker": ".describe.marker", "Model": _MODEL, "PID": ".describe.states.linear_system",
     "PythonFunction": ".describe.python_function", "RunSettings": ".describe.settings", "Scene": ".describe.scene", "State": ".describe.states.state",
     "SteadyMotion": ".describe.settings", "Table": ".describe.table", "TransferFunction": ".describe.states.linear_system",
-    "ground": ".describe.marker:GROUND", "load_scene": ".jobs.load_scene", "read_scene": ".describe.scene", "register": ".describe.own_elements",
+    "ground": ".describe.marker:GROUND", "load_scene": ".jobs.load_scene", "read_scene": ".describe.reading", "register": ".describe.own_elements",
     "scene_schema": ".describe.schema",
     "Report": ".jobs.check", "Solution": ".results.solution", "check": ".jobs.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",

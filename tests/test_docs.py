@@ -20,7 +20,8 @@ import stiffmbs.spatial
 from stiffmbs.commands.main import main
 from stiffmbs.describe import model
 from stiffmbs.describe.files.expand import repeat_entries
-from stiffmbs.describe.scene import SECTIONS, PlanarScene
+from stiffmbs.describe.reading import SECTIONS
+from stiffmbs.describe.scene import PlanarScene
 from stiffmbs.describe.spatial import model as spatial_model
 
 HERE = Path(__file__).parent.parent

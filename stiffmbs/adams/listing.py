@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -12,7 +12,7 @@ from ..describe.files.text_file import checked, file_text, source_name
 from ..errors import InputError
 from .listed_arguments import arguments_of, unread_functions
 from .load import ENCODING, command_file
-from .statements.changes import alters
+from .statements.changes import alters, key_of
 from .statements.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .statements.dataset import all_statements, faults_of
 from .statements.fault import DatasetFault
@@ -37,7 +37,7 @@ class ListedStatement:
     fate : str
         ``read``, ``left out`` or ``refused``.
     reason : str
-        Why it is left out or refused.
+        Why it is left out or refused, or what it is read as.
     argument : str
         Which of its arguments, or which function in them, this is about; empty for the whole statement.
     arguments : tuple of str
@@ -76,14 +76,24 @@ def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
     text = checked(file_text(path, ENCODING), source_name(path))
     faults = {fault.line: fault.reason for fault in faults_of(text)}
     _, found, _ = all_statements(text)
-    listed = [entry for one in found for entry in _statement(one, source_name(path), faults)]
+    solids = _solids(found)
+    listed = [entry for one in found for entry in _statement(one, source_name(path), faults, solids)]
     beside = command_file(path)
     if beside is not None:
         listed += _commands(file_text(beside, ENCODING), beside.name)
     return tuple(listed)
 
 
-def _statement(statement: Statement, file: str, faults: dict[int, str]) -> Iterator[ListedStatement]:
+def _solids(found: Iterable[Statement]) -> set[tuple[str, int]]:
+    """The GRAPHICS that contacts are between, by name and number."""
+    contacts = (arguments_of(one, "CONTACT") for one in found if keyword(one.word) == "CONTACT")
+    named = (value for given in contacts for side in ("IGEOM", "JGEOM") for value in given.get(side, (0, ()))[1])
+    return {("GRAPHICS", int(value)) for value in named if value.strip().isdecimal()}
+
+
+def _statement(
+    statement: Statement, file: str, faults: dict[int, str], solids: set[tuple[str, int]]
+) -> Iterator[ListedStatement]:
     name = keyword(statement.word)
     label = f"{name or statement.word}/{statement.ident}".rstrip("/")
     one = partial(ListedStatement, file, statement.line, label)
@@ -91,6 +101,8 @@ def _statement(statement: Statement, file: str, faults: dict[int, str]) -> Itera
         yield one(NOT_READ, "found a statement that is not known")
     elif name in REFUSED:
         yield one(NOT_READ, REFUSED[name])
+    elif key_of(statement) in solids:
+        yield one(READ, "the solid of a CONTACT")
     elif name in LEFT_OUT:
         yield one(OMITTED, LEFT_OUT[name])
     elif faults_here := [faults[line] for line in sorted(faults) if line in _lines(statement)]:

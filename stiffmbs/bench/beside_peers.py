@@ -26,7 +26,7 @@ class BesidePeers:
 
     def contestants(self) -> list[Contestant]:
         """This package's, without the yardsticks, and other tools."""
-        given = self.problem.task or self.problem.tree
+        given = self.problem.task or self.problem.in_space
         assert given is not None
         own = [contestant for contestant in self.problem.contestants() if not contestant.peer]
         return [*own, *peers(given())]

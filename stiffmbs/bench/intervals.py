@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..describe.scene import read_scene
+from ..describe.reading import read_scene
 from ..jobs.run import run
 from ..studies.fit import fit
 from ..studies.variation import Range

@@ -9,6 +9,7 @@ import numpy as np
 
 from .benchmark import Row
 from .contestant import Contestant
+from .peers.mounted.mounted import Shaken
 from .peers.trees.tree import Tree
 from .sweep import Point, at_target, points
 from .task import Task
@@ -36,8 +37,8 @@ class Problem:
         How often each contestant is timed at each tolerance.
     task : callable, optional
         A planar problem as it is put to other tools.
-    tree : callable, optional
-        The same of links on hinges in space.
+    in_space : callable, optional
+        The same of links on hinges, or of bodies on bushings, in space.
     """
 
     name: str
@@ -47,7 +48,7 @@ class Problem:
     per_decade: int = 4
     rounds: int = 9
     task: Callable[[], Task] | None = None
-    tree: Callable[[], Tree] | None = None
+    in_space: Callable[[], Tree | Shaken] | None = None
 
     def measured(self, target: float = 1e-6) -> list[Row]:
         """All contestants at tolerances whose errors are about a target.

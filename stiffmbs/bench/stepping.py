@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..compile.machine.routines import Routine
-from ..describe.scene import read_scene
+from ..describe.reading import read_scene
 from ..errors import SolverError
 from ..jobs.renumber import changes_of_numbers
 from ..jobs.run import prepare

@@ -97,7 +97,7 @@ def _over_decades(chosen: Iterable[Benchmark], peers: bool) -> list[Benchmark]:
     from ..bench.problem import Problem
 
     known = [benchmark for benchmark in chosen if isinstance(benchmark, Problem)]
-    problems = [problem for problem in known if problem.task or (peers and problem.tree)]
+    problems = [problem for problem in known if problem.task or (peers and problem.in_space)]
     if not problems:
         _refuse("found no problem among these that other tools have a task in, expected one such as cart_pendulum")
     if not peers:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
-from ..describe.scene import read_scene
+from ..describe.reading import read_scene
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..describe.units.units import Dimension, Quantity, in_text
 from ..errors import AssemblyError, InputError, SolverError

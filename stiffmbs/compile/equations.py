@@ -8,7 +8,8 @@ import numpy as np
 
 from .coordinates import FIXED, Coordinates, all_independent
 from .formulation import Formulation
-from .machine.layout import EQUATIONS, packed
+from .machine.layout import packed
+from .machine.native.tables import EQUATIONS
 from .system import System, Term
 from .terms import TERM_SETS
 

@@ -7,7 +7,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from .machine.layout import CALL, STATE, address, packed
+from .machine.layout import address, packed
+from .machine.native.tables import CALL, STATE
 from .machine.routines import TERMS
 from .system import System
 from .terms import TERM_AXES, TERM_SETS
@@ -32,7 +33,7 @@ class State:
     values : dict of str to ndarray
         For each loaded term set the values that its kernels write, then the system's constants.
     table : ndarray of int
-        Addresses for compiled code (`stiffmbs.compile.machine.layout.STATE`).
+        Addresses for compiled code (`stiffmbs.compile.machine.native.tables.STATE`).
     """
 
     def __init__(self, system: System) -> None:

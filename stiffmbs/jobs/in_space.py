@@ -11,7 +11,7 @@ from ..describe.files.scene_text import scene_text
 from ..describe.files.text_file import source_name
 from ..describe.model import Model as PlanarModel
 from ..describe.model import PlanarData
-from ..describe.scene import made_scene
+from ..describe.reading import made_scene
 from ..describe.spatial.embedding.markers import Written
 from ..describe.spatial.embedding.scene import scene_in_space
 from ..describe.spatial.model import Model

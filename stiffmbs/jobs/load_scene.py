@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
+from ..errors import InputError
 
 if TYPE_CHECKING:
     from ..describe.scene import Scene
@@ -38,6 +39,9 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     InputError
         When the file cannot be read or is no valid scene; names the file, the line and the path in it.
     """
+    for change in changes:
+        if not (isinstance(change, tuple | list) and len(change) == 2 and isinstance(change[0], str)):
+            raise InputError(f"changes: found {change!r}, expected pairs such as ('bodies.cart.mass', '12 kg')")
     suffix = Path(path).suffix.lower()
     if suffix in ROBOTS:
         from ..robots.load import load_robot
@@ -47,7 +51,7 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
-    from ..describe.scene import read_scene
+    from ..describe.reading import read_scene
 
     file = None if str(path) == STANDARD_INPUT else Path(path)
     return read_scene(file_text(path), changes, source_name(path), file)

@@ -126,6 +126,7 @@ def number_plan(job: Job, forces: OtherForces, values: Sequence[Any]) -> NumberP
     known = [each for each in numbers if each is not None]
     if len(known) < len(numbers):
         return None
+    record.close()
     of_inputs = any(may_be_input(scene.forces[name]) for name in forces.affected)
     return NumberPlan(replace(job, data=scene), forces, record, like, tuple(known), of_inputs)
 

@@ -12,6 +12,7 @@ from ..compile.group import Group
 from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..describe.element import Element
+from ..describe.files.followed import NotFollowed
 from ..describe.formula.formula import Formula
 from ..describe.formula.nodes import TIME
 from ..describe.marker import GROUND
@@ -88,8 +89,11 @@ def renumberable(job: Job) -> bool:
 
 
 def _moved(before: Element, after: Element) -> bool:
-    """Whether a force acts at other markers."""
-    return list(before.markers()) != list(after.markers())
+    """Whether a force acts at other markers, or may: their places are followed (`stiffmbs.describe.files.followed`)."""
+    try:
+        return list(before.markers()) != list(after.markers())
+    except NotFollowed:
+        return True
 
 
 def _same_structure(before: ModelData, after: ModelData) -> bool:

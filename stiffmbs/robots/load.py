@@ -9,7 +9,8 @@ from typing import Any
 
 from ..describe.files.scene_text import scene_text
 from ..describe.files.text_file import file_text, source_name
-from ..describe.scene import Scene, made_scene
+from ..describe.reading import made_scene
+from ..describe.scene import Scene
 from ..errors import InputError
 from .robot import Robot, RobotFault
 from .scene.scene import scene

@@ -29,7 +29,7 @@ from .ida.engine import Engine, Reached
 from .ida.libraries import available
 from .ida.native_engine import NativeEngine
 from .ida.sundae import SundaeEngine
-from .initial import InitialValues
+from .initial import InitialValues, rates_of
 from .solver import Traits
 from .step_logging import is_logged, log_step
 from .suspect import suspect
@@ -268,9 +268,8 @@ class Integrator:
     def _begin(self, start: InitialValues, t: float) -> None:
         equations, at = self.equations, self.equations.at
         state, coordinates = self.dynamics.state, equations.coordinates
-        state.q[:], state.u[:], state.a[:] = start.q, start.u, start.acceleration
-        state.lam[:], state.mu[:] = start.lam, 0.0
-        rates = self.dynamics.position_rates(start.q, start.u)
+        rates = rates_of(self.dynamics, t, start)
+        state.a[:], state.mu[:] = start.acceleration, 0.0
         equations.start_from(start.q)
         y, yp = np.zeros(equations.n), np.zeros(equations.n)
         y[equations.independent] = coordinates.state(start.q, start.u)

@@ -12,12 +12,13 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
-from ..compile.machine.layout import DYNAMICS, address, addresses, packed
+from ..compile.machine.layout import address, addresses, packed
 from ..compile.machine.routines import Routine, together
 from ..compile.state import State
 from ..compile.system import System
 from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
+from .native.tables.linear import DYNAMICS
 from .storage import all_finite, allocated, blocks, release
 
 T = TypeVar("T")

@@ -79,6 +79,15 @@ class InitialValues:
         )
 
 
+def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
+    """q' at consistent values, which the dynamics' state becomes: rates of counters and of states of the user's own are computed there."""
+    state, system = dynamics.state, dynamics.system
+    state.q[:], state.u[:], state.lam[:] = start.q, start.u, start.lam
+    if system.n_q > system.n_pose:
+        state.evaluate("acceleration", t)
+    return dynamics.position_rates(start.q, start.u)
+
+
 def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
     """Make the described start consistent.
 

@@ -13,7 +13,8 @@ from ..describe.files.followed import NotFollowed
 from ..describe.files.other_forces import OtherForces
 from ..describe.files.unchanged import Unchanged
 from ..describe.files.written_scene import WrittenScene
-from ..describe.scene import Scene, made_scene
+from ..describe.reading import made_scene
+from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
 from ..jobs.number_plan import NumberPlan, number_plan
@@ -209,7 +210,7 @@ def written_scene(model: Any) -> WrittenScene:
         When the file cannot be read, the scene was changed since, or the model cannot be written as a scene.
     """
     from ..describe.model_text import model_text
-    from ..describe.scene import read_scene
+    from ..describe.reading import read_scene
     from ..jobs.run import data_of
 
     data = data_of(model)

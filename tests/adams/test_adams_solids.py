@@ -181,3 +181,11 @@ def test_two_balls_rub_as_they_collide():
     ]
     np.testing.assert_allclose([found[name][-1] for name in names], own, atol=2e-5)
     assert abs(own[9]) > 1
+
+
+def test_a_solid_of_a_contact_is_read_and_any_other_graphics_are_left_out(tmp_path):
+    path = tmp_path / "ball.adm"
+    path.write_text(BALLS.replace("END", "GRAPHICS/3, CYLINDER, CM=21, LENGTH=0.1, RADIUS=0.1\nEND"))
+    found = {entry.statement: entry.fate for entry in stiffmbs.listed_statements(path)}
+    assert [found[f"GRAPHICS/{k}"] for k in (1, 2, 3)] == ["read", "read", "left out"]
+    assert "GRAPHICS (line 11) is left out: graphics" in stiffmbs.load_scene(path).notes

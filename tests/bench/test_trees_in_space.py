@@ -20,7 +20,7 @@ STEP, RTOL = 1e-3, 1e-9
 def test_all_tools_solve_the_same_problem(name):
     problem = PROBLEMS[name]
     reference = problem.reference()
-    for peer in peers(problem.tree()):
+    for peer in peers(problem.in_space()):
         setting = max((step for step in peer.settings if step <= STEP), default=RTOL)
         assert error_of(peer.at(setting)(), reference) < 1e-6, peer.solver
     for own in problem.contestants():
@@ -30,7 +30,7 @@ def test_all_tools_solve_the_same_problem(name):
 @pytest.mark.skipif("mujoco" in missing(), reason="of the extra robots")
 def test_long_steps_pass_over_output_times():
     problem = PROBLEMS["tilted_chain_10"]
-    (mujoco,) = (peer for peer in peers(problem.tree()) if peer.solver == "MuJoCo RK4")
+    (mujoco,) = (peer for peer in peers(problem.in_space()) if peer.solver == "MuJoCo RK4")
     found = mujoco.at(0.02)()  # two times the spacing
     assert np.isnan(found[1]).all() and np.isfinite(found[2]).all()
 

@@ -212,7 +212,7 @@ def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch, el
 def test_sources_do_not_depend_on_the_order_of_sets():
     """Python orders sets by a seed of the process; sums in kernels must not follow it, or numbers change with a recompilation."""
     script = (
-        "from stiffmbs.describe.scene import read_scene\n"
+        "from stiffmbs.describe.reading import read_scene\n"
         "from stiffmbs.compile.compile_model import compile_model\n"
         "from stiffmbs.compile.record import _derived\n"
         "scene = read_scene('bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}\\n"

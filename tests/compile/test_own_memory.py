@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stiffmbs.compile.machine import own_memory
-from stiffmbs.compile.machine.layout import FACTORS
+from stiffmbs.compile.machine.native.tables import FACTORS
 from stiffmbs.compile.machine.own_memory import packed_with_memory
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.paired_columns import PairedColumns

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.describe.scene import read_scene
+from stiffmbs.describe.reading import read_scene
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.trajectory import Outcome
 

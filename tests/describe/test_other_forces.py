@@ -7,7 +7,7 @@ import pytest
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.describe.files.other_forces import OtherForces
 from stiffmbs.describe.files.unchanged import Unchanged
-from stiffmbs.describe.scene import made_scene, read_scene
+from stiffmbs.describe.reading import made_scene, read_scene
 from stiffmbs.studies.case_solver import written_scene
 
 SCENE = """

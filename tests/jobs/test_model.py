@@ -192,3 +192,9 @@ def test_a_model_is_compiled_as_its_data_are():
     system, of_data = stiffmbs.compile_model(cart_pendulum()), stiffmbs.compile_model(cart_pendulum().data())
     assert system.bodies == of_data.bodies == ("cart", "bar")
     assert system.equations == of_data.equations
+
+
+@pytest.mark.parametrize("change", ["bodies.bar.mass=2", ("bodies.bar.mass",), (1, "2")])
+def test_changes_of_a_scene_that_are_no_pairs_are_refused(change):
+    with pytest.raises(stiffmbs.InputError, match="expected pairs such as"):
+        stiffmbs.load_scene("examples/cart_pendulum.yaml", [change])

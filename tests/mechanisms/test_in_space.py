@@ -9,7 +9,7 @@ from stiffmbs import InputError, spatial
 from stiffmbs.commands.main import main
 from stiffmbs.describe.element import Element
 from stiffmbs.describe.model import FORCES, JOINTS
-from stiffmbs.describe.scene import read_scene
+from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial import model as spatial_model
 from stiffmbs.jobs.run import prepare
 

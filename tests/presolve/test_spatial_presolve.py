@@ -6,7 +6,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import stiffmbs
-from stiffmbs.describe.scene import read_scene
+from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial.orientation import matrix
 from stiffmbs.jobs.run import prepare
 from stiffmbs.spatial import (

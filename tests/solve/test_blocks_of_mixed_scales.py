@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from stiffmbs.bench.problems.linear_algebra import with_pivots
-from stiffmbs.compile.machine.layout import BLOCK_LU
-from stiffmbs.describe.scene import read_scene
+from stiffmbs.describe.reading import read_scene
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.ida.block_lu import BlockLU
+from stiffmbs.solve.native.tables.linear import BLOCK_LU
 
 
 def links(random, n):

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.compile.machine.layout import BLOCK_LU, PAIRED_COLUMNS
 from stiffmbs.compile.machine.routines import Routine
 from stiffmbs.solve.ida.block_lu import COORDINATE, MULTIPLIER, BlockLU
 from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.paired_columns import PairedColumns
 from stiffmbs.solve.linear.elimination_order import EliminationOrder
+from stiffmbs.solve.native.tables.linear import BLOCK_LU, PAIRED_COLUMNS
 
 SAME_ADDRESS = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p)(lambda vector: vector)
 """In place of N_VGetArrayPointer: the vectors here are arrays."""

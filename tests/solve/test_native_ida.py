@@ -25,7 +25,7 @@ from stiffmbs.solve.ida.ordering import narrowed
 from stiffmbs.solve.ida.paired_columns import PairedColumns
 from stiffmbs.solve.ida.status import Status
 from stiffmbs.solve.ida.sundae import DENSE_UP_TO, SundaeEngine
-from stiffmbs.solve.linear.elimination_order import elimination_order
+from stiffmbs.solve.linear.elimination_order import EliminationOrder, elimination_order
 
 
 class Problem:
@@ -170,6 +170,17 @@ def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, 
     assert isinstance(matrix, Banded)
     assert (matrix.rows.size, matrix.lower) == (chain.equations.pattern[0].size, 10)
     assert isinstance(chosen(squeezer.equations)[1], Dense)
+
+
+def test_blocks_of_a_long_chain_come_from_memory():
+    """Per node they cost more than where a cache holds them all, and entry by entry the chain is solved faster."""
+
+    def cost(rods):
+        n, nodes = 10 * rods, 3 * rods
+        order = EliminationOrder(np.arange(n), fill=10 * n, updates=100 * n)
+        return choice.block_cost(n, order, nodes) / choice.fixed_cost(n, order, choice.FIXED)
+
+    assert cost(100) < 1 < cost(3000)
 
 
 def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):

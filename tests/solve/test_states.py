@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Drive, Marker, Model, Prismatic, Revolute, State
+from stiffmbs.jobs.run import prepare
 
 STIFFNESS, DELAY = 100.0, 0.1
 SOLVERS = [
@@ -166,6 +167,18 @@ def test_a_breakpoint_of_a_rate_is_located(solver):
     bend = 0.5 / 3
     exact = np.where(solution.time < bend, 1 - 3 * solution.time, 0.5 - (solution.time - bend))
     assert solution["x"] == pytest.approx(exact, abs=5e-6)
+
+
+@pytest.mark.parametrize("how", [{"solver": "bdf"}, {"solver": "projected"}, {"solver": "auto"}, {"solver": "projected", "scheme": "rk4", "step": 0.01}])  # fmt: skip
+def test_a_run_does_not_depend_on_the_run_before(how):
+    """A state that is fast at the start and slow at the end: its first rate is that of the start, also in the second run."""
+    model = Model("a delayed body")
+    model.add("cart", Body(mass=1, inertia=1, velocity=(1, 0)))
+    model.add("w", State(rate="cos(3*cart.x)*cart.vx", start=0))
+    model.add("push", AppliedForce(i="cart", force=("-w - 20*cart.x", 0)))
+    job = prepare(model, duration=1.0, rtol=1e-6, **how)
+    first, second = job.integrate(), job.integrate()
+    assert np.array_equal(first.q, second.q) and np.array_equal(first.u, second.u)
 
 
 def test_a_run_goes_on_from_a_saved_state():

@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import sweep
+from stiffmbs.describe.files.followed import NotFollowed
 from stiffmbs.studies.case_solver import CaseSolver
 from stiffmbs.studies.sweep import study_of
 
@@ -77,6 +78,15 @@ def test_what_a_scene_refuses_is_refused_in_its_words(varied, sentence):
         solver.scene(wrong)
     assert row.status == "error" and sentence in row.message
     assert solver.row(0, right).values[:3] == solver_of(varied)[0].row(0, right).values[:3]
+
+
+def test_numbers_that_are_followed_tell_nothing_once_the_plan_is_made():
+    solver, (values, *_) = solver_of({"k": [100.0, 400.0]})
+    solver.row(0, values)
+    stiffness = solver._plan.job.data.forces["spring"].stiffness
+    for use in (lambda: stiffness < 1.0, lambda: stiffness * 2.0, lambda: float(stiffness)):
+        with pytest.raises(NotFollowed):
+            use()
 
 
 def test_a_planned_case_leaves_nothing_behind_for_one_that_is_read():

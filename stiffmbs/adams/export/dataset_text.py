@@ -8,6 +8,7 @@ from typing import Any
 from ...describe.scene import Scene
 from ...describe.spatial.model import SpatialData
 from ...errors import InputError
+from .curves import touching
 from .forces import Forces
 from .formulas import Functions
 from .joints import Joints, reactions
@@ -33,7 +34,7 @@ def dataset_text(scene: SpatialData, source: str = "scene") -> str:
     InputError
         Where the scene holds what Adams/Solver has no statement for; names all such elements.
     """
-    numbering, names = Numbering(scene), state_names(scene)
+    numbering, names = Numbering(scene, touching(scene)), state_names(scene)
     functions = Functions(numbering, names, reactions(scene))
     joints, forces = Joints(scene, numbering, functions), Forces(numbering, functions)
     refused: list[str] = []
@@ -82,5 +83,6 @@ def _each(
         except Refusal as refusal:
             refused.append(f"{section}.{name}: {refusal}")
             continue
-        yield f"! adams_view_name='{name}'"
+        if text:
+            yield f"! adams_view_name='{name}'"
         yield from text

@@ -9,11 +9,15 @@ from ...describe.element import Joint, JointName
 from ...describe.joints.constraint_equation import ConstraintEquation
 from ...describe.joints.coupler import Coupler
 from ...describe.joints.drive import Drive
+from ...describe.joints.point_on_curve import Curve
 from ...describe.joints.velocity_equation import VelocityEquation
+from ...describe.spatial.joints.parallel import Parallel
 from ...describe.spatial.joints.shared import Distance
+from ...describe.spatial.joints.tangent_to_curve import TangentToCurve
 from ...describe.spatial.joints.thread import Thread
 from ...describe.spatial.model import SpatialData
 from ..scene.joints import KINDS
+from .curves import Curves
 from .formulas import Functions
 from .numbering import Numbering
 from .refusal import Refusal
@@ -52,6 +56,7 @@ class Joints:
         self._model, self._numbering, self._functions = model, numbering, functions
         self._numbers = {name: k for k, name in enumerate(_plain(model), 1)}
         self._others = 0
+        self._curves = Curves(model, numbering)
 
     def statements(self, name: str, joint: Joint) -> Iterator[str]:
         """What a joint becomes.
@@ -76,6 +81,15 @@ class Joints:
             raise Refusal(f"found a joint of the type {joint.kind}, expected one that Adams has")
         kind = TYPES[joint.kind]
         yield statement("JPRIM" if kind in PRIMITIVES else "JOINT", self._numbers[name], kind, *self._ends(joint))
+
+    @_made.register
+    def _parallel(self, joint: Parallel, name: str) -> Iterator[str]:
+        if not self._curves.is_level(name):
+            yield statement("JPRIM", self._numbers[name], "PARALLEL_AXES", *self._ends(joint))
+
+    @_made.register
+    def _on_curve(self, joint: Curve, name: str) -> Iterator[str]:
+        yield from self._curves.pair(name) if isinstance(joint, TangentToCurve) else self._curves.point(joint)
 
     @_made.register
     def _thread(self, joint: Thread, name: str) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -27,11 +27,14 @@ class Numbering:
     ----------
     model : SpatialData
         The scene.
+    left_out : collection of str
+        Bodies that are no parts of the dataset.
     """
 
-    def __init__(self, model: SpatialData) -> None:
-        self._model = model
-        self.parts = {GROUND: GROUND_PART} | {name: k for k, name in enumerate(model.bodies, GROUND_PART + 1)}
+    def __init__(self, model: SpatialData, left_out: Collection[str] = ()) -> None:
+        self._model, self._left_out = model, left_out
+        parts = [GROUND, *(name for name in model.bodies if name not in left_out)]
+        self.parts = {name: k for k, name in enumerate(parts, GROUND_PART)}
         self._markers: dict[tuple[str, tuple[float, ...], tuple[float, ...]], int] = {}
         self._floating: dict[str, int] = {}
         self._splines: dict[str, tuple[int, Table]] = {}
@@ -90,6 +93,8 @@ class Numbering:
         yield statement("PART", GROUND_PART, "GROUND")
         yield from self._of(GROUND)
         for name, body in self._model.bodies.items():
+            if name in self._left_out:
+                continue
             centre = self.center(name)
             yield f"! adams_view_name='{name}'"
             yield statement("PART", self.parts[name], *_part(body, centre, moving))

@@ -38,7 +38,7 @@ RUN = {"duration": 5, "output": 0.01}
 
 
 def scene(dataset: Dataset) -> dict[str, Any]:
-    """The scene of a dataset, as `stiffmbs.describe.scene.read_scene` takes it.
+    """The scene of a dataset, as `stiffmbs.describe.reading.read_scene` takes it.
 
     Raises
     ------

@@ -146,7 +146,9 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
         raise InputError("; ".join([unread, *map(str, faults[:MOST_LISTED])]))
     raise_all(faults)
     graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
-    notes = tuple(_notes(named, ended, title is None))
+    solids = {number for contact in data.get("CONTACT", {}).values() for number in contact.shapes}
+    drawn = [(name, one) for name, one in named if name != "GRAPHICS" or key_of(one)[1] not in solids]
+    notes = tuple(_notes(drawn, ended, title is None))
     return Dataset(title or "", units, gravity, data, notes, frozenset(changes.inactive), graphics)
 
 

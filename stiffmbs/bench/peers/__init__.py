@@ -11,10 +11,12 @@ from collections.abc import Iterator
 
 from ..contestant import Contestant
 from ..task import Task
+from .mounted.mounted import Shaken
 from .trees.tree import Tree
 
 IN_THE_PLANE = ("scipy", "casadi", "exudyn", "chapter")
 TREES_IN_SPACE = ("exudyn", "mujoco", "pinocchio")
+ON_BUSHINGS = ("casadi",)
 PACKAGES = ("exudyn", "casadi", "mujoco", "pinocchio")
 """Of the extra ``peers``, as they are imported: what this package itself does not need; Pinocchio is ``pin`` on PyPI."""
 
@@ -24,9 +26,18 @@ def missing() -> tuple[str, ...]:
     return tuple(package for package in PACKAGES if importlib.util.find_spec(package) is None)
 
 
-def peers(task: Task | Tree) -> Iterator[Contestant]:
+def peers(task: Task | Tree | Shaken) -> Iterator[Contestant]:
     """All tools that are installed, on a problem."""
-    package, tools = (f"{__name__}.trees", TREES_IN_SPACE) if isinstance(task, Tree) else (__name__, IN_THE_PLANE)
+    package, tools = _tools(task)
     for name in tools:
         if name not in missing():
             yield from importlib.import_module(f"{package}.{name}").contestants(task)
+
+
+def _tools(task: Task | Tree | Shaken) -> tuple[str, tuple[str, ...]]:
+    """The package of the tools for a kind of problem, and their names."""
+    if isinstance(task, Tree):
+        return f"{__name__}.trees", TREES_IN_SPACE
+    if isinstance(task, Shaken):
+        return f"{__name__}.mounted", ON_BUSHINGS
+    return __name__, IN_THE_PLANE

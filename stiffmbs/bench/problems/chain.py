@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from ...describe.model_data import ModelData
-from ...describe.scene import read_scene
+from ...describe.reading import read_scene
 from ..by_hand import chain as hand
 from ..by_hand import chain_minimal
 from ..contestant import Contestant, auto, bdf, bdf_of_all, by_hand, converged, dop853, minimal

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...describe.model_data import ModelData
-from ...describe.scene import read_scene
+from ...describe.reading import read_scene
 from ...jobs.run import prepare
 from ..benchmark import Row
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from ...describe.scene import read_scene
+from ...describe.reading import read_scene
 from ..gradients import GradientRuns
 from .half_car import SCENE
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from ...describe.scene import read_scene
+from ...describe.reading import read_scene
 from ..benchmark import Row
 from ..by_hand import half_car as hand
 from ..contestant import Contestant, bdf, by_hand, dop853

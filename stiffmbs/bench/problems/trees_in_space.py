@@ -96,7 +96,7 @@ def reference(tree: Tree) -> np.ndarray:
 
 
 def _problem(name: str, make: Callable[[], Tree]) -> Problem:
-    return Problem(name, lambda: reference(make()), lambda: contestants(make()), (1e-3, 1e-11), 4, 5, tree=make)
+    return Problem(name, lambda: reference(make()), lambda: contestants(make()), (1e-3, 1e-11), 4, 5, in_space=make)
 
 
 BENCHMARKS = (

@@ -11,7 +11,8 @@ import numpy as np
 from ...errors import InputError
 from ..kind import Kind, with_place
 from ..machine.compiler import Compiled, compiled_source
-from ..machine.layout import DIRECTION, packed
+from ..machine.layout import packed
+from ..machine.native.tables import DIRECTION
 from ..machine.routines import Routine
 from ..record import source_of
 from ..state import State
@@ -85,7 +86,7 @@ class Direction:
     values : ndarray
         The derivatives of the terms' values; behind them those of the system's constants.
     table : ndarray of int
-        For compiled code (`stiffmbs.compile.machine.layout.DIRECTION`).
+        For compiled code (`stiffmbs.compile.machine.native.tables.DIRECTION`).
     writes : set of int
         The groups whose values change.
     """

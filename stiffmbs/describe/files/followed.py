@@ -77,6 +77,11 @@ class Record:
         self._known: list[float] = []
         self._compared: list[tuple[Callable[..., Any], int, int, bool]] = []
         self._read: dict[Any, Followed] = {}
+        self._closed = False
+
+    def close(self) -> None:
+        """Write nothing down any more: whoever still computes or compares with the numbers is refused."""
+        self._closed = True
 
     def follows(self, found: object) -> bool:
         """Whether what stands in the scene has another value in other cases."""
@@ -95,6 +100,7 @@ class Record:
 
     def compared(self, function: Callable[..., Any], left: Any, right: Any) -> bool:
         """How a comparison comes out."""
+        self._refuse_when_closed()
         places = self._place(left), self._place(right)
         outcome = bool(function(*(self._known[place] for place in places)))
         self._compared.append((function, *places, outcome))
@@ -114,7 +120,12 @@ class Record:
         alike = all(bool(function(known[k], known[m])) is outcome for function, k, m, outcome in self._compared)
         return known if alike else None
 
+    def _refuse_when_closed(self) -> None:
+        if self._closed:
+            raise NotFollowed
+
     def _put(self, step: Step) -> Followed:
+        self._refuse_when_closed()
         self._known.append(step(self._known, *self._of_case))
         self._steps.append(step)
         return Followed(self, len(self._steps) - 1)

@@ -1,7 +1,7 @@
 """Scenes that differ by values which stand in forces alone: these are read anew, and nothing else.
 
 Reading a whole scene costs more than solving a small one.  A value that a formula of a body, a joint, a table or a run
-setting names is left to `stiffmbs.describe.scene.made_scene`, and so is whatever does not fit, which says why.
+setting names is left to `stiffmbs.describe.reading.made_scene`, and so is whatever does not fit, which says why.
 """
 
 from __future__ import annotations

@@ -43,10 +43,10 @@ def contradicting_rows(count, n_u, t, u, acceleration, mass, part, n_steps, step
     for row in range(count - 1):
         first, second = shifted(acceleration, row * n_u), shifted(acceleration, (row + 1) * n_u)
         velocity = shifted(u, row * n_u)
-        elapsed = t[row + 1] - t[row]
+        per_second = 1.0 / (t[row + 1] - t[row])
         total = 0.0
         for k in range(n_u):
-            off = (velocity[n_u + k] - velocity[k]) / elapsed - 0.5 * (first[k] + second[k])
+            off = (velocity[n_u + k] - velocity[k]) * per_second - 0.5 * (first[k] + second[k])
             total += mass[k] * off * off
         after = _weighted(n_u, second, mass)
         if total > part * part * _larger(after, before) and _within_step(t[row], t[row + 1], n_steps, steps):

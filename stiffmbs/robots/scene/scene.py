@@ -22,7 +22,7 @@ RUN = {"duration": 1, "output": 0.01}
 
 
 def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
-    """The scene of a robot, as `stiffmbs.describe.scene.read_scene` takes it.
+    """The scene of a robot, as `stiffmbs.describe.reading.read_scene` takes it.
 
     Parameters
     ----------

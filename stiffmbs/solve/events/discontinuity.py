@@ -65,19 +65,31 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
         Size of the move, as `LARGER_MOVE`, within which a jump is looked for.
     """
     with dynamics.state.unchanged():
-        crossed = _crossed(dynamics, t, q, u, reach)
-        if not len(crossed):
-            return crossed
-        back = _driven_back(_sides(dynamics, t, q, u, reach), crossed)
-        return np.array([k for k in crossed[back] if _slides(dynamics, t, q, u, reach, k)], dtype=int)
+        back = _crossed(dynamics, t, q, u, reach)
+        for way in _ahead_first(dynamics, t, q, u, reach, back) if len(back) else ():
+            back = back[_returns(_side(dynamics, t, *_moved(q, u, way * reach)), back)]
+            if not len(back):
+                return back
+        return np.array([k for k in back if _slides(dynamics, t, q, u, reach, k)], dtype=int)
+
+
+def _ahead_first(
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float, crossed: np.ndarray
+) -> tuple[float, float]:
+    """Both ways of a move, first to the side that the state is on: a motion that goes through the zero leaves it there."""
+    here, there = (_values(dynamics, t, *_moved(q, u, way * reach))[crossed[0]] for way in (0.0, 1.0))
+    return (1.0, -1.0) if here * there > 0.0 else (-1.0, 1.0)
+
+
+def _returns(side: _Side, event_functions: np.ndarray) -> np.ndarray:
+    """Whether the motion returns from a side to the zero of each event function."""
+    returns: np.ndarray = side.rates[event_functions] * side.values[event_functions] < 0.0
+    return returns
 
 
 def _driven_back(sides: list[_Side], event_functions: np.ndarray) -> np.ndarray:
     """Whether the motion returns from both sides to the zero of each event function."""
-    a, b = sides
-    return (a.rates[event_functions] * a.values[event_functions] < 0.0) & (
-        b.rates[event_functions] * b.values[event_functions] < 0.0
-    )
+    return np.logical_and(*(_returns(side, event_functions) for side in sides))
 
 
 def _slides(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float, event_function: int) -> bool:

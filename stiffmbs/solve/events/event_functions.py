@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.law_zones import zones_of
-from ...compile.machine.layout import EVENT_SEARCH, fill
+from ...compile.machine.layout import fill
 from ...compile.state import State
 from ...compile.system import System
 from ...compile.terms import TERM_SETS
+from ..native.tables.steps import EVENT_SEARCH
 
 NODES = 8
 """States that describe a step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
@@ -24,7 +25,7 @@ class EventSearch:
     Attributes
     ----------
     table : ndarray of int
-        Addresses for compiled code (`stiffmbs.compile.machine.layout.EVENT_SEARCH`).
+        Addresses for compiled code (`stiffmbs.solve.native.tables.steps.EVENT_SEARCH`).
     n : int
         Number of event functions, with those of laws.
     n_event_functions : int

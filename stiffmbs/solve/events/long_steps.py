@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebvander
 
-from ...compile.machine.layout import LONG_STEPS, packed
+from ...compile.machine.layout import packed
 from ...compile.system import System
 from ..dynamics import Dynamics
+from ..native.tables.steps import LONG_STEPS
 
 FROM_MIDDLE = 1e-4
 """Part of a step on both sides of its middle at which states are kept: their mean and difference are the state there and its rate."""
@@ -94,7 +95,7 @@ class LongStepLog:
     Attributes
     ----------
     table : ndarray of int
-        Addresses for compiled code (`stiffmbs.compile.machine.layout.LONG_STEPS`).
+        Addresses for compiled code (`stiffmbs.solve.native.tables.steps.LONG_STEPS`).
     """
 
     def __init__(self, system: System, width: int) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import STEP_BOUND, fill
+from ...compile.machine.layout import fill
+from ..native.tables.steps import STEP_BOUND
 
 
 class StepBound:

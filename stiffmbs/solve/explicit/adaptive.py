@@ -17,7 +17,7 @@ from ..events.divergence import refuse_beyond_sense
 from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
-from ..initial import InitialValues
+from ..initial import InitialValues, rates_of
 from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED, UNSTABLE
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
@@ -228,7 +228,7 @@ def first_step(
     """
     rtol, atol = tolerances
     y = np.concatenate([start.q, start.u])
-    rate = np.concatenate([dynamics.position_rates(start.q, start.u), start.acceleration])
+    rate = np.concatenate([rates_of(dynamics, t, start), start.acceleration])
     weights = 1.0 / (atol + rtol * np.abs(y))
     count = max(len(y), 1)
 

@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import EXPLICIT, address, packed
+from ...compile.machine.layout import address, packed
 from ...describe.settings import RunSettings
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog, LongSteps
 from ..events.step_bound import StepBound
-from ..initial import InitialValues
+from ..initial import InitialValues, rates_of
+from ..native.tables.steps import EXPLICIT
 from ..trajectory import Grid, Rows
 from .routines import END_AT_EVENT
 from .scheme import Scheme
@@ -131,7 +132,7 @@ class Integration:
     def begin(self, start: InitialValues) -> int:
         """Go on from consistent values at the time reached; the first event_function of the event that was met there, or -1."""
         self.q[:], self.u[:] = start.q, start.u
-        rates = self._dynamics.position_rates(start.q, start.u)
+        rates = rates_of(self._dynamics, self.t, start)
         self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
         self._cells["last_error"], self._cells["at_event"] = 0.0, 0
         state, signs = self._dynamics.state, self._arrays["signs"]

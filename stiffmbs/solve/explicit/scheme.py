@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import SCHEME, packed
+from ...compile.machine.layout import packed
+from ..native.tables.steps import SCHEME
 
 Row = Mapping[int, float]
 """The coefficients of a sum over stages that are not zero, by stage."""
@@ -82,7 +83,7 @@ class Scheme:
 
     @cached_property
     def table(self) -> np.ndarray:
-        """Addresses for compiled code (`stiffmbs.compile.machine.layout.SCHEME`)."""
+        """Addresses for compiled code (`stiffmbs.solve.native.tables.steps.SCHEME`)."""
         return packed(SCHEME, self._arrays)
 
     def matrix(self, rows: tuple[Row, ...]) -> np.ndarray:

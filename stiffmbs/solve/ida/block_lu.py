@@ -9,12 +9,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import BLOCK_LU, Layout
+from ...compile.machine.layout import Layout
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.block_updates import updates
 from ..linear.blocks import QUAD, Blocks, filled
 from ..linear.elimination_order import EliminationOrder, nodes_in_order
+from ..native.tables.linear import BLOCK_LU
 from .fixed_order import FixedOrder, Memory
 from .paired_columns import PairedColumns
 from .when_needed import WhenNeeded

@@ -27,6 +27,9 @@ PAIRED = (0.25, 3.0, 0.75, 1.0)
 """The same where columns are taken in pairs: their loops cost as much as some ten updates."""
 BLOCKS = (0.05, 50.0, 0.04, 5.0, 11.0)
 """ns for an update in blocks of bodies and joints, for a node; in a solution for an entry of full blocks, an unknown, and a node."""
+NEAR, FAR = 3000, 450.0
+"""Nodes whose blocks and lists a processor's own cache holds, and ns more for each beyond them: measured on chains of 3000 and 10 000 rods,
+which take 30 and 45 % longer with blocks."""
 WORTH_COMPILING = 200.0
 """ns that blocks have to save in one factorisation and its solutions, or a machine's first run is not compiled for them, 0.5 s.
 Where they are estimated to save 200 to 3000, runs of the examples take 0 to 21 % less with them; where less, up to 10 % more."""
@@ -65,7 +68,8 @@ def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
     if WITH_ZEROS * order.fill > np.iinfo(np.int32).max:
         return np.inf
     update, node, entry, unknown, of_node = BLOCKS
-    return update * order.updates + node * n_nodes + SOLUTIONS * (entry * order.fill + unknown * n + of_node * n_nodes)
+    nodes = node * n_nodes + FAR * max(n_nodes - NEAR, 0)
+    return update * order.updates + nodes + SOLUTIONS * (entry * order.fill + unknown * n + of_node * n_nodes)
 
 
 def superlu_cost(n: int, order: EliminationOrder) -> float:

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.machine.layout import LONG_STEPS, MOST_STEPS, NATIVE_IDA, SAMPLES, packed
+from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog
 from ..events.step_bound import StepBound
+from ..native.tables.steps import LONG_STEPS, MOST_STEPS, NATIVE_IDA, SAMPLES
 from .error_norm import ErrorNorm
 from .iteration import Iteration
 from .matrices import Matrix
@@ -55,7 +56,7 @@ class Connection:
     y, yp, output : ndarrays, shape (n,)
         Memory of the vectors of the solution, its derivative, and of what is interpolated or asked for.
     cells : numpy.void
-        What the loop leaves behind (`stiffmbs.compile.machine.layout.NATIVE_IDA`).
+        What the loop leaves behind (`stiffmbs.solve.native.tables.steps.NATIVE_IDA`).
     output_correction : OutputCorrection
     iteration : Iteration
     error_norm : ErrorNorm

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import ERROR_NORM, fill
+from ...compile.machine.layout import fill
 from ...compile.machine.routines import Routine
+from ..native.tables.steps import ERROR_NORM
 from .libraries import Unavailable
 from .matrices import Assembled
 from .operations import take_norm
@@ -25,7 +26,7 @@ class ErrorNorm:
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.compile.machine.layout.ERROR_NORM`).
+        For compiled code (`stiffmbs.solve.native.tables.steps.ERROR_NORM`).
     """
 
     def __init__(self, n: int) -> None:

@@ -7,11 +7,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...compile.machine.layout import FACTORS, FIXED_ORDER, Layout
+from ...compile.machine.layout import Layout
+from ...compile.machine.native.tables import FACTORS
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.elimination_order import EliminationOrder
 from ..linear.factors import factors_of
+from ..native.tables.linear import FIXED_ORDER
 from .libraries import Libraries, ida_libraries
 from .matrices import Assembled
 from .operations import take_place

@@ -9,11 +9,12 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import MOST_STEPS, address
+from ...compile.machine.layout import address
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ..events.long_steps import LongStepLog
 from ..native.statuses import ROOT_RETURN, STOP_RETURN
+from ..native.tables.steps import MOST_STEPS
 from .connection import MODULE, Connection
 from .matrices import Matrix
 from .session import Session

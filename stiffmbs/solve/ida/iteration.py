@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import ITERATION, fill
+from ...compile.machine.layout import fill
 from ...compile.machine.routines import Routine
+from ..native.tables.steps import ITERATION
 from .session import Session
 
 CONVERGED = Routine(
@@ -24,7 +25,7 @@ class Iteration:
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.compile.machine.layout.ITERATION`).
+        For compiled code (`stiffmbs.solve.native.tables.steps.ITERATION`).
     """
 
     def __init__(self, n: int) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import OUTPUT_CORRECTION, fill
+from ...compile.machine.layout import fill
+from ..native.tables.steps import OUTPUT_CORRECTION
 from .matrices import Assembled, Matrix
 from .session import Session
 
@@ -22,7 +23,7 @@ class OutputCorrection:
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.compile.machine.layout.OUTPUT_CORRECTION`); without addresses until `make_ready`.
+        For compiled code (`stiffmbs.solve.native.tables.steps.OUTPUT_CORRECTION`); without addresses until `make_ready`.
     """
 
     def __init__(self, equations: Equations) -> None:

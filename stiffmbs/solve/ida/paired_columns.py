@@ -7,8 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...compile.machine.layout import PAIRED_COLUMNS, Layout
+from ...compile.machine.layout import Layout
 from ...compile.machine.routines import Routine
+from ..native.tables.linear import PAIRED_COLUMNS
 from .fixed_order import FixedOrder
 
 _MODULE = "stiffmbs.solve.native.paired_columns"

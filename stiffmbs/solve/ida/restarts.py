@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import RESTART, packed
+from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine
 from ...compile.system import System
 from ...describe.settings import RunSettings
@@ -15,6 +15,7 @@ from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
 from ..error_control.newton import LOOSEST, NUMBERS_END, SOFT, TIGHTEST
 from ..error_control.relaxation import creep_of_positions, creep_of_velocities, lightness
+from ..native.tables.steps import RESTART
 from .connection import Connection
 
 _RESTART = Routine("stiffmbs.solve.ida.native.restart", "restart", "int32(float64, float64, int64*)")
@@ -41,7 +42,7 @@ class Restarts:
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.compile.machine.layout.RESTART`).
+        For compiled code (`stiffmbs.solve.native.tables.steps.RESTART`).
     """
 
     def __init__(

@@ -11,10 +11,11 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import IDA, packed
+from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ..error_control.newton import Stiffness
+from ..native.tables.steps import IDA
 from ..trajectory import History
 from .engine import Reached
 

@@ -7,8 +7,9 @@ import heapq
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import BLOCK_ELIMINATION, ELIMINATED, ENTRY_ELIMINATION, arrays_of, fill, packed
+from ...compile.machine.layout import arrays_of, fill, packed
 from ...compile.state import State
+from ..native.tables.linear import BLOCK_ELIMINATION, ELIMINATED, ENTRY_ELIMINATION
 from .joint_blocks import Joints, block_lists
 from .matrix_entries import entry_lists
 from .saddle_point import ACCELERATIONS
@@ -33,7 +34,7 @@ class Eliminated:
     pivots_tell : bool
         Whether pivots tell how near to singular a pose is: it serves, and no inertia is so small that it decides about them.
     table : ndarray of int
-        Addresses (`stiffmbs.compile.machine.layout.ELIMINATED`), zeros where it does not serve.
+        Addresses (`stiffmbs.solve.native.tables.linear.ELIMINATED`), zeros where it does not serve.
     """
 
     def __init__(self, state: State) -> None:

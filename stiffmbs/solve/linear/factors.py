@@ -13,7 +13,7 @@ FILL_MARGIN = 2
 
 
 def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:
-    """What the layout `stiffmbs.compile.machine.layout.FACTORS` asks for.
+    """What the layout `stiffmbs.compile.machine.native.tables.FACTORS` asks for.
 
     Parameters
     ----------

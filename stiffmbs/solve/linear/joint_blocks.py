@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import ABSENT
-from ...compile.machine.layout import BLOCK_ELIMINATION, arrays_of
+from ...compile.machine.layout import arrays_of
 from ...compile.system import System
+from ..native.tables.linear import BLOCK_ELIMINATION
 from .block_updates import pieces_of
 from .blocks import QUAD, padded
 
@@ -143,7 +144,7 @@ def jacobian_of(joints: Joints, system: System, kept: np.ndarray) -> Jacobian:
 
 
 def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any]:
-    """What the table holds of joints (`stiffmbs.compile.machine.layout.BLOCK_ELIMINATION`).
+    """What the table holds of joints (`stiffmbs.solve.native.tables.linear.BLOCK_ELIMINATION`).
 
     Parameters
     ----------

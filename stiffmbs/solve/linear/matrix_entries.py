@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import ABSENT
-from ...compile.machine.layout import ENTRY_ELIMINATION, arrays_of
+from ...compile.machine.layout import arrays_of
 from ...compile.system import System
+from ..native.tables.linear import ENTRY_ELIMINATION
 
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Of J: sources, rows in the order of elimination, columns."""
 
 
 def entry_lists(rows: list[np.ndarray], system: System, kept: np.ndarray) -> dict[str, Any]:
-    """What the table holds of the entries of the matrix and of its factors (`stiffmbs.compile.machine.layout.ENTRY_ELIMINATION`).
+    """What the table holds of the entries of the matrix and of its factors (`stiffmbs.solve.native.tables.linear.ENTRY_ELIMINATION`).
 
     Parameters
     ----------

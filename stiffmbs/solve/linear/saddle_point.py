@@ -12,7 +12,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.formulation import Block, Formulation, Product
-from ...compile.machine.layout import FACTORS
+from ...compile.machine.native.tables import FACTORS
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.state import State
 from .elimination_order import elimination_order

@@ -4,15 +4,7 @@ from __future__ import annotations
 
 from math import isfinite, sqrt
 
-from stiffmbs.compile.machine.native.access import (
-    compiled,
-    dynamics_view,
-    equations_view,
-    factors_view,
-    floats,
-    shifted,
-    state_view,
-)
+from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import (
     ACCELERATION,
     MOTION,
@@ -28,6 +20,7 @@ from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
 from stiffmbs.compile.machine.native.orientation import take_unit_length
 from stiffmbs.solve.native.long_steps import contradicts
 from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NO_STATE, NOT_FINITE, SINGULAR
+from stiffmbs.solve.native.tables.views import dynamics_view
 
 MOST_MOVES = 20
 """Newton's moves back to the constraints, from a state that was near them."""

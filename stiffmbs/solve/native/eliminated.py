@@ -5,10 +5,11 @@ Far faster than the LU of the whole where bodies carry few joints each; the mass
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, eliminated_view, state_view
+from stiffmbs.compile.machine.native.access import compiled, state_view
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.solve.native.elimination.by_blocks import accelerate_by_blocks, blocks_view, move_by_blocks
 from stiffmbs.solve.native.elimination.by_entries import accelerate_by_entries, entries_view, move_by_entries
+from stiffmbs.solve.native.tables.views import eliminated_view
 
 
 @compiled

@@ -20,7 +20,6 @@ E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996,
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import ERROR_NORM
 from stiffmbs.compile.machine.native.access import (
     address_of,
     compiled,
@@ -33,6 +32,7 @@ from stiffmbs.compile.machine.native.access import (
 from stiffmbs.solve.native.calls import call_address, call_float, call_int
 from stiffmbs.solve.native.iteration import iteration_view
 from stiffmbs.solve.native.statuses import NORM_TABLE, OK, OPERATIONS
+from stiffmbs.solve.native.tables.steps import ERROR_NORM
 
 FADES_LOW, FADES, LOW = 0.99, 0.8, 2
 """What a step leaves of the count of failures, at orders up to the lowest two and above: at these a run creeps."""

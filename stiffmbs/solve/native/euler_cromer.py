@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
-from stiffmbs.compile.machine.native.access import compiled, dynamics_view, factors_view, state_view
+from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.dynamics import (
     MOST_MOVES,
@@ -14,6 +14,7 @@ from stiffmbs.solve.native.dynamics import (
 )
 from stiffmbs.solve.native.stages import add_rates_behind
 from stiffmbs.solve.native.statuses import NOT_FINITE
+from stiffmbs.solve.native.tables.views import dynamics_view
 
 
 @compiled

@@ -8,12 +8,12 @@ has become too small against its column, the order is found anew.
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import FIXED_ORDER
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
 from stiffmbs.compile.machine.native.factors import DONE, FULL, equilibrate, factor, scale
 from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
 from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK, RECOVERABLE
+from stiffmbs.solve.native.tables.linear import FIXED_ORDER
 
 LU, ROW, COLUMN, UPDATE = (list(FIXED_ORDER).index(name) for name in ("lu", "row", "column", "update"))
 LARGEST = 1e3

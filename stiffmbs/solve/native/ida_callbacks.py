@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ida_view, ints, state_view
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.event_search.event_signs import watched
+from stiffmbs.solve.native.tables.views import ida_view
 
 
 @compiled

@@ -2,15 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import HISTORY_WIDTH, MOST_STEPS, SAMPLES
-from stiffmbs.compile.machine.native.access import (
-    address_of,
-    compiled,
-    equations_view,
-    floats,
-    shifted,
-    state_view,
-)
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.event_search.event_signs import watched
@@ -20,6 +12,7 @@ from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, nex
 from stiffmbs.solve.native.output_correction import corrected, output_correction_view
 from stiffmbs.solve.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
+from stiffmbs.solve.native.tables.steps import HISTORY_WIDTH, MOST_STEPS, SAMPLES
 
 STRETCHED = 1.01
 """The last step may be this much longer than inputs allow, so that no tiny one is left."""

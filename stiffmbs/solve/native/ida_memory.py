@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import NATIVE_IDA
 from stiffmbs.compile.machine.native.access import compiled, floats, view_of
 from stiffmbs.solve.native.calls import call_address
+from stiffmbs.solve.native.tables.steps import NATIVE_IDA
 
 native_ida_view = view_of("NativeIda", NATIVE_IDA)
 

@@ -19,9 +19,9 @@ proportion to cj.
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import ITERATION
 from stiffmbs.compile.machine.native.access import address_of, compiled, floats, view_of
 from stiffmbs.solve.native.calls import call_address, call_int, int32
+from stiffmbs.solve.native.tables.steps import ITERATION
 
 SETTLED, GO_ON, GIVE_UP = 0, 901, 902
 """SUN_SUCCESS, SUN_NLS_CONTINUE and SUN_NLS_CONV_RECVR of sundials_nonlinearsolver.h; after the last, the solver has a matrix that is

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import LONG_STEPS
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
+from stiffmbs.solve.native.tables.steps import LONG_STEPS
 
 long_steps_view = view_of("LongSteps", LONG_STEPS)
 

@@ -9,11 +9,11 @@ angle since then, as stiff directions turn with it; so this iteration has factor
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import OUTPUT_CORRECTION
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
 from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.statuses import OK
+from stiffmbs.solve.native.tables.steps import OUTPUT_CORRECTION
 
 APART = 2.0
 """Factor between cj of the factors and IDA's beyond which they are made anew: accelerations would change too much, or too little."""

@@ -10,13 +10,13 @@ The short inner loops are worth that from some ten rows on; columns that are sho
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import PAIRED_COLUMNS
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
 from stiffmbs.compile.machine.native.factors import DONE, FULL
 from stiffmbs.compile.machine.native.memory import FLOAT, INDEX, MOST_INDICES, holds
 from stiffmbs.solve.native.calls import call_address, int32
 from stiffmbs.solve.native.fixed_order import LARGEST, factored_anew
 from stiffmbs.solve.native.statuses import CONTENT, FAILED, OK, RECOVERABLE
+from stiffmbs.solve.native.tables.linear import PAIRED_COLUMNS
 
 LU, ROW, COLUMN, PLACE, UPDATE = (
     list(PAIRED_COLUMNS).index(name) for name in ("lu", "row", "column", "place", "update")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, eliminated_view, shifted
+from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import MOTION, POSITION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.dynamics import (
@@ -14,6 +14,7 @@ from stiffmbs.solve.native.dynamics import (
     to_velocity_constraints,
 )
 from stiffmbs.solve.native.eliminated import smallest_move
+from stiffmbs.solve.native.tables.views import eliminated_view
 
 MOST_FROZEN_MOVES = 3
 """One is the rule: the factors are those of a state as near as the step's error."""

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
-from stiffmbs.compile.machine.native.access import (
-    compiled,
-    dynamics_view,
-    explicit_view,
-    scheme_view,
-    shifted,
-    state_view,
-)
+from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.error_estimate import trusted_error
@@ -22,6 +15,7 @@ from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, nex
 from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF, UNSTABLE
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
+from stiffmbs.solve.native.tables.views import dynamics_view, explicit_view, scheme_view
 from stiffmbs.solve.native.uncertain_end import MOST_MOVED, SHORTER, uncertain_end
 
 __all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import STEP_BOUND
 from stiffmbs.compile.machine.native.access import compiled, view_of
+from stiffmbs.solve.native.tables.steps import STEP_BOUND
 
 step_bound_view = view_of("StepBound", STEP_BOUND)
 

@@ -7,7 +7,8 @@ step that ends beside it hands errors on that no shorter step makes good: the sh
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, eliminated_view, shifted
+from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.solve.native.tables.views import eliminated_view
 
 POSITION_ROUNDING = 2.2e-16
 """Of positions, relative to the size of the mechanism: that of a double."""

@@ -11,11 +11,11 @@ a contact with one that has not come to it yet, is a large multiple of y'.
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import DEPTH, PART, VARIATIONS
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
 from stiffmbs.compile.machine.native.along import direction_view, evaluate_along, share_one
 from stiffmbs.compile.machine.native.evaluate import evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes
+from stiffmbs.solve.native.tables.variations import DEPTH, PART, VARIATIONS
 
 variations_view = view_of("Variations", VARIATIONS)
 part_view = view_of("Part", PART)

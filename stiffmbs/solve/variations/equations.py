@@ -9,13 +9,14 @@ import numpy as np
 from ...compile.directional.direction import Direction, Numbers
 from ...compile.directional.source import NUMBER, TIME
 from ...compile.equations import Equations
-from ...compile.machine.layout import DEPTH, PART, VARIATIONS, packed
+from ...compile.machine.layout import packed
 from ...compile.machine.routines import together
 from ...compile.state import State
 from ...compile.terms import TERM_SETS
 from ...errors import SolverError
 from ..ida.matrices import Matrix
 from ..ida.session import Session
+from ..native.tables.variations import DEPTH, PART, VARIATIONS
 
 ADVANCE, WITHIN, DEFECTS = together(
     "stiffmbs.solve.native.variations",

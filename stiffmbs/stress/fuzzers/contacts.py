@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.scene import read_scene
+from ...describe.reading import read_scene
 from ...errors import StiffmbsError
 from ...jobs.run import run
 from ...solve.trajectory import Outcome as Ending

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...adams.listing import listed_statements
 from ...adams.load import convert_file, load_adams
-from ...describe.scene import read_scene
+from ...describe.reading import read_scene
 from ...errors import StiffmbsError
 from ...jobs.check import check
 from ...jobs.run import run

@@ -15,7 +15,8 @@ import numpy as np
 
 from ...adams.load import ENCODING, read_adams
 from ...describe.files.text_file import decoded
-from ...describe.scene import Scene, read_scene
+from ...describe.reading import read_scene
+from ...describe.scene import Scene
 from ...errors import StiffmbsError
 from ...jobs.check import check
 from ...jobs.run import run

@@ -10,7 +10,8 @@ from typing import Any
 from ...describe.files.other_forces import OtherForces
 from ...describe.files.unchanged import Unchanged
 from ...describe.files.written_scene import WrittenScene
-from ...describe.scene import Scene, made_scene
+from ...describe.reading import made_scene
+from ...describe.scene import Scene
 from ...errors import InputError
 from ...jobs.run import data_of
 from ..case_solver import written_scene

@@ -5,22 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..layout import (
-    CELLS,
-    DYNAMICS,
-    ELIMINATED,
-    EQUATIONS,
-    EXPLICIT,
-    FACTORS,
-    IDA,
-    INT,
-    POINTERS,
-    SCHEME,
-    STATE,
-    Layout,
-)
+from ..layout import CELLS, INT, POINTERS, Layout
 from ..translate.code import Code, constant
 from ..translate.values import Builtin, Cell, Operand, Record, Untranslatable, Value, builtin
+from .tables import EQUATIONS, FACTORS, STATE
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -83,8 +71,3 @@ def view_of(name: str, layout: Layout) -> Builtin:
 state_view = view_of("State", STATE)
 equations_view = view_of("Equations", EQUATIONS)
 factors_view = view_of("Factors", FACTORS)
-ida_view = view_of("Ida", IDA)
-dynamics_view = view_of("Dynamics", DYNAMICS)
-scheme_view = view_of("Scheme", SCHEME)
-explicit_view = view_of("Explicit", EXPLICIT)
-eliminated_view = view_of("Eliminated", ELIMINATED)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from ..layout import CALL, DIRECTION
 from .access import call_kernel, compiled, floats, ints, shifted, state_view, view_of
 from .orientation import TURN_STRIDE, share_orientation
+from .tables import CALL, DIRECTION
 
 CALL_WIDTH = len(CALL) + 1
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from ..layout import CALL
 from .access import call_kernel, compiled, floats, ints, shifted, state_view
 from .orientation import TURN_STRIDE, share_orientation
+from .tables import CALL
 
 POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH = range(6)
 CALL_WIDTH = len(CALL)
@@ -37,16 +37,16 @@ def share_turns(s, turned, count):
 def call_kernels(s, term_set, t):
     """Compute all terms of a set where the orientations of their bodies are shared; returns a pointer to their values."""
     s.evaluated[0] += 1
+    calls = ints(s.calls[term_set])
     values = floats(s.values[term_set])
     for k in range(s.n_calls[term_set]):
-        _call(s, term_set, t, k, values)
+        _call(s, shifted(calls, CALL_WIDTH * k), t, values)
     return values
 
 
 @compiled
-def _call(s, term_set, t, number, values):
-    """Call one of the kernels of a set."""
-    call = shifted(ints(s.calls[term_set]), CALL_WIDTH * number)
+def _call(s, call, t, values):
+    """Call a kernel with its arguments."""
     call_kernel(
         call[0], call[1], ints(call[2]), floats(call[3]), t, s.q, s.turn, s.u, s.a, s.lam, s.mu, ints(call[4]), values
     )
@@ -57,10 +57,11 @@ def evaluate_some(s, term_set, t, wanted):
     """Compute the terms of a set that some of its kernels compute; returns a pointer to the values, of which others stay as they are."""
     share_turns(s, ints(s.turned[term_set]), s.n_turned[term_set])
     s.evaluated[0] += 1
+    calls = ints(s.calls[term_set])
     values = floats(s.values[term_set])
     for k in range(s.n_calls[term_set]):
         if wanted[k]:
-            _call(s, term_set, t, k, values)
+            _call(s, shifted(calls, CALL_WIDTH * k), t, values)
     return values
 
 

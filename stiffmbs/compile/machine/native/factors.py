@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..layout import FACTORS
 from .access import compiled, factors_view
 from .coupled_inertia import spread_inertia
 from .memory import FLOAT, INT, holds
+from .tables import FACTORS
 
 KEEP_DIAGONAL = 0.1
 """A diagonal pivot is taken when it is at least this part of the largest in its column (less fill)."""

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import MOST_STEPS, RESTART
 from stiffmbs.compile.machine.native.access import (
     compiled,
-    dynamics_view,
     equations_view,
     factors_view,
     floats,
@@ -25,6 +23,8 @@ from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import iteration_view
 from stiffmbs.solve.native.stages import add_rates_behind, copied
 from stiffmbs.solve.native.statuses import OK, STOP_RETURN
+from stiffmbs.solve.native.tables.steps import MOST_STEPS, RESTART
+from stiffmbs.solve.native.tables.views import dynamics_view
 
 POSITION_TOLERANCE, MOST_MOVES = 1e-12, 50
 """As a start between two pieces of a run has them (`stiffmbs.solve.dynamics.Dynamics.assemble`)."""

@@ -14,7 +14,6 @@ Oettli and Prager, Compatibility of approximate solution of linear equations, Nu
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import BLOCK_LU
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
 from stiffmbs.compile.machine.native.factors import FULL
 from stiffmbs.compile.machine.native.memory import FLOAT, holds
@@ -22,6 +21,7 @@ from stiffmbs.compile.machine.native.quads import add_products, plus_product, qu
 from stiffmbs.solve.native.calls import call_address, call_int, int32
 from stiffmbs.solve.native.paired_columns import paired_view
 from stiffmbs.solve.native.statuses import CONTENT, FAILED, NOT_COMPILED, OK
+from stiffmbs.solve.native.tables.linear import BLOCK_LU
 
 LU = list(BLOCK_LU).index("lu")
 LARGEST_RESIDUAL, REFINABLE = 1e-9, 1e-7

@@ -6,7 +6,6 @@ joints in trees, as that of the articulated-body algorithm does (Featherstone, R
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import BLOCK_ELIMINATION
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
 from stiffmbs.compile.machine.native.quads import (
     add_products,
@@ -22,6 +21,7 @@ from stiffmbs.compile.machine.native.quads import (
     take_products,
 )
 from stiffmbs.solve.native.elimination.digits import keeps_digits
+from stiffmbs.solve.native.tables.linear import BLOCK_ELIMINATION
 
 PAIR, SINGLE, FORMING, NODE, UPDATE = 4, 3, 7, 10, 5
 """Numbers in a row of the lists."""

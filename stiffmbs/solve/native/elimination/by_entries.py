@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.layout import ENTRY_ELIMINATION
 from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.solve.native.elimination.digits import keeps_digits
+from stiffmbs.solve.native.tables.linear import ENTRY_ELIMINATION
 
 entries_view = view_of("EntryElimination", ENTRY_ELIMINATION)
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from math import floor, isfinite
 
-from stiffmbs.compile.machine.layout import EVENT_SEARCH
 from stiffmbs.compile.machine.native.access import compiled, view_of
+from stiffmbs.solve.native.tables.steps import EVENT_SEARCH
 
 MARGIN = 0.1
 """Part of the range of a function's bounds that is added to those between the ends."""

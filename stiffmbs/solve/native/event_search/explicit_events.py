@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import (
-    compiled,
-    dynamics_view,
-    explicit_view,
-    scheme_view,
-    shifted,
-    state_view,
-)
+from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import int32
@@ -27,6 +20,7 @@ from stiffmbs.solve.native.event_search.nearby import note_zones
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
 from stiffmbs.solve.native.interpolant import interpolated, prepare
 from stiffmbs.solve.native.stages import copied, load_state, weighted
+from stiffmbs.solve.native.tables.views import dynamics_view, explicit_view, scheme_view
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
 """How far behind the change the step ends, so that the new law holds there: relative to the step, and of the time."""

@@ -12,7 +12,8 @@ import numpy as np
 from ....describe.body import Body
 from ....describe.forces.python_force import PythonForce
 from ....describe.model import FORCES, Model
-from ....describe.scene import Scene, read_scene
+from ....describe.reading import read_scene
+from ....describe.scene import Scene
 from ....results.solution import Solution
 from ...case import Case
 from ...simulation import simulation

@@ -9,7 +9,8 @@ import numpy as np
 
 from ....adams.load import ENCODING, read_adams
 from ....describe.files.text_file import decoded
-from ....describe.scene import Scene, read_scene
+from ....describe.reading import read_scene
+from ....describe.scene import Scene
 from ....results.solution import Solution
 from ...case import Case
 from ...simulation import refusal, simulation

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ....describe.scene import Scene, read_scene
+from ....describe.reading import read_scene
+from ....describe.scene import Scene
 from ....results.solution import Solution
 from ...case import Outcome
 from ...simulation import simulation

@@ -12,7 +12,7 @@ import numpy as np
 
 from ....describe.body import Body
 from ....describe.model import JOINTS, Model
-from ....describe.scene import read_scene
+from ....describe.reading import read_scene
 from ....jobs.run import run
 from ....results.solution import Solution
 from ...case import Case, Verdict, measured

@@ -15,7 +15,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.special import expit
 
-from ....describe.scene import Scene, read_scene
+from ....describe.reading import read_scene
+from ....describe.scene import Scene
 from ....results.solution import Solution
 from ...case import Case, Outcome
 from ...simulation import simulation

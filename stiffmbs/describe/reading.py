@@ -1,0 +1,254 @@
+"""Reading of scenes: from the text of a file to what is valid, or one sentence with the line of a fault."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError as PydanticError
+
+from ..errors import InputError
+from .fields import sentence
+from .files.expand import (
+    read_parameters,
+    read_tables,
+    refuse_unused_parameters,
+    repeat_entries,
+    replaced_parameters,
+    set_value,
+    unshared,
+)
+from .files.held import with_held
+from .files.include import read_including
+from .files.quoted import written
+from .files.stages import written_stages
+from .files.unchanged import Unchanged
+from .files.variables import read_variables
+from .files.written_scene import WrittenScene
+from .files.yaml_text import read_yaml
+from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
+from .parts.placed import with_parts
+from .parts.placing import as_written, placed_in_use, set_in_instances
+from .roads.field import read_roads
+from .scene import Scene, scene_class
+from .units.units import Quantity
+
+SECTIONS = ("variables", "states", "bodies", "joints", "forces")
+
+
+def read_scene(
+    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", file: Path | None = None
+) -> Scene:
+    """Read a scene from text.
+
+    Parameters
+    ----------
+    text : str
+        YAML, as in a scene file.
+    changes : sequence of (path, text)
+        Values put in place of the text's, such as ``("bodies.cart.mass", "12 kg")``.
+    source : str
+        What messages call it.
+    file : Path, optional
+        The file that the text is of: what it includes is looked for beside it, or in the working folder without it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    InputError
+        When it is no valid scene; names the line and the path in it.
+    """
+    found, line = read_including(text, source, file)
+    if found is None:
+        raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
+    if not isinstance(found, dict):
+        raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
+    return made_scene(found, changes, source, line, file.parent if file else None)
+
+
+def made_scene(
+    found: dict[str, Any],
+    changes: Sequence[tuple[str, Any]],
+    source: str,
+    line_of: Callable[[tuple[Any, ...]], int | str | None],
+    folder: Path | None = None,
+    unchanged: Unchanged | None = None,
+) -> Scene:
+    """The scene of a mapping.
+
+    Parameters
+    ----------
+    found : mapping
+        Is changed.
+    changes : sequence of (path, text)
+        Values that are no text are put there as they are.
+    source : str
+        What messages call it.
+    line_of : callable
+        The line in the source of what a path of keys leads to.
+    folder : Path, optional
+        Where meshes and property files are looked for; the working folder by default.
+    unchanged : Unchanged, optional
+        What was validated before and need not be again; the scene then does not keep what it was read from.
+
+    Raises
+    ------
+    InputError
+        When it is no valid scene.
+    """
+    scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    known = unchanged or Unchanged()
+    parts = found.get("parts")
+    found, changes = placed_in_use(unshared(found), changes)
+    found, chosen, changes = _chosen(found, changes, source)
+    refuse_unused_parameters(found, changes)
+    replaced = replaced_parameters(found, changes)
+    in_parts = []
+    for path, value in changes:
+        read = read_yaml(value, f"--set {path}") if isinstance(value, str) else value
+        if set_in_instances(path, found.get("use")):
+            in_parts.append((path, read))
+        else:
+            set_value(found, path, read)
+    _keep_one_grid(found, {path for path, _ in changes})
+    try:
+        scene = _validated(found, replaced, in_parts, chosen, folder, known)
+    except _Located as error:
+        message = as_written(str(error), parts)
+        there = error.path if message == str(error) else ("parts", *error.path[1:])
+        where = _place(error.path, changes, lambda _: line_of(there))
+        raise InputError(f"{source}, {where}{message}") from None
+    scene._written, scene._validated = scene_as_written, known
+    if scene.stages:
+        scene._stage_scenes = _stage_scenes(scene, source)
+    elif scene.at_start:
+        scene._held_at_start = _held_at_start(scene, source)
+    return scene
+
+
+def _chosen(
+    found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str
+) -> tuple[dict[str, Any], dict[str, Any], Sequence[tuple[str, Any]]]:
+    """A scene with the sections that it chooses among its options, what parts need to know of it, and the other changes."""
+    words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
+    for path, word in words.items():
+        set_value(found, path, word)
+    try:
+        chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
+        merged = with_chosen(found, chosen["words"], OPTIONS)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    merged.pop(CHOOSE, None)
+    return merged, chosen, [change for change in changes if change[0] not in words]
+
+
+def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
+    """The scene of each stage; errors as for `made_scene`."""
+    if scene.written is None:
+        raise InputError(f"{source}: found stages, expected a scene of one run")
+    try:
+        stages = written_stages(scene.written, scene.stages)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    return tuple(
+        made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
+        for k, stage in enumerate(stages)
+    )
+
+
+def _held_at_start(scene: Scene, source: str) -> Scene:
+    """The scene with what holds at its start alone; errors as for `made_scene`."""
+    if scene.written is None:
+        raise InputError(f"{source}: found at_start, expected a scene that starts as described")
+    held = with_held(scene.written)
+    return made_scene(dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder)
+
+
+def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
+    """Let the one of ``run.output`` and ``run.points`` that is changed take the place of the other."""
+    run, grids = found.get("run"), ("output", "points")
+    chosen = [name for name in grids if f"run.{name}" in changed]
+    if isinstance(run, dict) and len(chosen) == 1:
+        for name in grids:
+            if name != chosen[0]:
+                run.pop(name, None)
+
+
+def _place(
+    fault: tuple[Any, ...], changes: Sequence[tuple[str, Any]], line_of: Callable[[tuple[Any, ...]], int | str | None]
+) -> str:
+    """Where a fault is, for a sentence that goes on with its path: in what was changed, or in a line."""
+    for path, _ in changes:
+        keys = tuple(path.split("."))
+        if keys in (fault[: len(keys)], fault[1:] if fault[:1] == ("parameters",) else ()):
+            return "--set "
+    line = line_of(fault)
+    return f"line {line}, " if line else ""
+
+
+class _Located(Exception):
+    """An error with the path of keys at which it occurred."""
+
+    def __init__(self, message: str, path: tuple[Any, ...]) -> None:
+        super().__init__(message)
+        self.path = path
+
+
+def _validated(
+    found: dict[str, Any],
+    replaced: Mapping[str, Quantity],
+    in_parts: Sequence[tuple[str, Any]],
+    chosen: Mapping[str, Any],
+    folder: Path | None,
+    unchanged: Unchanged,
+) -> Scene:
+    try:
+        parameters = read_parameters(found.get("parameters"), replaced)
+        tables = read_tables(found.get("tables"), parameters)
+        raw = {
+            key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
+        }
+        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
+        context["roads"] = read_roads(raw.get("roads"), context)
+        context |= chosen
+        raw, context = with_parts(raw, _family(raw), context, in_parts)
+    except InputError as error:
+        raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
+    raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
+    raw["tables"], raw["roads"] = tables, context["roads"]
+    written_entries = dict(raw)
+    raw = unchanged.put_into(raw, context)
+    try:
+        scene = _family(raw).model_validate(raw, context=context)
+    except PydanticError as error:
+        if "dimensions" not in raw and _right_in_space(raw, context):
+            raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
+        message = sentence(error)
+        path = message.split(":")[0].split(".")
+        raise _Located(message, tuple(path)) from None
+    scene._quantities = parameters
+    unchanged.keep(written_entries, context, scene)
+    return scene
+
+
+def _family(raw: dict[str, Any]) -> type[Scene]:
+    """The class of scenes of as many dimensions as the scene says; of two where it says nothing."""
+    found = raw.get("dimensions", 2)
+    if found not in (2, 3):
+        raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
+    return scene_class(found)
+
+
+def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
+    """Whether a scene that is wrong in the plane would be right in space."""
+    try:
+        scene_class(3).model_validate(raw, context=context)
+    except PydanticError:
+        return False
+    return True

@@ -1,0 +1,1 @@
+"""Tables that Python and compiled code share (`stiffmbs.compile.machine.layout`)."""

@@ -1,0 +1,143 @@
+"""What compiled code works on as it integrates: IDA and explicit steps, and what is seen within them."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
+
+IDA = Layout({
+    "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
+    "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
+})  # fmt: skip
+"""What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array.  They
+note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
+
+SCHEME = Layout({
+    "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
+    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
+    "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
+})  # fmt: skip
+"""The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
+
+STEP_BOUND = Layout({"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS})
+"""The longest steps that see what the inputs do (`stiffmbs.solve.events.step_bound`); n is 0 where nothing bounds a step."""
+
+LONG_STEPS = Layout({
+    "n_nodes": INT, "node": FLOATS, "width": INT, "ratio": FLOAT_CELL, "remembered": FLOAT_CELL, "room": INT_CELL, "count": INT_CELL, "usual": FLOAT_CELL, "row": FLOATS,
+})  # fmt: skip
+"""Where steps far longer than those before are kept (`stiffmbs.solve.native.long_steps`): one row each of the step's two ends and its
+states, of `width` numbers, at the nodes.  Cells: times the usual step beyond which a step is long, and of how many steps the usual one
+is the mean; rows there is room for (0 where none is kept), rows kept, the usual step."""
+
+EXPLICIT = Layout({
+    "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
+    "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
+    "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
+    "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
+    "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
+    "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
+    "long_steps": INTS,
+    "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
+    "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
+})  # fmt: skip
+"""An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
+event functions' values there, the stages k, one over the tolerance of each number in the last step tried, the counters, the
+output times (none: every step), and memory for the rows and ends of steps that one call stores."""
+
+NATIVE_IDA = Layout({
+    "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
+    "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
+    "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
+    "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
+    "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
+    "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
+    "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
+    "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
+    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
+    "long_steps": INTS,
+    "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
+})  # fmt: skip
+"""What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
+of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
+
+Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
+last step, size of the one that it will try next; where it was last told to stop; output points served, tiny steps in succession, whether the last event
+was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
+of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call; the time for which the state holds the values of event functions."""
+
+MOST_STEPS, HISTORY_WIDTH = 2048, 3
+"""Steps of any one call, and rows of the history: time of the end, order, size."""
+
+SAMPLES = 16
+"""Rows of the samples: the time and what is reported."""
+
+RESTART = Layout({
+    "dynamics": INTS, "ida": INT, "error_norm": INTS, "q": FLOATS, "u": FLOATS, "rate": FLOATS, "leader": INTS,
+    "n_q": INT, "q_of": INTS, "q_at": INTS, "n_u": INT, "u_of": INTS, "u_at": INTS,
+    "creep": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_creep": FLOAT_CELL,
+    "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "velocity_weight": FLOATS,
+    "at_residual": INT, "at_matrix": INT, "mass": FLOATS, "sums": FLOATS,
+    "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS,
+    "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
+    "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT,
+})  # fmt: skip
+"""What IDA is started anew with behind a jump of inputs (`stiffmbs.solve.ida.native.restart`): the state from one call to the next;
+independent coordinates and velocities, and where they stand among the unknowns; the entries that relaxations and the tolerance of
+Newton's iteration follow from; functions of SUNDIALS.  Cells are set once."""
+
+OUTPUT_CORRECTION = Layout({
+    "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
+    "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
+    "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
+    "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
+    "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
+    "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
+    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
+})  # fmt: skip
+"""Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors.
+
+Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
+beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
+grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
+force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
+equations of motion: those of forces, then those of moments, and where either end."""
+
+ITERATION = Layout({
+    "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
+    "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
+    "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL,
+})  # fmt: skip
+"""What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`).
+
+Cells: cj, that of the matrix, size of the first correction, the part of the rate by the change of cj, what the rest grows by
+in a time (below 0: not known), and the time since the matrix was made, by the sum of 1/cj, which a step is but for a factor
+of 1 to 2.3; corrections before this one, steps since the matrix was made, steps since a rate was measured, whether the
+matrix is to be made anew."""
+
+ERROR_NORM = Layout({
+    "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
+    "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
+    "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL,
+    "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
+    "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
+})  # fmt: skip
+"""What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`).
+
+Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
+failures were last looked for; steps and failures of the error test, the same when they were last looked at; the step up to
+which estimates are filtered; the order of the last step; the step up to which steps may not grow (0: they may), and the factor by
+which the test must let them grow else."""
+
+EVENT_SEARCH = Layout({
+    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
+    "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
+    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
+    "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
+    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS,
+    "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
+})  # fmt: skip
+"""What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
+edges, their values and rates at both ends of the step and of a part of it, the kernel that computes each and which kernels
+have one near an edge, and states of the step at some nodes.
+
+Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond
+zero."""

@@ -1,0 +1,30 @@
+"""What compiled code works on as it integrates variational equations."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
+
+VARIATIONS = Layout({
+    "state": INTS, "equations": INTS, "n": INT, "n_directions": INT, "n_slots": INT,
+    "row": INDICES, "column": INDICES, "place": INDICES, "constant": FLOATS, "rate": FLOATS,
+    "n_share": INT, "share": INTS, "parts": INTS, "by_time": INTS, "shift": FLOATS, "shifted": INT_CELL, "of_time": FLOATS,
+    "clear": INT, "setup": INT, "solve": INT, "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
+    "at_defect": INT, "defect": FLOATS, "at_correction": INT, "correction": FLOATS, "s": FLOATS, "rates": FLOATS,
+    "history": FLOATS, "times": FLOATS, "weight": FLOATS, "slope": FLOATS, "newest": INT_CELL, "cj": FLOAT_CELL,
+})  # fmt: skip
+"""The variational equations along a run (`stiffmbs.solve.native.variations`): rows and columns of the matrix' slots, their place
+in the linear solver, and their parts by y and by y'; addresses of the tables of `PART`; linear solver and vectors; a
+direction's s and s'; the last `DEPTH` s of all directions with their times, and the coefficients of a step.
+
+`by_time` is the `PART` of r_t, `shift` the time by which each direction's s is shifted.
+
+Cells: whether any is, which row of the history is the last, and cj of the step."""
+
+DEPTH = 8
+"""Steps that are remembered; order 5 needs six before the present one."""
+
+PART = Layout({
+    "direction": INTS, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
+    "row": INDICES, "source": INDICES, "operand": INDICES, "factor": FLOATS,
+})  # fmt: skip
+"""dr/dp of one direction: its `DIRECTION`, and lines as those of a residual."""
