@@ -11,7 +11,6 @@ from ..compile.machine.routines import Routine
 from ..compile.system import System
 from ..results.energy_balance import MOST_INSTANTS
 from ..solve.dynamics import OutputRows
-from ..solve.storage import all_finite
 
 GLANCE = Routine(
     "stiffmbs.diagnostics.native.glance",
@@ -58,7 +57,7 @@ def glance_at(system: System, rows: OutputRows, steps: np.ndarray, part: float) 
     """
     count = len(rows.t)
     if not 0 < count < MOST_INSTANTS or not (
-        system.n_c == 0 or all_finite(rows.position_violation, rows.velocity_violation)
+        system.n_c == 0 or np.isfinite([rows.position_violation, rows.velocity_violation]).all()
     ):
         return None
     found, memory, contradicting = np.zeros(5), np.empty((2, count)), np.empty(count, dtype=np.int64)

@@ -57,7 +57,7 @@ def _turned_round(lam: np.ndarray) -> list[int]:
     usual = np.median(np.abs(lam[:: 1 + len(lam) // SAMPLES]), axis=0)
     usual = np.maximum(usual, NOISE * usual.max())
     found: list[int] = []
-    for block in blocks(len(lam) - 1):
+    for block in [*blocks(len(lam) - 1)]:
         before, behind = lam[block], lam[block.start + 1 : block.stop + 1]
         size, other = np.abs(before), np.abs(behind)
         grown = (np.minimum(size, other) > usual) & (np.maximum(size, other) > GROWN * usual)

@@ -24,7 +24,7 @@ from ..diagnostics.motion import motion_notes
 from ..diagnostics.overlooked import OVERLOOKED_PART
 from ..errors import AssemblyError, InputError
 from ..results.channels import named, series_of
-from ..results.energy_balance_notes import may_be_broken
+from ..results.energy_balance import may_be_broken
 from ..results.of_run import RunResults, results_of_run
 from ..results.saved_state import SavedState
 from ..results.solution import Solution
@@ -295,15 +295,13 @@ class Finished:
     @cached_property
     def results(self) -> RunResults:
         """Channels and energy balance."""
-        return self.examined or _results(self.job, self.trajectory, self.rows)
+        job = self.job
+        return self.examined or results_of_run(
+            job.data, job.dynamics.system, self.rows, job.settings, self.trajectory.step_times
+        )
 
 
 @np.errstate(all="ignore")  # a diverged run has numbers that overflow
-def _results(job: Job, trajectory: Trajectory, rows: OutputRows) -> RunResults:
-    return results_of_run(job.data, job.dynamics.system, rows, job.settings, trajectory.step_times)
-
-
-@np.errstate(all="ignore")
 def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
     """Integrate what was prepared, and examine it; errors as for `run`."""
     computed, overlooked = seen_through(job, lambda job: on_exact_constraints(job, lambda job: _computed(job, watch)))
@@ -314,7 +312,9 @@ def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
         )
     outcome, message = _ending(job, rows, trajectory)
     sound = seen and not (may_be_broken(seen.missing, seen.exchanged) or job.data.requests)
-    examined = None if sound else _results(job, trajectory, rows)
+    examined = (
+        None if sound else results_of_run(job.data, job.dynamics.system, rows, job.settings, trajectory.step_times)
+    )
     of_motion = motion_notes(job.dynamics, rows, job.on_constraints, seen)
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     broken, undefined = (examined.broken_balance, examined.undefined) if examined else ((), ())

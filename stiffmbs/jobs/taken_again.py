@@ -101,7 +101,8 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
         Integrates a job and reports it.
     """
     found = compute(job)
-    if not relaxed(job) or not len(found.rows.t) or not creeps(*_compared(job, found), CREPT):
+    compared = _compared(job, found)
+    if not relaxed(job) or not len(found.rows.t) or not creeps(*compared, CREPT):
         return found
     creep = _creep(job, found)
     stopped = found.trajectory.outcome is Outcome.STOPPED

@@ -27,6 +27,8 @@ WORK, STEPS_INSIDE = together(
 
 MOST_INSTANTS = 100_000
 """Instants that a balance is made of at the most; of more every other one counts, or fewer."""
+BROKEN = 1e-2
+"""Part of the exchanged energy that may be missing before it is told."""
 SEEN = 1
 """Steps of the solver that may end inside an interval whose work the values at its ends tell."""
 
@@ -128,6 +130,11 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
         scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
     inside = steps_inside(t, steps)
     return Balance(t, total - total[0], work, within, inside, resolved, scale, keeps_energy)
+
+
+def may_be_broken(missing: float, exchanged: float) -> bool:
+    """Whether a balance in which some energy is missing is worth a closer look, J."""
+    return missing > BROKEN * exchanged
 
 
 def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:

@@ -16,12 +16,12 @@ from ..compile.system import System
 from ..describe.settings import RunSettings
 from ..solve import traits_of
 from ..solve.dynamics import OutputRows
-from .energy_balance import Balance, potentials
+from .energy_balance import BROKEN, Balance, potentials
 
 FINER = ("rtol", "max_step", "step")
 """Settings that make steps shorter."""
-BROKEN, PER_TOLERANCE = 1e-2, 100.0
-"""Part of the exchanged energy that may be missing before it is told; so many times the relative tolerance where that is more."""
+PER_TOLERANCE = 100.0
+"""Times the relative tolerance that may be missing before it is told, where that is more than `BROKEN`."""
 TOLD = 1e-6
 """Part of the exchanged energy above which what lies between output instants is told."""
 CERTAIN = 3.0
@@ -55,25 +55,18 @@ def balance_words(balance: Balance) -> str:
 def balance_notes(
     system: System, balance: Balance, rows: OutputRows, settings: RunSettings, steps: np.ndarray
 ) -> Iterator[str]:
-    """A sentence where the balance is broken for certain.
+    """A sentence where a balance that may be broken is so for certain.
 
     Parameters
     ----------
     steps : ndarray
         Ends of the solver's own steps, s; empty where it does not tell them.
     """
-    if not may_be_broken(balance.furthest, balance.scale):
-        return
     allowed = may_be_missing(system, balance, rows, settings)
     if balance.keeps_energy:
         yield from _changed(system, balance, rows, settings, allowed)
     else:
         yield from _left(system, balance, rows, steps, allowed)
-
-
-def may_be_broken(missing: float, exchanged: float) -> bool:
-    """Whether a balance in which some energy is missing is worth a closer look, J."""
-    return missing > BROKEN * exchanged
 
 
 def may_be_missing(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> float:

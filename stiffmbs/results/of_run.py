@@ -12,7 +12,7 @@ from ..describe.settings import RunSettings
 from ..solve.dynamics import OutputRows
 from ..solve.storage import with_gaps
 from .channels import channels_of, turns_of
-from .energy_balance import Balance, energy_balance
+from .energy_balance import Balance, energy_balance, may_be_broken
 from .energy_balance_notes import balance_notes
 from .undefined_values import no_number_sentences
 
@@ -58,6 +58,7 @@ def results_of_run(
     gaps = with_gaps(channels) if model.requests or not rows.finite else {}
     known = {name: values[solved_there] for name, values in gaps.items()}
     return RunResults(
-        channels, balance, turns_of(system, rows.q), tuple(balance_notes(system, balance, rows, settings, steps)),
+        channels, balance, turns_of(system, rows.q),
+        tuple(balance_notes(system, balance, rows, settings, steps)) if may_be_broken(balance.furthest, balance.scale) else (),
         tuple(no_number_sentences(rows.t[solved_there], known)) if known else (),
     )  # fmt: skip
