@@ -17,6 +17,8 @@ from .solution import Solution
 SAME_VALUE = 1e-6
 """Part of the size of a channel's kind by which two values may differ and be one."""
 VIOLATIONS = "constraint."
+ROUNDING = 1e-9
+"""Part of forces and torques that each other may have as rounding, over lengths that are given."""
 MECHANICAL = ("force", "torque")
 """Kinds of channels that are zero where their element is not there."""
 COUNTED = (
@@ -79,11 +81,19 @@ def _kept_rows(solutions: Sequence[Solution]) -> list[slice]:
         for name, values in solution.channels.items():
             kind = kind_of(name) or name
             sizes[kind] = max(sizes.get(kind, 0.0), float(np.nanmax(np.abs(values), initial=0.0)))
+    _with_rounding(sizes)
     found = []
     for before, after in itertools.pairwise(solutions):
         same = before.time[-1] == after.time[0] and before.channels.keys() == after.channels.keys()
         found.append(slice(None, -1 if same and _goes_on(before, after, sizes) else None))
     return [*found, slice(None)]
+
+
+def _with_rounding(sizes: dict[str, float]) -> None:
+    """Let forces and torques be at least the rounding of each other: where one of both is zero, its size is rounding alone."""
+    force, torque = (sizes.get(kind, 0.0) for kind in MECHANICAL)
+    length = sizes.get("position") or 1.0
+    sizes["force"], sizes["torque"] = max(force, ROUNDING * torque / length), max(torque, ROUNDING * force * length)
 
 
 def _goes_on(before: Solution, after: Solution, sizes: Mapping[str, float]) -> bool:
