@@ -174,8 +174,12 @@ class _Motion:
         size = max(np.linalg.norm(self.u), np.linalg.norm(state.u))
         if np.linalg.norm(state.u - predicted_u) > LARGEST_TURN * size + 1e-9:
             return False
+        before = self.u
         if not self._take(t):
             return False
+        secant = (self.u - before) / h
+        if h * np.linalg.norm(self.a - secant) > LARGEST_TURN * size + 1e-9:  # forces of 1e23 N leave no digit of it
+            self.a = secant
         self.steps, self.moves = self.steps + 1, self.moves + moves
         return True
 

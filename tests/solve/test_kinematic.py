@@ -185,3 +185,15 @@ def test_a_driven_velocity_leaves_no_freedom_to_dynamics():
     model.add("pull", stiffmbs.Drive(joint="rail", velocity="1"))
     with pytest.raises(InputError, match=r"5 independent equations for 6 freedoms"):
         stiffmbs.run(model, solver="kinematic")
+
+
+@pytest.mark.parametrize("force", [1e20, 1e23])
+def test_steps_follow_the_drive_where_forces_leave_no_digit_of_accelerations(force):
+    model = Model(gravity=(0, -9.81))
+    rod = model.add("rod", Body(mass=2, inertia=0.3, position=(1, 0)))
+    model.add("pin", Revolute(i=rod.at(-1, 0), j="ground"))
+    model.add("motor", stiffmbs.Drive(joint="pin", position="sin(2*t)"))
+    model.add("push", stiffmbs.AppliedForce(i="rod", force=(f"{force!r} N", f"{force!r} N*cos(30*rod.angle)")))
+    solution = stiffmbs.run(model, solver="kinematic", duration=1.0, points=11)
+    assert solution.solver["steps"] < 5000
+    np.testing.assert_allclose(solution["rod.angle"], np.sin(2 * solution.time), atol=1e-12)

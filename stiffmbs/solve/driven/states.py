@@ -13,6 +13,8 @@ from ..dynamics import Dynamics
 STATE_TOLERANCE = 1e-10
 """Relative tolerance, and absolute one in scales of the states."""
 MOST_MOVES = 12
+LOOK, TOO_MANY = 5_000, 3e6
+"""Evaluations from one look at the pace to the next, and those still to come at which states are given up: ten minutes or more."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
     Raises
     ------
     SolverError
-        Where the states cannot be integrated; SciPy's Radau (Hairer and Wanner II, ch. IV.8) does that.
+        Where the states cannot be integrated, or come to no end; SciPy's Radau (Hairer and Wanner II, ch. IV.8) does that.
     """
     system = dynamics.system
     states, changing = before.q[system.first_state :].copy(), ~system.algebraic
@@ -48,7 +50,7 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
         return states
     from scipy.integrate import solve_ivp
 
-    along = _Along(dynamics, before)
+    along = _Along(dynamics, before, t)
     with dynamics.state.unchanged():
         found = solve_ivp(
             along.rates, (before.t, t), states[changing], method="Radau", jac=along.jacobian,
@@ -63,16 +65,34 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
 class _Along:
     """Rates of the states at instants of the motion."""
 
-    def __init__(self, dynamics: Dynamics, before: Instant) -> None:
-        self._dynamics, self._before = dynamics, before
+    def __init__(self, dynamics: Dynamics, before: Instant, end: float) -> None:
+        self._dynamics, self._before, self._end = dynamics, before, end
+        self._evaluations, self._looked_at = 0, before.t
         self._places = dynamics.system.first_state + np.flatnonzero(~dynamics.system.algebraic)
 
     def rates(self, t: float, values: np.ndarray) -> np.ndarray:
-        """x' at an instant."""
+        """x' at an instant.
+
+        Raises
+        ------
+        SolverError
+            Where so many evaluations would follow that they come to no end.
+        """
+        self._evaluations += 1
+        if self._evaluations % LOOK == 0:
+            self._look_at_pace(t)
         if not self._go_to(t, values):
             return np.full(len(values), np.nan)
         state = self._dynamics.state
         return self._dynamics.position_rates(state.q, state.u)[self._places]
+
+    def _look_at_pace(self, t: float) -> None:
+        way, self._looked_at = t - self._looked_at, t
+        if (self._end - t) * LOOK > TOO_MANY * max(way, 0.0):
+            raise SolverError(
+                f"stopped at t = {t:.9g} s: the states could not be integrated: the last {LOOK} evaluations have covered {way:.3g} s; "
+                "expected rates that change less, or fewer digits in what they follow from"
+            )
 
     def jacobian(self, t: float, values: np.ndarray) -> np.ndarray:
         """dx'/dx at an instant."""
