@@ -296,7 +296,8 @@ class System:
     def _term(self, term_set: str, name: str) -> Term:
         k = TERM_SETS[term_set].index(name)
         axes = TERM_AXES[name]
-        parts = [group.placed(name, int(self.places[term_set][g, 1 + k])) for g, group in enumerate(self.groups)]
+        first = self.places[term_set][:, 1 + k].tolist()
+        parts = [group.placed(name, first[g]) for g, group in enumerate(self.groups) if group.entries[name]]
         nothing = np.empty(0, dtype=np.int64)  # of a scene without joints, forces and weight
         source, row, column = (np.concatenate([nothing, *(part[i] for part in parts)]) for i in range(3))
         inside = (row < self.extent(axes[0])) & (column < (self.extent(axes[1]) if len(axes) > 1 else 1))

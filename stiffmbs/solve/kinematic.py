@@ -126,6 +126,7 @@ class _Motion:
         state.q[:], state.u[:] = start.q, start.u
         self._polish(t)
         self.q, self.u = state.q.copy(), state.u.copy()
+        self._turns = dynamics.system.per_velocity(0.0, 1.0)  # 1 for angles, 0 for places
         self._counters = slice(dynamics.system.n_pose, dynamics.system.first_state)
         self._turning = self._rates_of_counters(t)
 
@@ -159,7 +160,7 @@ class _Motion:
         state, dynamics = self._dynamics.state, self._dynamics
         step = h * self.u + h * h / 2 * self.a
         self._status = 0
-        if np.abs(step * dynamics.system.per_velocity(0.0, 1.0)).max() > LARGEST_ROTATION:
+        if np.abs(step * self._turns).max() > LARGEST_ROTATION:
             return False
         predicted_q, predicted_u = dynamics.system.of_body.moved(self.q, step), self.u + h * self.a
         predicted_q[self._counters] += h * self._turning
