@@ -198,9 +198,11 @@ class Mechanism:
         )
         return np.concatenate([view.v.ravel(), turn.ravel(), accelerations.ravel()])
 
-    def run(self, t, rtol=1e-12) -> History:
-        """Solve from the start to t[-1]."""
-        found = solve_ivp(self._rates, (0, t[-1]), self._start(), "DOP853", t_eval=t, rtol=rtol, atol=rtol)
+    def run(self, t, rtol=1e-12, max_step=np.inf) -> History:
+        """Solve from the start to t[-1]; steps without a bound pass over what forces do for a moment."""
+        found = solve_ivp(
+            self._rates, (0, t[-1]), self._start(), "DOP853", t_eval=t, rtol=rtol, atol=rtol, max_step=max_step
+        )
         return History(self, [self.solve(time, y) for time, y in zip(found.t, found.y.T, strict=True)])
 
 

@@ -46,7 +46,7 @@ def impact(nearest):
     return force
 
 
-def compare(folder, graphics, parts, nearest, tolerance):
+def compare(folder, graphics, parts, nearest, tolerance, rtol=1e-9):
     text = ""
     for k, part in enumerate(parts):
         d = np.diag(part.inertia)
@@ -57,8 +57,10 @@ def compare(folder, graphics, parts, nearest, tolerance):
             f", VX={u}, VY={v}, VZ={w}, WX={p}, WY={q}, WZ={r}, VM=1, WM=1\n"
             f"MARKER/{k + 2}1, PART={k + 2}\n"
         )
-    solution = played(folder, text + "MARKER/1, PART=1\n" + graphics + CONTACT, 0.2, rtol=1e-9)
-    history = Mechanism([part.part() for part in parts], {}, [impact(nearest)], gravity=(0, 0, 0)).run(TIMES, 1e-10)
+    solution = played(folder, text + "MARKER/1, PART=1\n" + graphics + CONTACT, 0.2, rtol=rtol)
+    history = Mechanism([part.part() for part in parts], {}, [impact(nearest)], gravity=(0, 0, 0)).run(
+        TIMES, 1e-10, max_step=1e-3
+    )
     assert np.abs(np.diff(history.part(0)["vz"])).max() > 0.2
     for k in range(2):
         moves_alike(solution, f"PART_{k + 2}", history.part(k), tolerance)
@@ -78,7 +80,7 @@ class Flying:
 
 
 def test_a_ball_on_a_flat_ellipsoid(tmp_path):
-    """By the root of the secular equation, at an aspect of 20."""
+    """By the root of the secular equation, at an aspect of 20; damping ends the push for a moment, just before the solids part."""
     semi, radius = np.array([0.4, 0.1, 0.02]), 0.05
     inside = 0.999 * semi.min() ** 2
 
@@ -97,7 +99,7 @@ def test_a_ball_on_a_flat_ellipsoid(tmp_path):
     graphics = """GRAPHICS/1, ELLIPSOID, CM=21, XSCALE=0.1, YSCALE=0.1, ZSCALE=0.1
 GRAPHICS/2, ELLIPSOID, CM=31, XSCALE=0.8, YSCALE=0.2, ZSCALE=0.04
 """
-    compare(tmp_path, graphics, parts, nearest, 2e-6)
+    compare(tmp_path, graphics, parts, nearest, 2e-6, rtol=1e-7)
 
 
 def test_two_cylinders_across_each_other(tmp_path):

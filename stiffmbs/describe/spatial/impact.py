@@ -97,14 +97,27 @@ class Impact(Force):
 
     @classmethod
     def event_functions(cls, e: Symbolic) -> Any:
-        return tuple(e.named(touch.gap) for touch in cls.touches(e))
+        """Each gap, and what is above zero where the solids push: damping may end the push, and let it begin again, while they overlap."""
+        from sympy import Max, Min
+
+        found = []
+        for touch in cls.touches(e):
+            gap, n, point = e.named(touch.gap), e.named(touch.normal), e.named(touch.point)
+            rate = (velocity(e, e.i, point) - velocity(e, e.j, point)).dot(n)
+            found += [gap, Min(-gap, _push(e, Max(-gap, 0), rate))]
+        return tuple(found)
 
 
 def _pressure(e: Symbolic, gap: Any, rate: Any) -> Any:
     from sympy import Piecewise
 
-    force = e.named(e.stiffness * (-gap) ** e.exponent - e.damping * rate * _rising(-gap / e.depth))
+    force = e.named(_push(e, -gap, rate))
     return Piecewise((Piecewise((force, force > 0), (0, True)), gap < 0), (0, True))
+
+
+def _push(e: Symbolic, depth: Any, rate: Any) -> Any:
+    """The force at a depth of overlap, N, below zero where the solids part faster than they push."""
+    return e.stiffness * depth**e.exponent - e.damping * rate * _rising(depth / e.depth)
 
 
 def _per_speed(e: Symbolic, sliding: Any) -> Any:
