@@ -64,6 +64,7 @@ def marching(tree: Tree, spacing: float, step: float) -> Solve:
     every, count = max(1, round(step / spacing)), max(1, round(spacing / step))
 
     def solve() -> np.ndarray:
+        """The angles at the output times."""
         data = mujoco.MjData(model)
         data.qvel[:] = tree.rates
         angles = np.full((len(tree.times), len(tree.links)), np.nan)
