@@ -51,6 +51,9 @@ REFUSED = {
     "points without end": (BODY + "run: {points: 1" + "0" * 300 + "}\n", "output times"),
     "tower of powers": ("bodies: {b: {mass: 9**9**9, inertia: 1}}\n", "overflows"),
     "tower of powers in a force": (BODY + FORCE % "9**9**9", "no finite real value"),
+    "a mapping in place of a formula": (
+        "bodies: {b: {mass: 1, inertia: 1}}\nforces: {f: {type: torque, i: b, torque: {a: 1}}}\n", "expected a formula",
+    ),
     "a number that is too long to be quoted": ("bodies: {b: {mass: '" + "9" * 1000 + "', inertia: 1}}\n", " ... "),
 }  # fmt: skip
 

@@ -104,7 +104,8 @@ class FormulaOf:
             self.coordinates or self.states
         ):  # built in Python, where the model that it will belong to is not known
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
-        before = (context.get(READ_BEFORE) or {}).get((found, self.variables, self.velocities))
+        known = context.get(READ_BEFORE)
+        before = known.get((found, self.variables, self.velocities)) if known and isinstance(found, str) else None
         if before is None:
             formula = self._made(found, parameters, tables, variables, names)
         else:
