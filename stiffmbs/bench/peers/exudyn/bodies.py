@@ -9,7 +9,7 @@ import numpy as np
 
 from ...by_hand import half_car
 from ..mechanism import GROUND, Mechanism, Place
-from .module import module
+from .module import module, recorded
 
 
 class Bodies:
@@ -30,7 +30,7 @@ class Bodies:
             self._add_body(k)
         self._add_joints()
         self._add_forces()
-        self._sensors = [self._sensor(node) for node in self._nodes]
+        self._sensors = [recorded(self.mbs, node) for node in self._nodes]
         self.mbs.Assemble()
 
     def _add_body(self, k: int) -> None:
@@ -42,12 +42,6 @@ class Bodies:
         if m.gravity:
             marker = mbs.AddMarker(items.MarkerBodyMass(bodyNumber=self._objects[k]))
             mbs.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0, m.gravity, 0]))
-
-    def _sensor(self, node: int) -> int:
-        kind = self._exu.OutputVariableType.Coordinates
-        return self.mbs.AddSensor(
-            self._items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind)
-        )
 
     def _point(self, place: Place) -> int:
         return self.mbs.AddMarker(

@@ -18,3 +18,14 @@ def module() -> Any:
         import exudyn
     exudyn.config.printToConsole = False
     return exudyn
+
+
+def recorded(mbs: Any, node: int) -> int:
+    """A sensor that keeps the coordinates of a node in memory."""
+    exu = module()
+    from exudyn import itemInterface as items
+
+    kind = exu.OutputVariableType.Coordinates
+    return int(
+        mbs.AddSensor(items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind))
+    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..mechanism import GROUND, Mechanism
-from .module import module
+from .module import module, recorded
 
 
 @dataclass(frozen=True)
@@ -80,10 +80,7 @@ class Tree:
                 jointVelocityOffsetVector=zero,
             )
         )  # fmt: skip
-        kind = exu.OutputVariableType.Coordinates
-        self._sensor = self.mbs.AddSensor(
-            items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind)
-        )
+        self._sensor = recorded(self.mbs, node)
         self.mbs.Assemble()
 
     def rows(self) -> tuple[np.ndarray, np.ndarray]:

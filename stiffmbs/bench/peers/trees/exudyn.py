@@ -8,7 +8,7 @@ import numpy as np
 
 from ...contestant import Contestant, Solve
 from ..exudyn import EXPLICIT_PARTS, WITHOUT, marching
-from ..exudyn.module import module
+from ..exudyn.module import module, recorded
 from .tree import GROUND, Tree
 
 
@@ -56,10 +56,7 @@ class Hinges:
                 jointVelocityOffsetVector=zero,
             )
         )  # fmt: skip
-        kind = exu.OutputVariableType.Coordinates
-        self._sensor = self.mbs.AddSensor(
-            items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind)
-        )
+        self._sensor = recorded(self.mbs, node)
         self.mbs.Assemble()
 
     def rows(self) -> tuple[np.ndarray, np.ndarray]:
