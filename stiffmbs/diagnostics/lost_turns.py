@@ -10,8 +10,8 @@ from ..solve.dynamics import Dynamics, OutputRows
 
 UNCERTAIN_TURN = 1.0
 """Angle between an orientation and the integral of its rate, rad, from which on the turn is not certain: half a turn changes it."""
-MOST_INSTANTS = 250
-"""Instants that are looked at: a turn that is lost stays so."""
+MOST_INSTANTS = 2000
+"""Instants that are looked at."""
 
 
 def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
