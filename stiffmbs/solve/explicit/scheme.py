@@ -74,7 +74,7 @@ class Scheme:
     def _arrays(self) -> dict[str, Any]:
         """What the table points to."""
         return {
-            "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
+            "order": self.order, "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
             "n_dense": len(self.dense), "error_needs_end": self.error_needs_end,
             "c": np.array(self.c, dtype=float), "a": self.matrix(self.a),
             "errors": self.matrix(self.errors), "dense": self.matrix(self.dense),
