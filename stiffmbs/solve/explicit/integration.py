@@ -12,7 +12,6 @@ from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog, LongSteps
 from ..events.step_bound import StepBound
 from ..initial import InitialValues
-from ..native.tables.steps import EXPLICIT
 from ..trajectory import Grid, Rows
 from .memory import StepMemory
 from .scheme import Scheme
@@ -50,7 +49,9 @@ class Integration:
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been taken over
         self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state)
-        self._long_steps = dynamics.kept("long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y)))
+        self._long_steps = dynamics.kept(
+            "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
+        )
         self._long_steps.forget()
         memory.renew(*addresses(self._watch.table, self.step_bound.table, self._long_steps.table))
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
@@ -58,7 +59,7 @@ class Integration:
         memory.atol[:] = self.atol
         if grid.times is not None:
             memory.times[:] = grid.times
-        self._cells = cells = memory.table.view(EXPLICIT.cells)[0]
+        self._cells = cells = memory.cells
         cells["project"], cells["rtol"] = settings.projection, settings.rtol
         cells["longest"], cells["stable"] = settings.max_step or np.inf, np.inf
         cells["shortest"] = SHORTEST_PART * (grid.end - grid.start)
@@ -109,9 +110,9 @@ class Integration:
         memory.end_rates[self._n_q :] = start.acceleration
         memory.lam[:] = start.lam
         cells["started"], cells["last_error"], cells["at_event"] = 0, 0.0, 0
-        met = np.flatnonzero(self._watch.found[: self._watch.n_event_functions])
+        met = self._watch.found[: self._watch.n_event_functions].tolist()
         self._watch.begin()
-        return int(met[0]) if len(met) else -1
+        return met.index(1) if 1 in met else -1
 
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""

@@ -36,6 +36,8 @@ class StepMemory:
     row_t, row_y, ends : ndarrays, shapes (capacity,), (capacity, n_q + n_u), (capacity,)
     table : ndarray of int
         Addresses and cells (`stiffmbs.solve.native.tables.steps.EXPLICIT`).
+    cells : record
+        The table's cells by name.
     """
 
     def __init__(self, scheme: Scheme, dynamics: Dynamics, n_times: int) -> None:
@@ -60,7 +62,7 @@ class StepMemory:
             "watch": nothing, "step_bound": nothing, "long_steps": nothing,
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
-        self._new = self.table.copy()
+        self.cells, self._new = self.table.view(EXPLICIT.cells)[0], self.table.copy()
 
     def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
         """Begin a run: cells as they are when new, and the addresses of tables that the run has set up."""
