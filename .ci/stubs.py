@@ -16,7 +16,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic_core import PydanticUndefined
 
 import stiffmbs
-from stiffmbs.describe.element import Element, JointName
+from stiffmbs.describe.element import Element
+from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.formula import Formula
 from stiffmbs.describe.marker import MarkerReference
