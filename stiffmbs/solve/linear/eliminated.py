@@ -66,7 +66,7 @@ class Eliminated:
                 layout, self._lists = ENTRY_ELIMINATION, entry_lists(joints.rows, system, kept)
             force = system.term("acceleration", "f")
             arrays = {
-                "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u),
+                "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
                 "lists": packed(layout, self._lists),
             }  # fmt: skip
             numbers = {

@@ -47,7 +47,7 @@ def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any
     mass, number = system.mass.reshape(-1, 3), {both: m for m, both in enumerate(beside)}
     starts = list(accumulate(map(len, joints.below), initial=0))
     lists = {
-        "pin": _rows(joints, pins, gamma.source[np.argsort(gamma.row)]),
+        "pin": _rows(joints, pins, gamma.source[np.argsort(gamma.row)], len(mass)),
         "inverse": [1.0 / mass[side.body] if side else NOTHING for sides in pins for side in _both(sides)],
         "product": [
             (8 * k + 4 * own, 8 * later + 4 * other)
@@ -98,12 +98,12 @@ def _both(sides: list[Side]) -> tuple[Side, Side | None]:
     return sides[0], sides[1] if len(sides) == 2 else None
 
 
-def _rows(joints: Joints, pins: list[list[Side]], gamma: np.ndarray) -> list[tuple[int, ...]]:
-    """The rows of ``pin``; the ground, whose inverse mass is 0, stands there as the other body."""
+def _rows(joints: Joints, pins: list[list[Side]], gamma: np.ndarray, ground: int) -> list[tuple[int, ...]]:
+    """The rows of ``pin``; the ground, whose inverse mass is 0, stands behind all bodies."""
     found = []
     for rows, sides in zip(joints.rows, pins, strict=True):
         one, other = sides[0], sides[-1]
         row = int(rows[0])
         places = one.first, one.second, other.first, other.second, int(gamma[row]), int(gamma[row + 1])
-        found.append((*places, 3 * one.body, 3 * other.body, row))
+        found.append((*places, 3 * one.body, 3 * (other.body if len(sides) == 2 else ground), row))
     return found

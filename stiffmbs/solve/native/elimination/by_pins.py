@@ -7,6 +7,7 @@ trees, as that of the articulated-body algorithm does (Featherstone, Rigid Body 
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
+from stiffmbs.compile.machine.native.quads import plus_product
 from stiffmbs.solve.native.elimination.digits import SMALL, keeps_digits
 from stiffmbs.solve.native.tables.linear import PIN_ELIMINATION
 
@@ -25,15 +26,16 @@ def _assemble(r, e, values):
         p_i, a_i, r_i, b_i = first[0], first[1], second[0], second[1]
         first, second = shifted(values, pin[2]), shifted(values, pin[3])
         p_j, a_j, r_j, b_j = first[0], first[1], second[0], second[1]
-        x, y = -values[pin[4]], -values[pin[5]]
+        i, j = shifted(r.a, pin[6]), shifted(r.a, pin[7])
         wp_i, wr_i, wa_i, wb_i = p_i * m[0], r_i * m[1], a_i * m[2], b_i * m[2]
         wp_j, wr_j, wa_j, wb_j = p_j * m[3], r_j * m[4], a_j * m[5], b_j * m[5]
-        i, j = shifted(r.a, pin[6]), shifted(r.a, pin[7])
-        x += wp_i * i[0] + wa_i * i[2] + (wp_j * j[0] + wa_j * j[2])
-        y += wr_i * i[1] + wb_i * i[2] + (wr_j * j[1] + wb_j * j[2])
-        xx = p_i * wp_i + a_i * wa_i + (p_j * wp_j + a_j * wa_j)
-        xy = a_i * wb_i + a_j * wb_j
-        yy = r_i * wr_i + b_i * wb_i + (r_j * wr_j + b_j * wb_j)
+        x = plus_product(plus_product(-values[pin[4]], wp_i, i[0]), wa_i, i[2])
+        x = plus_product(plus_product(x, wp_j, j[0]), wa_j, j[2])
+        y = plus_product(plus_product(-values[pin[5]], wr_i, i[1]), wb_i, i[2])
+        y = plus_product(plus_product(y, wr_j, j[1]), wb_j, j[2])
+        xx = plus_product(plus_product(p_i * wp_i, a_i, wa_i) + p_j * wp_j, a_j, wa_j)
+        xy = plus_product(a_i * wb_i, a_j, wb_j)
+        yy = plus_product(plus_product(r_i * wr_i, b_i, wb_i) + r_j * wr_j, b_j, wb_j)
         w[0], w[1], w[2], w[3] = wp_i, wr_i, wa_i, wb_i
         w[4], w[5], w[6], w[7] = wp_j, wr_j, wa_j, wb_j
         own, diagonal, rhs = shifted(e.block, 4 * k), shifted(e.diagonal, 2 * k), shifted(e.x, 2 * k)
@@ -44,53 +46,57 @@ def _assemble(r, e, values):
         product, m = shifted(e.product, PRODUCT * k), shifted(e.mass, 3 * k)
         v, w, beside = shifted(e.w, product[0]), shifted(e.w, product[1]), shifted(e.beside, 4 * k)
         p, s, a, b = v[0] * m[0], v[1] * m[1], v[2] * m[2], v[3] * m[2]
-        wp, wr, wa, wb = w[0], w[1], w[2], w[3]
-        beside[0], beside[1] = p * wp + a * wa, a * wb
-        beside[2], beside[3] = b * wa, s * wr + b * wb
+        wa, wb = w[2], w[3]
+        xx, yy = plus_product(p * w[0], a, wa), plus_product(s * w[1], b, wb)
+        beside[0], beside[1], beside[2], beside[3] = xx, a * wb, b * wa, yy
 
 
 @compiled
 def _factored(r, e):
-    """Blocks eliminated one after the other, and x with them; whether all pivots kept enough digits.
+    """Blocks eliminated one after the other, and x with them to D^-1 L^-1 x; whether all pivots kept enough digits.
 
-    Blocks on the diagonal receive their inverses, and `scaled` those beside them multiplied by these.
+    Each block on the diagonal is overwritten by its own 1/D and L, and `scaled` receives -D^-1 L^-1 times those beside it.  (Inverses of
+    blocks would take less, but lose digits where a body is far lighter than others.)
     """
     r.kept = 1.0
     at = 0
     for k in range(e.n):
         own, diagonal, x = shifted(e.block, 4 * k), shifted(e.diagonal, 2 * k), shifted(e.x, 2 * k)
         xx, xy, yy = own[0], own[1], own[2]
-        determinant = xx * yy - xy * xy
+        determinant = plus_product(xx * yy, -xy, xy)
         kept = xx > SMALL * diagonal[0] and determinant > SMALL * xx * diagonal[1]
         if not kept and not keeps_digits(r, xx, diagonal[0]):
             return False
         if not kept and not keeps_digits(r, determinant / xx, diagonal[1]):
             return False
-        inverse = 1.0 / determinant
-        xx, xy, yy = yy * inverse, -xy * inverse, xx * inverse
-        x0, x1 = xx * x[0] + xy * x[1], xy * x[0] + yy * x[1]
-        own[0], own[1], own[2] = xx, xy, yy
-        x[0], x[1] = x0, x1
+        first = 1.0 / xx
+        second = xx * (1.0 / determinant)  # beside the other division, which takes as long
+        lower = xy * first
+        x0, x1 = x[0], plus_product(x[1], -lower, x[0])
+        own[0], own[1], own[2] = first, lower, second
+        x[0], x[1] = x0 * first, x1 * second
         end = e.start[k + 1]
         for m in range(e.start[k], end):
-            o, v = shifted(e.beside, 4 * m), shifted(e.scaled, 4 * m)
-            o00, o01, o10, o11 = o[0], o[1], o[2], o[3]
-            v00, v01, v10, v11 = xx * o00 + xy * o10, xx * o01 + xy * o11, xy * o00 + yy * o10, xy * o01 + yy * o11
-            v[0], v[1], v[2], v[3] = v00, v01, v10, v11
-            later = e.later[m]
+            o, scaled, later = shifted(e.beside, 4 * m), shifted(e.scaled, 4 * m), e.later[m]
             into, rhs = shifted(e.block, 4 * later), shifted(e.x, 2 * later)
-            d0, d1, d2 = o00 * v00 + o10 * v10, o00 * v01 + o10 * v11, o01 * v01 + o11 * v11
-            into[0] -= d0
-            into[1] -= d1
-            into[2] -= d2
-            rhs[0] -= o00 * x0 + o10 * x1
-            rhs[1] -= o01 * x0 + o11 * x1
+            o00, o01 = o[0], o[1]
+            o10, o11 = plus_product(o[2], -lower, o00), plus_product(o[3], -lower, o01)
+            s00, s01, s10, s11 = -(o00 * first), -(o01 * first), -(o10 * second), -(o11 * second)
+            d0 = plus_product(plus_product(into[0], s00, o00), s10, o10)
+            d1 = plus_product(plus_product(into[1], s00, o01), s10, o11)
+            d2 = plus_product(plus_product(into[2], s01, o01), s11, o11)
+            b0 = plus_product(plus_product(rhs[0], s00, x0), s10, x1)
+            b1 = plus_product(plus_product(rhs[1], s01, x0), s11, x1)
+            scaled[0], scaled[1], scaled[2], scaled[3] = s00, s01, s10, s11
+            into[0], into[1], into[2] = d0, d1, d2
+            rhs[0], rhs[1] = b0, b1
             for n in range(m + 1, end):
                 o, into = shifted(e.beside, 4 * n), shifted(e.beside, 4 * e.update[at])
-                into[0] -= v00 * o[0] + v10 * o[2]
-                into[1] -= v00 * o[1] + v10 * o[3]
-                into[2] -= v01 * o[0] + v11 * o[2]
-                into[3] -= v01 * o[1] + v11 * o[3]
+                o10, o11 = o[2] - lower * o[0], o[3] - lower * o[1]
+                into[0] += s00 * o[0] + s10 * o10
+                into[1] += s00 * o[1] + s10 * o11
+                into[2] += s01 * o[0] + s11 * o10
+                into[3] += s01 * o[1] + s11 * o11
                 at += 1
     r.most_kept = max(r.most_kept, r.kept)
     return True
@@ -101,38 +107,47 @@ def _forward(e):
     """x overwritten by D^-1 L^-1 x."""
     for k in range(e.n):
         own, x = shifted(e.block, 4 * k), shifted(e.x, 2 * k)
-        x0, x1 = x[0], x[1]
-        x[0], x[1] = own[0] * x0 + own[1] * x1, own[1] * x0 + own[2] * x1
+        x0, x1 = x[0], x[1] - own[1] * x[0]
+        x[0], x[1] = x0 * own[0], x1 * own[2]
         for m in range(e.start[k], e.start[k + 1]):
-            v, rhs = shifted(e.scaled, 4 * m), shifted(e.x, 2 * e.later[m])
-            rhs[0] -= v[0] * x0 + v[2] * x1
-            rhs[1] -= v[1] * x0 + v[3] * x1
+            scaled, rhs = shifted(e.scaled, 4 * m), shifted(e.x, 2 * e.later[m])
+            rhs[0] += scaled[0] * x0 + scaled[2] * x1
+            rhs[1] += scaled[1] * x0 + scaled[3] * x1
 
 
 @compiled
 def _backward(r, e):
     """x overwritten by L^-T x, and W^T x taken out of r.a."""
     for k in range(e.n - 1, -1, -1):
-        x = shifted(e.x, 2 * k)
+        x, pin, w = shifted(e.x, 2 * k), shifted(e.pin, PIN * k), shifted(e.w, 8 * k)
         x0, x1 = x[0], x[1]
         for m in range(e.start[k], e.start[k + 1]):
-            v, after = shifted(e.scaled, 4 * m), shifted(e.x, 2 * e.later[m])
-            x0 -= v[0] * after[0] + v[1] * after[1]
-            x1 -= v[2] * after[0] + v[3] * after[1]
+            scaled, after = shifted(e.scaled, 4 * m), shifted(e.x, 2 * e.later[m])
+            y0, y1 = after[0], after[1]
+            x0 = plus_product(plus_product(x0, scaled[0], y0), scaled[1], y1)
+            x1 = plus_product(plus_product(x1, scaled[2], y0), scaled[3], y1)
+        x0 = plus_product(x0, -e.block[4 * k + 1], x1)
         x[0], x[1] = x0, x1
-        pin, w = shifted(e.pin, PIN * k), shifted(e.w, 8 * k)
         i, j = shifted(r.a, pin[6]), shifted(r.a, pin[7])
-        i[0] -= w[0] * x0
-        i[1] -= w[1] * x1
-        i[2] -= w[2] * x0 + w[3] * x1
-        j[0] -= w[4] * x0
-        j[1] -= w[5] * x1
-        j[2] -= w[6] * x0 + w[7] * x1
+        i0, i1 = plus_product(i[0], -w[0], x0), plus_product(i[1], -w[1], x1)
+        j0, j1 = plus_product(j[0], -w[4], x0), plus_product(j[1], -w[5], x1)
+        i2 = plus_product(plus_product(i[2], -w[2], x0), -w[3], x1)
+        j2 = plus_product(plus_product(j[2], -w[6], x0), -w[7], x1)
+        i[0], i[1], i[2] = i0, i1, i2
+        j[0], j[1], j[2] = j0, j1, j2
+
+
+@compiled
+def _clear_ground(r):
+    """No force acts on the ground, which stands behind all bodies."""
+    for k in range(r.n_u, r.n_u + 3):
+        r.a[k] = 0.0
 
 
 @compiled
 def accelerate_by_pins(r, e, s, values):
     """From f in r.a, u' there and multipliers in lam; whether that could be done."""
+    _clear_ground(r)
     _assemble(r, e, values)
     if not _factored(r, e):
         return False
@@ -148,6 +163,7 @@ def accelerate_by_pins(r, e, s, values):
 @compiled
 def move_by_pins(r, e, violations):
     """In r.a the smallest change of velocities that closes violations."""
+    _clear_ground(r)
     for k in range(e.n):
         row = e.pin[PIN * k + 8]
         e.x[2 * k], e.x[2 * k + 1] = violations[row], violations[row + 1]
