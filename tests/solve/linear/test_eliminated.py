@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.bench.problems.chain_in_space import chain_in_space
 from stiffmbs.compile.machine.routines import Routine
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.native.tables.linear import ELIMINATED as ELIMINATED_TABLE
 from stiffmbs.stress.random_space import random_space_tree
 
