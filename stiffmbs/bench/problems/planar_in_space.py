@@ -15,7 +15,7 @@ from ...jobs.in_space import in_space
 from ...jobs.job import Job, prepare
 from ...jobs.load_scene import load_scene
 from ..benchmark import Row
-from .example_scenes import example_scenes
+from ..scenes.examples import example_scenes
 
 ROUNDS = 9
 
