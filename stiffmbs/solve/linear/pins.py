@@ -100,7 +100,7 @@ def _both(sides: list[Side]) -> tuple[Side, Side | None]:
 
 def _rows(joints: Joints, pins: list[list[Side]], gamma: np.ndarray, ground: int) -> list[tuple[int, ...]]:
     """The rows of ``pin``; the ground, whose inverse mass is 0, stands behind all bodies."""
-    found = []
+    found: list[tuple[int, ...]] = []
     for rows, sides in zip(joints.rows, pins, strict=True):
         one, other = sides[0], sides[-1]
         row = int(rows[0])
