@@ -17,9 +17,9 @@ from pydantic_core import PydanticUndefined
 
 import stiffmbs
 from stiffmbs.describe.element import Element
-from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.formula import Formula
+from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.marker import MarkerReference
 from stiffmbs.describe.python_function import PythonFunction
 from stiffmbs.describe.roads.road import Road
