@@ -285,7 +285,8 @@ class Dynamics:
             if done < block.stop:
                 break
         q, u, acceleration, lam, values, judged = (array[:done] for array in rows)
+        position, velocity, drift, log_determinant = judged.T
         return OutputRows(
             t[:done], q, u, acceleration, lam, values, kinetic[:done], potential[:done], power[:done],
-            *judged.T, int(self._cells["status"]),
+            position, velocity, drift, log_determinant, int(self._cells["status"]),
         )  # fmt: skip
