@@ -231,6 +231,18 @@ class System:
         group, element = self._writer("event_function", limit)
         return f"'{group.names[element]}': {group.kind.element.beyond}"  # type: ignore[attr-defined]
 
+    @cached_property
+    def doubts(self) -> tuple[np.ndarray, tuple[str, ...]]:
+        """For each limit of a force, the value below which the motion is doubtful, and what is doubtful there."""
+        found = [
+            (group.kind.element.doubtful, f"'{name}' {group.kind.element.doubt}")  # type: ignore[attr-defined]
+            for group in self.groups
+            if group.entries["limit"]
+            for name in group.names
+            for _ in range(group.entries["limit"])
+        ]
+        return np.array([value for value, _ in found]), tuple(words for _, words in found)
+
     def _writer(self, term_set: str, at: int) -> tuple[Group, int]:
         for g, group in enumerate(self.groups):
             for k, term in enumerate(TERM_SETS[term_set]):
