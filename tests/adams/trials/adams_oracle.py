@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ..minimal_coordinates import turned
+from ...minimal_coordinates import turned
 
 
 def euler(*degrees) -> np.ndarray:

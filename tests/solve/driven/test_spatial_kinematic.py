@@ -10,7 +10,7 @@ import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.spatial import AppliedForce, Body, Distance, Drive, Marker, Model, Prismatic, Revolute
 
-from ..spatial_loops import CRANK, ground, parallelogram, slider_crank
+from ...spatial_loops import CRANK, ground, parallelogram, slider_crank
 
 START, SPEED = 0.7, 7.0
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..minimal_coordinates import turned
+from ...minimal_coordinates import turned
 from . import adams_joints as joints
 from .adams_oracle import Marker, Mechanism, Part
 
