@@ -13,7 +13,7 @@ CHANGES = {
     "bouncing_ball.yaml": [],
     "stick_slip.yaml": [],
     "governor.yaml": [],
-    "front_axle.yaml": [],
+    "vehicles/front_axle.yaml": [],
 }
 
 

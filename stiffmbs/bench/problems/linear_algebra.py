@@ -111,7 +111,7 @@ class LinearAlgebra:
 
 
 BENCHMARKS = (
-    LinearAlgebra("front_axle", scene("front_axle")),
+    LinearAlgebra("front_axle", scene("vehicles/front_axle")),
     *(LinearAlgebra(name, scene(name)) for name in ("governor", "andrews", "spatial_chain")),
     *(LinearAlgebra(f"chain_in_space_{rods}", partial(chain_in_space, rods)) for rods in (10, 100)),
 )

@@ -23,7 +23,7 @@ def test_auto_leaves_them_to_bdf():
     assert swing_error(solution) < 1e-5
 
 
-@pytest.mark.parametrize("scene", ["andrews", "elastic_bearing", "half_car_at_rest", "stick_slip"])
+@pytest.mark.parametrize("scene", ["andrews", "elastic_bearing", "vehicles/half_car_at_rest", "stick_slip"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
 def test_no_other_steps_are_taken_for_such(examples, scene, rtol, monkeypatch):
     monkeypatch.setattr(rounding, "APART", 50)
