@@ -46,6 +46,6 @@ def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, see
         (
             *(singular_passage_sentence(dynamics, rows) if rows.lam.size else ()),
             *(lost_turns_sentence(dynamics, rows) if dynamics.system.n_counters else ()),
-            *near_limits_sentence(dynamics, rows),
+            *(near_limits_sentence(dynamics, rows) if dynamics.system.has_limits else ()),
         ),
     )

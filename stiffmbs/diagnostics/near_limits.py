@@ -24,7 +24,7 @@ def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     """
     system, state = dynamics.system, dynamics.state
     first, end = system.first_limit, system.n_event_functions
-    if first == end or not len(rows.t):
+    if not len(rows.t):
         return
     doubtful, words = system.doubts
     for k in np.unique(np.linspace(0, len(rows.t) - 1, min(len(rows.t), MOST_INSTANTS)).astype(int)):
