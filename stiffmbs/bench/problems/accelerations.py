@@ -10,7 +10,7 @@ import numpy as np
 
 from ...compile.machine.routines import Routine
 from ...describe.model_data import ModelData
-from ...jobs.run import prepare
+from ...jobs.job import prepare
 from ..benchmark import Row
 from ..by_hand.chain_minimal import accelerations
 from ..by_hand.loop import fast

@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.bench.problems.chain_in_space import chain_in_space
 from stiffmbs.compile.machine.routines import Routine
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.stress.random_space import random_space_tree
 
 ELIMINATED = Routine("stiffmbs.solve.native.eliminated", "accelerate", "int64(float64, float64*, int64*)")
