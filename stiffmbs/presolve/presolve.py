@@ -73,7 +73,9 @@ class Part:
         """Write the states of the bodies of the whole, one state a row, from those of the part's bodies."""
         n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
         into_q[:, self.behind] = q[:, self.kept]
-        if self._is_whole and len(into_u[0]) == n_u * count:  # nothing to pick: with thousands of rows picking takes milliseconds
+        if (
+            self._is_whole and len(into_u[0]) == n_u * count
+        ):  # nothing to pick: with thousands of rows picking takes milliseconds
             into_q[:, : n_q * count], into_u[:] = q[:, : n_q * count], u
             self._turn(into_q[:, : n_q * count].reshape(len(q), count, n_q), into_u.reshape(len(u), count, n_u), q)
             return
