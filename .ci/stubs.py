@@ -16,9 +16,10 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic_core import PydanticUndefined
 
 import stiffmbs
-from stiffmbs.describe.element import Element, JointName
+from stiffmbs.describe.element import Element
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.formula import Formula
+from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.marker import MarkerReference
 from stiffmbs.describe.python_function import PythonFunction
 from stiffmbs.describe.roads.road import Road
