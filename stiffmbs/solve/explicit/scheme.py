@@ -37,7 +37,7 @@ class Scheme:
         Differences to embedded schemes, none for a scheme of fixed step.  With two, the estimate is
         h |e_1|^2 / sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
     dense : tuple of Row
-        The coefficients behind the third of the interpolant (`stiffmbs.solve.native.interpolant`).
+        The coefficients behind the third of the interpolant (`stiffmbs.solve.native.explicit.interpolant`).
     exponent, memory : float
         Of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory) last_error^memory.
     stability : float

@@ -7,7 +7,7 @@ from math import isfinite, sqrt
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.solve.native.stages import add_rates_behind, copied, load_state, rates
+from stiffmbs.solve.native.explicit.stages import add_rates_behind, copied, load_state, rates
 
 NO_RATE, SHORT, LONGER_AT_REST, LONGEST_FACTOR = 1e-15, 1e-6, 1e-3, 100.0
 """Rates below which nothing bounds the step, the length tried where rates tell nothing of one, s, the part of a tried length that is
