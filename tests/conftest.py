@@ -7,7 +7,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from stiffmbs.commands.starting.shipped import scene_files
+
 EXAMPLES = Path(__file__).parent.parent / "examples"
+EXAMPLE_SCENES = scene_files()
+"""All example scenes by name, those in folders by theme too."""
 G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 
 

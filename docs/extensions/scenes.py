@@ -37,23 +37,24 @@ DRAWING = """\
 
 
 class Scenes(SphinxDirective):
-    """All scenes of a folder, a section each."""
+    """All scenes of a folder and of its folders by theme, a section each."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         folder = Path(self.env.srcdir, self.arguments[0])
-        text = "\n".join(self._section(path) for path in sorted(folder.glob("*.yaml")))
+        scenes = sorted([*folder.glob("*.yaml"), *folder.glob("*/*.yaml")], key=lambda path: path.stem)
+        text = "\n".join(self._section(path, path.relative_to(folder).with_suffix("").as_posix()) for path in scenes)
         return self.parse_text_to_nodes(text, allow_section_headings=True)
 
-    def _section(self, path: Path) -> str:
+    def _section(self, path: Path, name: str) -> str:
         self.env.note_dependency(str(path))
         scene = load_scene(path)
-        figure = PLOT.format(name=path.stem) if scene.figure else ""
-        drawing = DRAWING.format(name=path.stem)
+        figure = PLOT.format(name=name) if scene.figure else ""
+        drawing = DRAWING.format(name=name)
         title = f"{scene.name}\n{'-' * len(scene.name)}\n"
         source = ".. code-block:: yaml\n\n" + indent(path.read_text(encoding="utf-8"), "   ")
-        return f"{title}\n``examples/{path.name}``\n\n{drawing}\n{figure}\n{source}\n"
+        return f"{title}\n``examples/{name}.yaml``\n\n{drawing}\n{figure}\n{source}\n"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

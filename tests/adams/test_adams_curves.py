@@ -9,7 +9,7 @@ import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.adams.load import read_adams
 
-from .adams_oracle import euler
+from .trials.adams_oracle import euler
 
 G = 9.80665
 BEAD = """a bead

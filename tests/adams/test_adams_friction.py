@@ -8,8 +8,8 @@ import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.adams.load import read_adams
 
-from .adams_oracle import euler
-from .adams_trials import played
+from .trials.adams_oracle import euler
+from .trials.adams_trials import played
 
 G = 9.80665
 TIMES = np.linspace(0, 0.4, 21)

@@ -9,8 +9,8 @@ import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.adams.load import read_adams
 
-from .adams_random_statements import random_statements
 from .test_adams_touching_curves import FACE, dataset, ellipse
+from .trials.adams_random_statements import random_statements
 
 SIGNS = ',=/&!()*-0 9DE.:\\"'
 

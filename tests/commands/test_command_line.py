@@ -13,6 +13,8 @@ from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
 
+from ..conftest import EXAMPLE_SCENES
+
 SCENE = """
 name: Cart on a rail
 gravity: [0, -9.81]
@@ -268,14 +270,14 @@ def test_json_also_reports_wrong_input(in_folder):
     assert "bodies.cart.mass" in report["message"]
 
 
-def test_schema_accepts_the_examples_and_refuses_a_misspelt_key(examples):
+def test_schema_accepts_the_examples_and_refuses_a_misspelt_key():
     import jsonschema
     from ruamel.yaml import YAML
 
     schema = json.loads(stiffmbs("schema").output)
     jsonschema.Draft202012Validator.check_schema(schema)
     validator = jsonschema.Draft202012Validator(schema)
-    for path in sorted(examples.glob("*.yaml")):
+    for path in EXAMPLE_SCENES.values():
         scene = YAML(typ="safe").load(path)
         validator.validate(scene)
         scene["gravty"] = [0, 0]

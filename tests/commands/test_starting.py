@@ -24,7 +24,8 @@ def call(tmp_path, monkeypatch):
 
 def test_all_examples_are_listed_with_what_they_are_about(call, examples):
     listed = json.loads(call("examples", "list", "--json").output)["examples"]
-    assert listed.keys() == {path.stem for path in examples.glob("*.yaml")}
+    scenes = [path for path in examples.rglob("*.yaml") if path.parent.name != "parts"]
+    assert listed.keys() == {path.stem for path in scenes} and len(listed) == len(scenes)
     assert all(len(words) > 10 for words in listed.values())
     assert listed["cart_pendulum"] in call("examples", "list").output
 
@@ -56,13 +57,18 @@ def test_installed_examples_are_found_by_the_record_of_the_installation(tmp_path
 
 def test_examples_are_copied_with_their_parts_and_nothing_is_written_over(call, examples):
     assert call("examples", "copy", "front_axle", "--to", "mine").exit_code == 0
-    assert Path("mine/front_axle.yaml").read_bytes() == (examples / "front_axle.yaml").read_bytes()
-    assert call("check", "mine/front_axle.yaml").exit_code == 0
+    assert (
+        Path("mine/vehicles/front_axle.yaml").read_bytes() == (examples / "vehicles" / "front_axle.yaml").read_bytes()
+    )
+    assert call("check", "mine/vehicles/front_axle.yaml").exit_code == 0
     again = call("examples", "copy", "front_axle", "--to", "mine")
     assert again.exit_code == 2
     assert "found a file" in again.stderr
     assert call("examples", "copy").exit_code == 0
-    assert {path.name for path in Path("examples").glob("*.yaml")} == {path.name for path in examples.glob("*.yaml")}
+    copied, installed = (
+        {path.relative_to(each) for path in each.rglob("*.*")} for each in (Path("examples"), examples)
+    )
+    assert copied == installed
 
 
 def test_an_example_is_run_with_the_options_of_run(call):

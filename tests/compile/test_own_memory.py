@@ -15,7 +15,7 @@ from stiffmbs.solve.ida.paired_columns import PairedColumns
 from stiffmbs.solve.linear.elimination_order import EliminationOrder
 from stiffmbs.solve.linear.factors import factors_of
 
-from ..solve.test_linear_solvers import Solver, scattered
+from ..solve.linear.test_linear_solvers import Solver, scattered
 
 CAPACITY, L = (list(FACTORS).index(name) for name in ("capacity", "l"))
 
@@ -27,7 +27,7 @@ def without_fill(order, *_):
 
 @pytest.mark.parametrize("kind", [FixedOrder, PairedColumns])
 def test_factors_grow_beyond_what_is_expected(kind, monkeypatch):
-    monkeypatch.setattr("tests.solve.test_linear_solvers.EliminationOrder", without_fill)
+    monkeypatch.setattr("tests.solve.linear.test_linear_solvers.EliminationOrder", without_fill)
     rng = np.random.default_rng(0)
     pattern = scattered(rng, 120)
     solver = Solver(kind, pattern)

@@ -15,6 +15,8 @@ from stiffmbs.describe.units.quantity import VALUES, in_si
 from stiffmbs.describe.units.units import UNITS, Quantity
 from stiffmbs.spatial import in_space
 
+from ..conftest import EXAMPLE_SCENES
+
 PLANE = {
     "parameters": {"k": "5 N/m", "F": "5 N", "w": 3, "n": 2, "c": "2 N s/m"},
     "tables": {"push": {"table": [[0, 0], [1, 1]]}},
@@ -234,10 +236,10 @@ def test_a_number_set_in_place_of_one_with_a_unit_has_that_unit(examples):
         stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e7 N")])
 
 
-def test_only_counts_have_the_name_of_a_unit_in_the_examples(examples):
+def test_only_counts_have_the_name_of_a_unit_in_the_examples():
     from ruamel.yaml import YAML
 
-    for path in sorted(examples.glob("*.yaml")):
+    for path in EXAMPLE_SCENES.values():
         named = set(YAML(typ="safe").load(path).get("parameters") or {}) & set(UNITS)
         assert named <= {"N"}, path.name
 

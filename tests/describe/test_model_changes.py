@@ -1,7 +1,6 @@
 """Models are changed by handles, replaced and removed parts; they are written as scenes; adding to them is linear."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,9 +23,9 @@ from stiffmbs import (
 )
 from stiffmbs.describe.model import PlanarData
 
+from ..conftest import EXAMPLE_SCENES
+
 SECTIONS = ("name", "gravity", "markers", "bodies", "states", "joints", "forces", "requests")
-USUAL = sorted((Path(stiffmbs.__file__).parent / "jobs").glob("*.yaml"))
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
 
 
 def cart_pendulum():
@@ -150,7 +149,7 @@ def test_parts_are_removed():
     assert model.check().degrees_of_freedom == 1
 
 
-@pytest.mark.parametrize("path", [*USUAL, *EXAMPLES], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EXAMPLE_SCENES.values(), ids=lambda path: path.stem)
 def test_a_scene_of_a_model_is_the_model(path):
     scene = stiffmbs.load_scene(path)
     model = (stiffmbs if isinstance(scene, PlanarData) else spatial).Model(scene.name, scene.gravity)

@@ -133,7 +133,7 @@ def test_the_body_with_the_largest_imbalance_is_named(few_moves):
 
 @pytest.mark.long
 def test_wheels_that_spin_freely_are_free_and_not_unstable(examples):
-    found = stiffmbs.equilibrium(examples / "leaf_sprung_car.yaml")
+    found = stiffmbs.equilibrium(examples / "vehicles" / "leaf_sprung_car.yaml")
     assert not any("unstable" in note for note in found.notes)
     wheels = [f"{axle}.{side}_wheel.wy" for axle in ("front", "rear") for side in ("left", "right")]
     assert set(found.free) == {*wheels, "chassis.vx", "chassis.vy", "chassis.wz"}

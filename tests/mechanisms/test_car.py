@@ -50,7 +50,7 @@ def test_bushing_loads_add_up_at_rest(examples):
 
 
 def test_a_leaf_sprung_car_on_bumps_is_the_same_by_both_integrators(examples):
-    scene = examples / "leaf_sprung_car.yaml"
+    scene = examples / "vehicles" / "leaf_sprung_car.yaml"
     found = stiffmbs.run(scene, rtol=1e-8, solver="bdf", points=301)
     exact = stiffmbs.run(scene, rtol=1e-10, solver="projected", scheme="dop853", points=301)
     for channel, bound in (("chassis.z", 1e-8), ("front.axle.z", 1e-8), ("front.left.front_bush.fz", 1e-2)):

@@ -5,13 +5,12 @@ import pytest
 
 import stiffmbs
 
-from ..conftest import EXAMPLES
+from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
-SCENES = sorted(EXAMPLES.glob("*.yaml"))
 OVERCONSTRAINED = ("bricard", "door")
 
 
-@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", EXAMPLE_SCENES.values(), ids=lambda path: path.stem)
 def test_scene_runs_and_has_what_its_figure_shows(path):
     scene = stiffmbs.load_scene(path)
     solution = stiffmbs.run(scene, duration=min(scene.run.duration, 0.2))

@@ -11,9 +11,9 @@ from stiffmbs.describe.element import Element
 from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial import model as spatial_model
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 
-from ..conftest import EXAMPLES
+from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
 RTOL, STIFF_RTOL = 1e-10, 1e-11
 """Of stiff scenes a tighter one: accelerations beside 1e9 N/m take 1e-10 m for 0.2 m/s^2."""
@@ -74,7 +74,7 @@ def check_same(scene, plane, space, energies=ENERGIES, agrees=AGREES):
     assert not [name for name in space.not_unique if name.rpartition(".")[2] in ("fx", "fy", "tz")]
 
 
-PLANAR = sorted(path for path in EXAMPLES.glob("*.yaml") if "\ndimensions: 3" not in path.read_text(encoding="utf-8"))
+PLANAR = [path for path in EXAMPLE_SCENES.values() if "\ndimensions: 3" not in path.read_text(encoding="utf-8")]
 DURATIONS = {
     "bar_pendulum": 1.0, "simple_pendulum": 1.0, "cart_pendulum": 1.0, "four_bars": 0.5, "chain": 0.6,
     "half_car": 0.3, "stick_slip": 0.8, "bouncing_ball": 0.6, "cam_follower": 0.05, "dead_centres": 0.3,
@@ -323,7 +323,7 @@ def test_each_closed_loop_has_three_equations_too_many_and_leaves_forces_across_
 
 def test_a_scene_that_starts_in_equilibrium_does_so_in_space():
     """With parts, of which the instances have other parameters."""
-    planar = stiffmbs.load_scene(EXAMPLES / "front_axle.yaml")
+    planar = stiffmbs.load_scene(EXAMPLES / "vehicles" / "front_axle.yaml")
     found = spatial.in_space(planar)
     first, second = (stiffmbs.run(scene, duration=0.3, points=3, rtol=1e-9) for scene in (planar, found))
     for channel in ("front.right.knuckle.y", "front.left.knuckle.y", "front.right.camber"):

@@ -12,7 +12,7 @@ from stiffmbs.tyres import Tyre
 
 from ..conftest import EXAMPLES
 
-SCENE = EXAMPLES / "leaf_sprung_car.yaml"
+SCENE = EXAMPLES / "vehicles" / "leaf_sprung_car.yaml"
 GRAVITY = np.array([0, 0, -9.81])
 
 

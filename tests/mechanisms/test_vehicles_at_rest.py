@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 
-from ..conftest import EXAMPLES
+from ..conftest import EXAMPLE_SCENES
 
 LEVEL = {"quarter_car": "roads.rough", "half_car_at_rest": None, "bushing_axle": "roads.ramp"}
 MASSES = {"quarter_car": 320 + 38, "half_car_at_rest": 1200 + 2 * 40}
@@ -16,7 +16,7 @@ MASSES = {"quarter_car": 320 + 38, "half_car_at_rest": 1200 + 2 * 40}
 @pytest.mark.parametrize("name", LEVEL)
 def test_a_vehicle_stays_at_rest_on_a_level_road(name):
     changes = [("V", "0"), *([(LEVEL[name], "{type: flat}")] if LEVEL[name] else [])]
-    scene = stiffmbs.load_scene(EXAMPLES / f"{name}.yaml", changes)
+    scene = stiffmbs.load_scene(EXAMPLE_SCENES[name], changes)
     mass = MASSES.get(name) or sum(body.mass for each, body in scene.bodies.items() if each != "tractor")
     run = stiffmbs.run(scene, duration=1.0, output=0.1)
     vertical = "y" if scene.dimensions == 2 else "z"
@@ -27,9 +27,7 @@ def test_a_vehicle_stays_at_rest_on_a_level_road(name):
 
 def test_the_half_car_from_its_rest_is_the_one_with_loads_by_hand():
     """The same car but for where its springs are in their laws: heights over the bump within a millimetre."""
-    by_hand, sought = (
-        stiffmbs.run(EXAMPLES / f"{name}.yaml", duration=1.5) for name in ("half_car", "half_car_at_rest")
-    )
+    by_hand, sought = (stiffmbs.run(EXAMPLE_SCENES[name], duration=1.5) for name in ("half_car", "half_car_at_rest"))
     height = [run["chassis.y"] - run["chassis.y"][0] for run in (by_hand, sought)]
     assert np.ptp(height[0]) > 0.04
     assert np.max(np.abs(height[0] - height[1])) < 1e-3

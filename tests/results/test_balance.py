@@ -12,7 +12,7 @@ from stiffmbs.solve.linear.elimination_order import elimination_order
 from stiffmbs.stress.families.stiffness.stiffness import bar_on_bushing
 from stiffmbs.stress.pendulum import bar_rate, swing
 
-from ..solve.test_native_ida import Problem, hanging_chain
+from ..solve.ida.test_native_ida import Problem, hanging_chain
 
 GRAVITY = 9.81
 

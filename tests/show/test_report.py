@@ -121,7 +121,7 @@ def test_wrong_input_gets_one_sentence(scene, output, part, tmp_path, monkeypatc
 
 @pytest.mark.long
 def test_a_car_s_page_has_its_axles_and_the_loads_of_its_bushings(page_of):
-    page = page_of("bushing_axle", "--no-verify", "--duration", "0.1", "--kc", "", "--kc", "rear", "--loads")
+    page = page_of("vehicles/bushing_axle", "--no-verify", "--duration", "0.1", "--kc", "", "--kc", "rear", "--loads")
     assert "Kinematics and compliance: left and right" in page.headings
     assert "Kinematics and compliance: rear" in page.headings and "Road loads" in page.headings
     assert any("found no body 'rear.left.upright'" in text for text in page.texts)

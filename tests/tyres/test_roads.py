@@ -203,7 +203,7 @@ def test_a_quarter_car_answers_a_random_road_as_its_transfer_function_says():
     """The load's variance from the road's density and the linear model's response, over a long stretch (no lift-off)."""
     import stiffmbs
 
-    path = Path(__file__).parents[2] / "examples" / "quarter_car.yaml"
+    path = Path(__file__).parents[2] / "examples" / "vehicles" / "quarter_car.yaml"
     changes = [
         ("roads.rough.start", "null"),
         ("roads.rough.roughness", "A"),

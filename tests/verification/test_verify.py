@@ -16,7 +16,7 @@ from stiffmbs.jobs import taken_again
 from stiffmbs.results.error_bars import between, error_bar
 from stiffmbs.show.digits import with_bar
 
-from ..conftest import EXAMPLES
+from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
 TOLERANCES = (1e-4, 1e-6, 1e-8)
 NEARLY_ALL, SMALLEST = 0.98, 0.3
@@ -191,7 +191,7 @@ LONG = ("bricard", "bushing_axle", "car", "governor", "leaf_sprung_car", "quarte
     "path",
     [
         pytest.param(path, marks=pytest.mark.long if path.stem in LONG else (), id=path.stem)
-        for path in sorted(EXAMPLES.glob("*.yaml"))
+        for path in EXAMPLE_SCENES.values()
     ],
 )
 def test_clean_scenes_give_no_warning(path):

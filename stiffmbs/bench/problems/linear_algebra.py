@@ -14,7 +14,7 @@ from ...compile.equations import Equations
 from ...compile.machine.routines import TERMS
 from ...compile.terms import TERM_SETS
 from ...describe.model_data import ModelData
-from ...jobs.run import Job, prepare
+from ...jobs.job import Job, prepare
 from ...solve.bdf import Integrator
 from ...solve.error_control.error_test import CHOSEN
 from ...solve.formulations import FORMULATIONS
@@ -111,7 +111,7 @@ class LinearAlgebra:
 
 
 BENCHMARKS = (
-    LinearAlgebra("front_axle", scene("front_axle")),
+    LinearAlgebra("front_axle", scene("vehicles/front_axle")),
     *(LinearAlgebra(name, scene(name)) for name in ("governor", "andrews", "spatial_chain")),
     *(LinearAlgebra(f"chain_in_space_{rods}", partial(chain_in_space, rods)) for rods in (10, 100)),
 )

@@ -12,12 +12,12 @@ import numpy as np
 from ...compile.bodies import BODY_KINDS
 from ...describe.model import PlanarData
 from ...jobs.in_space import in_space
+from ...jobs.job import Job, prepare
 from ...jobs.load_scene import load_scene
-from ...jobs.run import Job, prepare
 from ..benchmark import Row
+from ..scenes.examples import example_scenes
 
 ROUNDS = 9
-FOLDER = Path("examples")
 
 
 @dataclass(frozen=True)
@@ -69,4 +69,4 @@ def _planar(path: Path) -> bool:
     return "dimensions: 3" not in path.read_text(encoding="utf-8").splitlines()
 
 
-BENCHMARKS = tuple(InSpace(path) for path in sorted(FOLDER.glob("*.yaml")) if _planar(path))
+BENCHMARKS = tuple(InSpace(path) for path in example_scenes() if _planar(path))

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
+from ...jobs.job import prepare
 from ...jobs.load_scene import load_scene
-from ...jobs.run import prepare, run
+from ...jobs.run import run
 from ...structure.messages.presolve_report import unknowns
 from ..benchmark import Row
+from ..scenes.examples import example_scenes
 
 ROUNDS = 21
-FOLDER = Path("examples")
 
 
 @dataclass(frozen=True)
@@ -66,4 +67,4 @@ class Presolved:
         return f"{after} of {before} unknowns"
 
 
-BENCHMARKS = tuple(Presolved(path) for path in sorted(FOLDER.glob("*.yaml")))
+BENCHMARKS = tuple(Presolved(path) for path in example_scenes())

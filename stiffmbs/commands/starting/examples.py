@@ -47,11 +47,10 @@ def copy(names: tuple[str, ...], folder: Path) -> None:
     No file that is there already is written over.
     """
     with _refused():
-        chosen = [scene_file(name) for name in names]
-        source = examples_folder()
-        read_by_all = [path for path in sorted(source.rglob("*")) if path.is_file() and path.parent != source]
-        every = [path for path in sorted(source.iterdir()) if path.is_file()]
-        wanted = {path: folder / path.relative_to(source) for path in [*(chosen or every), *read_by_all]}
+        scenes, source = set(scene_files().values()), examples_folder()
+        chosen = [scene_file(name) for name in names] or sorted(scenes)
+        read_by_scenes = [path for path in sorted(source.rglob("*")) if path.is_file() and path not in scenes]
+        wanted = {path: folder / path.relative_to(source) for path in [*chosen, *read_by_scenes]}
         for target in wanted.values():
             if target.exists():
                 raise InputError(f"{target}: found a file, expected none: --to names another folder")

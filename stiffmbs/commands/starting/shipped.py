@@ -34,8 +34,12 @@ def examples_folder() -> Path:
 
 
 def scene_files() -> dict[str, Path]:
-    """The example scenes by name, in alphabetical order."""
-    return {path.stem: path for path in sorted(examples_folder().glob("*.yaml"))}
+    """The example scenes by name, in alphabetical order: those in the folder itself, and in its folders by theme."""
+    folder = examples_folder()
+    return {
+        path.stem: path
+        for path in sorted([*folder.glob("*.yaml"), *folder.glob("*/*.yaml")], key=lambda path: path.stem)
+    }
 
 
 def scene_file(name: str) -> Path:

@@ -1,7 +1,7 @@
 """What stands for a body's mass or inertia where another program takes none: so slight that nothing else feels it.
 
 A scene's bodies have both.  A link without mass in a chain changes reactions by some 1e-8
-(`tests/adams/test_adams_trial_parts.py`).
+(`tests/adams/trials/test_adams_trial_parts.py`).
 """
 
 from __future__ import annotations

@@ -7,8 +7,11 @@ Wanner, Solving Ordinary Differential Equations I (1993), eq. II.6.15 and the co
 
 from __future__ import annotations
 
+from math import isfinite
+
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.solve.native.stages import add_stages, copied, take_stage
+from stiffmbs.solve.native.statuses import NOT_FINITE_WITHIN
 
 ASTRAY = 100.0
 """Size of what stages add to the ends of a step, relative to these, from which on they have gone astray; with smooth
@@ -35,7 +38,10 @@ def prepare(x, c, s, m):
         for i in range(n):
             target[i] = 0.0
         add_stages(x, target, shifted(c.dense, row * c.extended), c.extended, h)
-    for i in range(_sound(x, c) * n, (3 + c.n_dense) * n):
+    sound = _sound(x, c)
+    if sound == 0:
+        return NOT_FINITE_WITHIN
+    for i in range(sound * n, (3 + c.n_dense) * n):
         p[i] = 0.0
     x.dense_ready = 1
     return 0
@@ -44,6 +50,8 @@ def prepare(x, c, s, m):
 @compiled
 def _sound(x, c):
     """How many of the polynomials count: where sums of stages tell nothing, the rates at the ends, or the ends alone.
+
+    None where a stage is no number: a Python function has failed, or a law ends beside the motion.
 
     At rest steps may be far longer than stability allows.  Their stages amplify rounding, those of the interpolant more than
     those of the step, whose error is still below the tolerance.
@@ -60,6 +68,8 @@ def _sound(x, c):
         ends += p[i] * p[i] * weight
         by_rates += (p[x.n + i] * p[x.n + i] + p[2 * x.n + i] * p[2 * x.n + i]) * weight
         by_stages += of_stages * weight
+    if not isfinite(ends + by_rates + by_stages):
+        return 0
     if by_stages <= max(x.n, ASTRAY**2 * (ends + by_rates)):
         return 3 + c.n_dense
     return 3 if by_rates <= max(x.n, ASTRAY**2 * ends) else 1

@@ -15,6 +15,8 @@ NO_MEMORY = -7
 """There is too little memory for the factors of a block system."""
 NO_STATE = -8
 """The equations of algebraic states have no unique solution near their last values, or Newton's iteration does not find it."""
+NOT_FINITE_WITHIN = -9
+"""A stage of the interpolant of an explicit step is not a finite number; the step itself is."""
 
 STEP_TOO_SMALL, STIFF = -4, -5
 PAUSED, AT_END, AT_EVENT, UNSTABLE = 0, 1, 2, 3

@@ -169,7 +169,7 @@ def test_a_mirrored_height_is_that_height():
 
 def test_the_schema_knows_parts():
     schema = jsonschema.Draft202012Validator(stiffmbs.scene_schema())
-    example = YAML(typ="safe").load(Path("examples/front_axle.yaml"))
+    example = YAML(typ="safe").load(Path("examples/vehicles/front_axle.yaml"))
     schema.validate(example)
     for wrong in (
         {"use": {"a": {"on": "car"}}},

@@ -19,10 +19,8 @@ from stiffmbs.show.drawing.palette import LOAD, MARKS
 from stiffmbs.show.drawing.poses import Poses, described_poses, poses_of
 from stiffmbs.show.drawing.view import from_angles, view_named
 
-from ...conftest import EXAMPLES
+from ...conftest import EXAMPLE_SCENES, EXAMPLES
 from ...random_parts import CASES, add_joints, random_element, refers_to_joints, three_bodies, three_bodies_in_space
-
-SCENES = sorted(path.stem for path in EXAMPLES.glob("*.yaml"))
 
 
 def run(*arguments):
@@ -47,10 +45,10 @@ def test_every_kind_is_drawn(dimensions, kind, form):
     json.dumps(drawing_json(drawing), allow_nan=False)
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", EXAMPLE_SCENES)
 def test_examples_are_drawn_as_they_are_described(scene):
     """Each body, and each element with a place, is on the picture, within the size that symbols are scaled to."""
-    data = stiffmbs.load_scene(EXAMPLES / f"{scene}.yaml")
+    data = stiffmbs.load_scene(EXAMPLE_SCENES[scene])
     drawing, poses = state_drawn(data, described=True)
     assert {part.body for part in drawing.parts} >= set(data.bodies)
     view = view_named("", data.dimensions, drawing.gravity)

@@ -7,6 +7,6 @@ from stiffmbs.studies.suspension.rig import axle_of
 
 
 def test_the_body_that_carries_the_axle_is_clamped():
-    text = (Path(__file__).parents[3] / "examples" / "leaf_sprung_car.yaml").read_text()
+    text = (Path(__file__).parents[3] / "examples" / "vehicles" / "leaf_sprung_car.yaml").read_text()
     assert axle_of(read_scene(text), "rear").body == "chassis"
     assert axle_of(read_scene(text.replace("chassis", "ladder")), "rear").body == "ladder"

@@ -1,0 +1,288 @@
+"""The symbolic element: what the equations of joints and forces are written in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from ...errors import InputError
+from .common_normal import common_normal
+from .continuous_angle import ContinuousAngle, counter
+from .differentiate import Derivatives, Way
+from .read import read
+from .relative_rotation import RelativeRotation, ShortestRotation, product
+from .spline import integral
+
+if TYPE_CHECKING:
+    from .referred import ReferredJoint
+
+COINCIDENT = sp.Float("1e-200")
+"""Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
+
+
+OF_ELEMENTS = (
+    "type",
+    "frames",
+    "angles",
+    "states",
+    "own",
+    "state_rates",
+    "breakpoints",
+    "derivatives",
+    "_rotations",
+    "kind",
+    "_joint",
+    "_coordinate",
+    "lam",
+)
+"""Attributes that are no fields."""
+
+Work = tuple[sp.Expr, sp.Expr]
+"""An effort, and what it does work on: a function of the pose, or its rate."""
+
+
+class SymbolicElement:
+    """An element with frames for its markers and symbols for its numbers.
+
+    Attributes
+    ----------
+    t : sympy.Symbol
+        Time.
+    frames : list of BodyFrame or of SpatialBodyFrame
+        The bodies, in the order of `Element.bodies`.
+    states : list of Symbol
+        States that it reads or determines, by slot.
+    own : list of Symbol
+        Those of the element's own, the first of them.
+    state_rates : tuple of Expr
+        Their rates, in the equations of joints.
+    angles : list of expressions
+        Those that count whole turns, in the order of their counters.
+    breakpoints : list of expressions
+        What changes its sign at breakpoints of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
+    derivatives : Derivatives
+        Of expressions in its symbols.
+    """
+
+    t = sp.Symbol("t", real=True)
+
+    def __init__(
+        self,
+        frames: list[Any],
+        fields: dict[str, object],
+        derivatives: Derivatives,
+        states: list[sp.Symbol],
+        n_own: int = 0,
+    ) -> None:
+        self.frames = frames
+        self.states, self.own = states, states[:n_own]
+        self.state_rates: tuple[sp.Expr, ...] = ()
+        self.angles: list[sp.Expr] = []
+        self.breakpoints: list[sp.Expr] = []
+        self.derivatives = derivatives
+        self._rotations: dict[tuple[Any, Any], RelativeRotation] = {}
+        self.__dict__.update(fields)
+
+    def __getattr__(self, name: str) -> Any:
+        known = (*(own for own in self.__dict__ if own not in OF_ELEMENTS), "t", "rate", "distance", "angle", "named")
+        raise AttributeError(f"found e.{name}, expected one of e.{', e.'.join(known)}")
+
+    @property
+    def q(self) -> sp.Matrix:
+        return sp.Matrix([symbol for frame in self.frames for symbol in frame.q])
+
+    @property
+    def u(self) -> sp.Matrix:
+        return sp.Matrix([symbol for frame in self.frames for symbol in frame.u])
+
+    @property
+    def a(self) -> sp.Matrix:
+        return sp.Matrix([symbol for frame in self.frames for symbol in frame.a])
+
+    @property
+    def velocities(self) -> list[sp.Symbol]:
+        """By what functions of the velocities are differentiated."""
+        return [symbol for frame in self.frames for symbol in frame.velocities]
+
+    def read(self, x: Any) -> sp.Expr:
+        """An expression of an element's equations as kernels can have it; its breakpoints are noted."""
+        return read(x, self._note)
+
+    def _note(self, breakpoint: sp.Expr) -> None:
+        if breakpoint not in self.breakpoints:
+            self.breakpoints.append(breakpoint)
+
+    def rate(self, x: Any) -> Any:
+        """Total time derivative of an expression, or of each in a matrix, at constant velocities."""
+        if isinstance(x, sp.MatrixBase):
+            return x.applyfunc(self.rate)
+        x = self.read(x)
+        if self.depends(x, self.states) and not self.state_rates:
+            raise InputError("found a state in an expression whose rate is needed, expected coordinates and time alone")
+        partial = self.derivatives.partial
+        own = (rate * partial(x, symbol) for symbol, rate in zip(self.states, self.state_rates, strict=False))
+        moving = (
+            rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
+            for frame in self.frames
+            for symbol, rate in frame.motion
+        )
+        return sp.Add(*moving, *own) + partial(x, self.t)
+
+    def named(self, x: Any) -> Any:
+        """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
+        if isinstance(x, sp.MatrixBase):
+            return x.applyfunc(self.named)
+        return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(self.read(x))
+
+    def variable(self, x: Any) -> sp.Symbol:
+        """A symbol for an expression, by which what follows from it can be differentiated (`slope`, `composed`)."""
+        return self.derivatives.variable(self.read(x), self._state)
+
+    def slope(self, x: Any, variable: sp.Symbol) -> sp.Expr:
+        """The derivative of an expression by a symbol that `variable` gave, other variables kept."""
+        return self.derivatives.partial(self.read(x), variable)
+
+    def composed(self, outputs: Iterable[Any], variables: Sequence[sp.Symbol]) -> list[sp.Expr]:
+        """Long expressions that depend on the state through a few variables alone: they are differentiated by these first."""
+        return [self.derivatives.composed(self.read(x), variables, self._state) for x in outputs]
+
+    @property
+    def _state(self) -> list[sp.Symbol]:
+        return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, *self.states, self.t]
+
+    def relative_rotation(self, i: Any, j: Any) -> RelativeRotation:
+        """How a marker is turned against another one, of another body in space."""
+        if (i, j) not in self._rotations:
+            self._rotations[i, j] = self._new_rotation(i, j)
+        return self._rotations[i, j]
+
+    def _new_rotation(self, i: Any, j: Any) -> RelativeRotation:
+        """Names for the parts of a turn, with the derivatives that `RelativeRotation` states instead of those of what they stand for."""
+        back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
+        inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
+        meaning = product(back, self.named(i.quaternion)) * self.named(inverse_length)
+        parts = [sp.Symbol(f"turn{len(self._rotations)}_{k}", real=True) for k in range(4)]
+        turn = RelativeRotation(parts[0], sp.Matrix(parts[1:]))
+        halves = [turn.rates(self.named(sp.Matrix([axis[k] for axis in j.axes]) / 2)) for k in range(3)]
+        for part, stands_for, changes in zip(parts, meaning, zip(*halves, strict=True), strict=True):
+            by = dict(zip(i.body.phi, changes, strict=True))
+            against = dict(zip(j.body.phi, (-change for change in changes), strict=True))
+            self.derivatives.define(part, by | against, stands_for)
+        return turn
+
+    def shortest_rotation(self, i: Any, j: Any, axis: int) -> ShortestRotation:
+        """How an axis (0, 1, 2 for x, y, z) of a marker is tilted against that of another one in space."""
+        own = self.named([i.x, i.y, i.z][axis])
+        return ShortestRotation(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
+
+    @property
+    def meanings(self) -> dict[sp.Symbol, sp.Expr]:
+        """What the names stand for, those before others that use them."""
+        return self.derivatives.meanings
+
+    def by_coordinates(self, column: Iterable[sp.Expr]) -> sp.Matrix:
+        """The matrix d(column)/dq."""
+        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_coordinate)
+
+    def by_velocities(self, column: Iterable[sp.Expr]) -> sp.Matrix:
+        """The matrix d(column)/du."""
+        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_velocity)
+
+    def work_by_coordinates(self, pairs: Iterable[Work]) -> sp.Matrix:
+        """The column of the sums of efforts times derivatives by q of what they do work on."""
+        return self._matrix([list(pairs)], self._by_coordinate).T
+
+    def work_by_velocities(self, pairs: Iterable[Work]) -> sp.Matrix:
+        """The generalised force: the column of the sums of efforts times derivatives by u of the rates of their work."""
+        return self._matrix([list(pairs)], self._by_velocity).T
+
+    def by_coordinate(self, x: sp.Expr, column: int) -> sp.Expr:
+        """The derivative by one coordinate."""
+        return self._change([(sp.Integer(1), x)], self._by_coordinate[column])
+
+    def columns_of(self, x: sp.Expr) -> list[int]:
+        """The coordinates that an expression depends on."""
+        ways = enumerate(self._by_coordinate)
+        return [column for column, way in ways if self.depends(x, (symbol for symbol, _ in way))]
+
+    @cached_property
+    def _by_coordinate(self) -> list[list[Way]]:
+        of_states: list[list[Way]] = [[(symbol, sp.Integer(1))] for symbol in self.states]
+        return [*(way for frame in self.frames for way in frame.by_coordinate), *of_states]
+
+    @property
+    def n_coordinates(self) -> int:
+        """Of the bodies and the states; counters of turns stand behind them."""
+        return len(self._by_coordinate)
+
+    @cached_property
+    def _by_velocity(self) -> list[list[Way]]:
+        return [way for frame in self.frames for way in frame.by_velocity]
+
+    def _matrix(self, rows: Iterable[list[Work]], ways: list[list[Way]]) -> sp.Matrix:
+        entries = [[self._change(row, way) for way in ways] for row in rows]
+        return sp.Matrix(len(entries), len(ways), [entry for row in entries for entry in row])
+
+    def _change(self, row: list[Work], way: list[Way]) -> sp.Expr:
+        """The sum of efforts times derivatives in one way; what goes into several ways has a name."""
+        partial, changes = self.derivatives.partial, []
+        for symbol, much in way:
+            whole = sp.Add(*(effort * partial(x, symbol) for effort, x in row))
+            changes.append(whole if much == 1 else self.named(whole) * much)
+        return sp.Add(*changes)
+
+    def reaction(self, joint: ReferredJoint, on: Any) -> dict[str, sp.Expr]:
+        """What a joint does to one of its bodies, about the joint's point, by component: -J^T lam."""
+        force = -self.work_by_velocities(zip(joint.lam, joint.velocity_level, strict=True))
+        first = sum(len(frame.u) for frame in self.frames[: self.frames.index(on)])
+        wrench = on.wrench(force[first : first + len(on.u), :], sp.Matrix(joint.point))
+        names = ("fx", "fy", "tz") if len(wrench) == 3 else ("fx", "fy", "fz", "tx", "ty", "tz")
+        return dict(zip(names, wrench, strict=True))
+
+    def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
+        """The matrix of derivatives by any symbols."""
+        return self.derivatives.jacobian(column, symbols)
+
+    def is_constant(self, expression: sp.Expr) -> bool:
+        """Whether an expression depends on neither time nor the state."""
+        return not self.depends(expression, [self.t]) and not self.in_state(expression)
+
+    def angle(self, sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+        """The angle with a sine and a cosine, or multiples of both, counted over whole turns."""
+        for angle in self.angles:
+            if angle.args[:2] == (sine, cosine):
+                return angle
+        self.angles.append(ContinuousAngle(sine, cosine, counter(len(self.angles))))
+        return self.angles[-1]
+
+    def in_state(self, expression: sp.Expr) -> bool:
+        """Whether an expression depends on coordinates, velocities or states."""
+        of_bodies = (symbol for frame in self.frames for symbol in frame.pose)
+        return self.depends(expression, [*of_bodies, *self.velocities, *self.states])
+
+    def depends(self, expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
+        """Whether any of some symbols occurs in an expression, or in what its symbols stand for."""
+        return not self.derivatives.variables(sp.sympify(expression)).isdisjoint(symbols)
+
+    def distance(self, a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
+        """Distance of two points, with a derivative of zero where they coincide."""
+        d = self.named(a - b)
+        return self.named(sp.sqrt(d.dot(d) + COINCIDENT))
+
+    @staticmethod
+    def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
+        """The integral of a law from 0 to x, for a potential; None where there is no simple one."""
+        return integral(law, x)
+
+    def common_normal(self, way: Any, axes: Any, first: Any, second: Any) -> sp.Matrix:
+        """The unit normal between two solids, each a sum of ellipsoids (`stiffmbs.compile.symbolic.common_normal`)."""
+        return self.named(common_normal(way, axes, first, second))
+
+    def at_extremum(self, function: Callable[[list[sp.Symbol]], Any], at: Any) -> sp.Expr:
+        """A function of variables at those values of them where it is largest or least."""
+        variables = [sp.Symbol(f"extremal{k}", real=True) for k in range(len(at))]
+        values = dict(zip(variables, at, strict=True))
+        return self.derivatives.at_extremum(self.read(function(variables)), values, self._state)

@@ -1,0 +1,104 @@
+"""Inputs of a linearised model: a force on a body, or a parameter of its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from ...compile.bodies import BODY_KINDS
+from ...describe.building.model_builder import ModelBuilder
+from ...describe.element import Force
+from ...describe.model_data import ModelData
+from ...describe.parts.names import Names
+from ...describe.states.amount import Amount
+from ...describe.table import Table
+from ...errors import InputError
+from ..load_scene import load_scene
+
+Parameterised = Callable[[float], ModelBuilder[Any, Any, Any] | ModelData]
+"""The model for a value of an input, which is zero at the state."""
+FORCE = "input_"
+"""Name of the force that stands for an input."""
+
+
+def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Parameterised:
+    """A model with a force or torque of any size added to it.
+
+    Parameters
+    ----------
+    model : Model or Scene
+    name : str
+        An input of the model, or ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker: ``chassis.fy``, ``bar.end.fx``;
+        in ground axes, N or N m.
+
+    Raises
+    ------
+    InputError
+        When there is no such body or component.
+    """
+    data: ModelData = model.data() if isinstance(model, ModelBuilder) else model
+    if name in data.inputs:
+        return _input_of(data, name)
+    at, _, component = name.rpartition(".")
+    body, marker = Names(frozenset(data.bodies)).body_and_marker(at)
+    place = {"body": body, "marker": marker or None}
+    components = BODY_KINDS[data.dimensions].reactions
+    if body not in data.bodies or component not in components:
+        raise InputError(
+            f"input '{name}': found no such force, expected BODY.COMPONENT or BODY.MARKER.COMPONENT with one of "
+            f"{', '.join(components)}, or a parameter of the scene"
+        )
+
+    def with_force(value: float) -> ModelData:
+        loads = [value if label == component else 0.0 for label in components]
+        added = _applied(data.dimensions, place, loads)
+        return data.model_copy(update={"forces": {**data.forces, FORCE: added}})
+
+    return with_force
+
+
+def _input_of(data: ModelData, name: str) -> Parameterised:
+    """A model as a function of how far one of its inputs is from its value."""
+    value = data.inputs[name]
+    if isinstance(value, Table):
+        raise InputError(f"input '{name}': found a table, expected a number to vary")
+    return lambda shift: data.model_copy(update={"inputs": {**data.inputs, name: Amount(value + shift)}})
+
+
+def _applied(dimensions: int, at: dict[str, str | None], loads: list[float]) -> Force:
+    """The applied force or torque with some components, of which one differs from zero at most."""
+    force, torque = tuple(loads[:dimensions]), tuple(loads[dimensions:])
+    if dimensions == 2:
+        from ...describe.forces.applied import AppliedForce, AppliedTorque
+
+        return AppliedTorque(i=at, torque=torque[0]) if any(torque) else AppliedForce(i=at, force=force)  # type: ignore[arg-type]
+    from ...describe.spatial.forces import applied as in_space
+
+    if any(torque):
+        return in_space.AppliedTorque(i=at, torque=torque)  # type: ignore[arg-type]
+    return in_space.AppliedForce(i=at, force=force)  # type: ignore[arg-type]
+
+
+def parameter_of(path: str | Path, name: str, changes: list[tuple[str, str]]) -> Parameterised:
+    """A scene as a function of how far one of its parameters is from its value.
+
+    Parameters
+    ----------
+    path : str or Path
+    name : str
+        Of the parameter.
+    changes : list of (str, str)
+        As for `load_scene`.
+
+    Raises
+    ------
+    InputError
+        When the scene has no such parameter with a number.
+    """
+    found = load_scene(path, changes).parameters
+    if name not in found:
+        known = ", ".join(found) or "none"
+        raise InputError(f"input '{name}': found no such parameter, expected one of {known}, or BODY.COMPONENT")
+    value = float(found[name])
+    return lambda shift: load_scene(path, [*changes, (f"parameters.{name}", repr(value + shift))])

@@ -1,0 +1,69 @@
+"""One period of a natural mode as results over time, which can be drawn, animated and saved like those of a run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...describe.requests.order import units
+from ...errors import SolverError
+from ...linear_analysis.modes import Mode, Motion
+from ...results.channels import channels_of, turns_of
+from ...results.energy_balance import energy_balance
+from ...results.solution import Solution
+from ...solve.algebraic_states import failure
+from ...solve.trajectory import History, Outcome
+from .at_state import AtState
+
+UNHURRIED = 1.0
+"""Time that a mode which does not oscillate takes to and fro, s."""
+
+
+def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amplitude: float, points: int) -> Solution:
+    """A mode about a state over one period, with an amplitude that stays.
+
+    Parameters
+    ----------
+    found : AtState
+    own_axes : sparse array, shape (n_u, n_u)
+        From ground axes to those of u.
+    mode : Mode
+    number : int
+        What it is called by.
+    amplitude : float
+        The largest displacement, or rotation times the mechanism's size, relative to that size.
+    points : int
+        Instants, both ends included.
+
+    Raises
+    ------
+    SolverError
+        Where the mechanism cannot move so far.
+    """
+    dynamics, state = found.dynamics, found.dynamics.state
+    system = dynamics.system
+    oscillates = mode.motion is Motion.OSCILLATING
+    rate = abs(mode.eigenvalues[0].imag) if oscillates else 2 * np.pi / UNHURRIED
+    time = np.linspace(0.0, 2 * np.pi / rate, points)
+    turning = np.exp(1j * rate * time)[:, None] * (mode.shape if oscillates else -1j * mode.shape.real)
+    size = amplitude * system.size
+    q, u = state.q.copy(), state.u.copy()
+    moved = np.array([system.of_body.moved(q, own_axes @ move) for move in size * turning.real])
+    rates = np.array([u + own_axes @ way for way in size * (1j * rate * turning).real])
+    with state.unchanged():
+        rows = dynamics.report(np.full(points, found.t), moved, rates, project=True)
+    if len(rows.t) < points:
+        raise SolverError(
+            f"mode {number} cannot be shown with an amplitude of {amplitude:g} of the mechanism's size: "
+            f"{failure(dynamics, rows.status, found.t)}; expected a smaller amplitude"
+        )
+    channels = channels_of(found.data, system, rows)
+    return Solution(
+        name=f"{found.data.name or 'model'}, mode {number}", time=time, channels=channels, outcome=Outcome.DONE,
+        message=f"one period of mode {number}, {mode.natural_frequency:.6g} Hz" if oscillates else f"mode {number}, to and fro",
+        notes=(), solver={"name": "modes", "steps": 0}, history=History(np.empty(0), np.empty(0, dtype=int)),
+        balance=energy_balance(system, replace(rows, t=time), np.empty(0)), not_unique=found.redundancy.not_unique,
+        requested=units(found.data.outputs()), turns=turns_of(system, rows.q),
+    )  # fmt: skip

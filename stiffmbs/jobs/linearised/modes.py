@@ -1,0 +1,157 @@
+"""Natural modes of a model about a state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Unpack
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ...describe.settings import RunSettings, Settings, takes_settings
+from ...errors import InputError
+from ...linear_analysis.modes import Mode, natural_modes
+from ...linear_analysis.state_space import StateMatrix, state_matrix
+from ...linear_analysis.tangent_space import linearised
+from ...results.solution import Solution
+from ..job import Runnable
+from ..start_from import StartFrom
+from .at_state import AtState, at_state
+from .mode_shapes import mode_shape
+
+AT_REST = 1e-6
+"""Acceleration relative to that of gravity (to 1 m/s^2 without), below which a state counts as an equilibrium."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural modes about a state.
+
+    Attributes
+    ----------
+    name : str
+        Of the model.
+    t : float
+        s.
+    degrees_of_freedom : int
+        Velocities that the constraints leave free; as many modes.
+    modes : tuple of Mode
+        By undamped natural frequency.
+    state : StateMatrix
+        What they are the eigenvalues of.
+    notes : tuple of str
+        What there is to say of the state, a sentence each.
+    about : AtState
+        The model at that state.
+    own_axes : sparse array, shape (n_u, n_u)
+        From ground axes, which shapes are in, to those of u.
+    """
+
+    name: str
+    t: float
+    degrees_of_freedom: int
+    modes: tuple[Mode, ...]
+    state: StateMatrix
+    notes: tuple[str, ...]
+    about: AtState
+    own_axes: csr_array
+
+    def shape(self, number: int, amplitude: float = 0.1, points: int = 61) -> Solution:
+        """One period of a mode as results over time, which can be drawn and saved like those of a run.
+
+        Parameters
+        ----------
+        number : int
+            1 for the slowest.
+        amplitude : float
+            The largest displacement, or rotation times the mechanism's size, relative to that size.
+        points : int
+            Instants, both ends included.
+
+        Raises
+        ------
+        InputError
+            When there is no such mode.
+        SolverError
+            Where the mechanism cannot move so far.
+        """
+        if not 1 <= number <= len(self.modes):
+            raise InputError(f"mode {number}: found no such mode, expected one of 1 to {len(self.modes)}")
+        return mode_shape(self.about, self.own_axes, self.modes[number - 1], number, amplitude, points)
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs modes --json``.
+
+        Parameters
+        ----------
+        scene : str
+            The file, or what else the scene is called.
+        """
+        return {
+            "scene": scene, "t": self.t, "degrees_of_freedom": self.degrees_of_freedom,
+            "modes": [mode.as_dict() for mode in self.modes], "notes": list(self.notes),
+        }  # fmt: skip
+
+
+@takes_settings
+def modes(
+    model: Runnable,
+    settings: RunSettings | None = None,
+    at: float | None = None,
+    start_from: StartFrom | None = None,
+    **changes: Unpack[Settings],
+) -> Modes:
+    """Natural frequencies, damping and shapes of a model, linearised about a state on its constraints.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
+    settings : RunSettings, optional
+        How to come to the state; the scene's own by default.
+    at : float, optional
+        The instant of the run whose state is taken, s; its start by default.
+    start_from : Solution, str, Path or SavedState, optional
+        As for `stiffmbs.run`.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    Modes
+        As many as degrees of freedom.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    SolverError
+        Where no motion leads to that instant, or a free motion has no mass.
+    """
+    found = at_state(model, settings, at, start_from, **changes)
+    system = found.dynamics.system
+    scale = system.per_velocity(system.size, 1.0)
+    linear = linearised(found.dynamics, found.t, found.acceleration)
+    state = state_matrix(linear, scale)
+    shapes = tuple(natural_modes(state, linear.mass, system.bodies, scale))
+    notes = tuple(_notes(found, state))
+    return Modes(found.data.name, found.t, state.degrees_of_freedom, shapes, state, notes, found, linear.own_axes)
+
+
+def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
+    system = found.dynamics.system
+    sizes = np.abs(found.acceleration) * system.per_velocity(1.0, system.size)
+    if sizes.size and sizes.max() > AT_REST * (float(np.linalg.norm(found.data.gravity)) or 1.0):
+        most = int(np.argmax(sizes))
+        yield (
+            f"the state at t = {found.t:g} s is no equilibrium: {system.name_of(most, system.of_body.accelerations)} = "
+            f"{found.acceleration[most]:.3g}; frequencies are those of this instant"
+        )
+    rolling = state.n_poses - state.degrees_of_freedom
+    if rolling:
+        ways = "one direction" if rolling == 1 else f"{rolling} directions"
+        yield f"constraints of velocities alone, as of rolling, leave {ways} of poses without a free velocity, which have no mode"
+    extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
+    if extra > 0:
+        yield f"the state is a singular pose: {extra} degrees of freedom more than in general"

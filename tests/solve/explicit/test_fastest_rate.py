@@ -1,0 +1,49 @@
+"""The fastest rate of a motion against closed forms."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import Body, Bushing, Marker, Model, Revolute
+from stiffmbs.jobs.job import prepare
+from stiffmbs.solve.explicit.fastest_rate import fastest_rate
+
+
+def rate_of(model, **settings):
+    job = prepare(model, presolve=False, **settings)
+    return fastest_rate(job.dynamics, 0.0, job.start.q, job.start.u)
+
+
+def on_bushing(stiffness, damping):
+    model = Model(gravity=(0, -9.81))
+    model.add("a", Body(mass=2, inertia=0.5))
+    model.add("bush", Bushing(i="a", j=Marker(body="ground"), stiffness=stiffness, damping=damping))
+    return model
+
+
+def test_an_undamped_bushing_rings_at_its_stiffest_direction():
+    found = rate_of(on_bushing((2e6, 3e8, 1e3), (0, 0, 0)))
+    np.testing.assert_allclose(found, np.sqrt(3e8 / 2), rtol=0.02)
+
+
+def test_strong_damping_is_faster_than_a_soft_spring():
+    np.testing.assert_allclose(rate_of(on_bushing((1e2, 1e2, 1e2), (0, 0, 4e4))), 4e4 / 0.5, rtol=0.02)
+
+
+def test_a_joint_takes_the_stiffness_along_it_out_of_the_motion():
+    """What is left of a bar pinned where a bushing of any stiffness holds it is the pendulum."""
+    model = Model(gravity=(0, -9.81))
+    model.add("bar", Body(mass=1.2, inertia=0.036, position=(0, -0.3)))
+    pin = Marker(body="bar", point=(0, 0.3))
+    model.add("hinge", Revolute(i=pin, j="ground"))
+    model.add("bush", Bushing(i=pin, j=Marker(body="ground"), stiffness=(1e9, 1e9, 0), damping=(0, 0, 0)))
+    expected = np.sqrt(1.2 * 9.81 * 0.3 / (0.036 + 1.2 * 0.3**2))
+    np.testing.assert_allclose(rate_of(model), expected, rtol=0.02)
+
+
+@pytest.mark.parametrize("scene", ["stick_slip", "cam_follower"])
+def test_the_state_is_left_as_it_was(examples, scene):
+    job = prepare(stiffmbs.load_scene(examples / f"{scene}.yaml"), presolve=False)
+    fastest_rate(job.dynamics, 0.0, job.start.q, job.start.u)
+    np.testing.assert_array_equal(job.dynamics.state.q, job.start.q)
+    np.testing.assert_array_equal(job.dynamics.state.u, job.start.u)

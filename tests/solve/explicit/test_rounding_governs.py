@@ -1,0 +1,32 @@
+"""Explicit steps that follow rounding alone are told, or left to bdf; others are not taken for such."""
+
+import pytest
+
+import stiffmbs
+from stiffmbs.solve.explicit import rounding
+from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.stress.families.structure.large_multipliers import nearly_repeated, swing_error
+
+HOW = {"duration": 2.0, "points": 101, "rtol": 1e-7}
+
+
+def test_steps_that_rounding_shortens_are_told_by_the_explicit_integrator():
+    solution = stiffmbs.run(nearly_repeated(1e-7), solver="projected", scheme="dop853", **HOW)
+    assert solution.outcome is Outcome.STOPPED
+    assert "rounding governs the steps" in solution.message and "change block.ax by" in solution.message
+    assert solution.message.endswith("or solver bdf")
+
+
+def test_auto_leaves_them_to_bdf():
+    solution = stiffmbs.run(nearly_repeated(1e-7), solver="auto", **HOW)
+    assert solution.outcome is Outcome.DONE and solution.solver["name"] == "bdf"
+    assert swing_error(solution) < 1e-5
+
+
+@pytest.mark.parametrize("scene", ["andrews", "elastic_bearing", "vehicles/half_car_at_rest", "stick_slip"])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10])
+def test_no_other_steps_are_taken_for_such(examples, scene, rtol, monkeypatch):
+    monkeypatch.setattr(rounding, "APART", 50)
+    monkeypatch.setattr(rounding, "STEPS_AHEAD", 0.0)
+    solution = stiffmbs.run(examples / f"{scene}.yaml", solver="projected", scheme="dop853", duration=0.05, rtol=rtol)
+    assert solution.outcome is Outcome.DONE

@@ -1,0 +1,426 @@
+"""The native driver of IDA: the same steps as scikit-sundae's, its history, events, failures, and what it frees."""
+
+import gc
+import os
+import threading
+import weakref
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import AppliedForce, Body, Contact, Model, Revolute
+from stiffmbs.compile.equations import Equations
+from stiffmbs.compile.state import State
+from stiffmbs.jobs.job import prepare
+from stiffmbs.solve.error_control.newton import Stiffness
+from stiffmbs.solve.formulations.si2 import SI2_EXACT
+from stiffmbs.solve.ida import choice, libraries, operations
+from stiffmbs.solve.ida.block_lu import BlockLU
+from stiffmbs.solve.ida.choice import chosen
+from stiffmbs.solve.ida.fixed_order import FixedOrder
+from stiffmbs.solve.ida.ida import NativeIda
+from stiffmbs.solve.ida.matrices import Banded, Dense, Sparse
+from stiffmbs.solve.ida.ordering import narrowed
+from stiffmbs.solve.ida.paired_columns import PairedColumns
+from stiffmbs.solve.ida.status import Status
+from stiffmbs.solve.ida.sundae import DENSE_UP_TO, SundaeEngine
+from stiffmbs.solve.linear.elimination_order import EliminationOrder, elimination_order
+
+
+class Problem:
+    """A model's consistent start, its SI2 equations and its tolerances, multipliers out of the error test."""
+
+    def __init__(self, model, rtol=1e-6, order=lambda equations: equations):
+        job = prepare(model)
+        self.system, start = job.dynamics.system, job.start
+        self.equations = order(Equations(SI2_EXACT, self.system))
+        n, at = self.equations.n, self.equations.at
+        self.rtol, self.atol = rtol, np.full(n, 1e15)
+        self.atol[at["q"]] = self.atol[at["u"]] = rtol
+        self.multipliers = self.atol > 1
+        self.y, self.yp = np.zeros(n), np.zeros(n)
+        self.y[at["q"]], self.y[at["u"]], self.y[at["lam"]] = start.q, start.u, start.lam
+        self.yp[at["q"]], self.yp[at["u"]] = start.u, start.acceleration
+
+    def native(self, **options):
+        kind = Dense if self.equations.n <= DENSE_UP_TO else Sparse
+        matrix = options.pop("matrix", kind(self.equations.n, *self.equations.pattern))
+        atol = options.pop("atol", self.atol)
+        return NativeIda(self.equations, State(self.system), matrix, self.rtol, atol, **options)
+
+    def through(self, ida, times, first_step=0.0):
+        """Begin, and report at the times, however many calls that takes."""
+        ida.begin(0.0, self.y, self.yp, first_step)
+        rows = np.empty((len(times), self.equations.n))
+        done, status = 0, Status.GOING
+        while status is Status.GOING:
+            served, status = ida.advance(times[done:], times[-1], rows[done:])
+            done += served
+        return rows[:done], status
+
+    def through_scikit_sundae(self, times):
+        ida = SundaeEngine(self.equations, State(self.system), self.rtol, self.atol, max_step=0.0)
+        ida.begin(0.0, self.y, self.yp, newton=0.33, stiffness=Stiffness(0.0, 0.0))
+        blocks = [(reached.rows.copy(), reached.y.copy()) for reached in ida.to_times(times, times[-1])]
+        return np.concatenate([rows for rows, _ in blocks]), blocks[-1][1], ida
+
+
+@pytest.fixture(scope="module")
+def pendulum(examples):
+    return Problem(stiffmbs.load_scene(examples / "cart_pendulum.yaml"), rtol=1e-8)
+
+
+@pytest.fixture(scope="module")
+def squeezer(examples):
+    return Problem(stiffmbs.load_scene(examples / "andrews.yaml"))
+
+
+def hanging_chain():
+    """Twelve rods of 1 m hinged to one another, let go from the horizontal: 120 unknowns."""
+    model, end = Model("Chain", gravity=(0, -9.81)), "ground"
+    for k in range(12):
+        rod = model.add(f"rod{k}", Body(mass=1.0, inertia=1 / 12, position=(k + 0.5, 0)))
+        model.add(f"pin{k}", Revolute(i=rod.at(-0.5, 0), j=end))
+        end = rod.at(0.5, 0)
+    return model
+
+
+@pytest.fixture(scope="module")
+def chain():
+    return Problem(hanging_chain())
+
+
+@pytest.fixture(scope="module")
+def ball():
+    """A body of 1 kg that falls 1 m onto a stiff, elastic floor."""
+    model = Model("Ball", gravity=(0, -9.81))
+    body = model.add("ball", Body(mass=1.0, inertia=0.1, position=(0, 1)))
+    model.add("floor", Contact(i=body.at(0, 0), j="ground", stiffness=1e5))
+    return Problem(model, rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "end"), [("pendulum", 2.0), ("chain", 2.0), ("squeezer", 0.03)]
+)  # dense, sparse, dense
+def test_the_steps_are_those_of_scikit_sundae(name, end, request):
+    problem, times = request.getfixturevalue(name), np.linspace(0, end, 101)[1:]
+    native = problem.native()
+    rows, status = problem.through(native, times)
+    expected, at_end, sundae = problem.through_scikit_sundae(times)
+    at = problem.equations.at
+    assert status is Status.STOP
+    counted = native.statistics()
+    expected_counts = {key: count for key, count in sundae.statistics().items() if key != "linear_solver"}
+    assert {key: counted[key] for key in expected_counts} == expected_counts
+    np.testing.assert_array_equal(native.history.t, sundae.history().t)
+    np.testing.assert_allclose(rows[:, np.concatenate([at["q"], at["u"]])], expected, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(rows[-1], at_end, rtol=1e-12, atol=1e-12)  # multipliers too
+
+
+def in_fixed_order(equations, kind=FixedOrder):
+    order = elimination_order(equations)
+    return BlockLU.of(equations, order) if kind is BlockLU else kind(equations.n, *equations.pattern, order)
+
+
+KINDS = ["banded", "SuperLU_MT", "fixed order", "fixed order, columns in pairs", "blocks in a fixed order"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_matrices_give_the_same_motion(chain, kind):
+    equations = chain.equations
+    n, pattern = equations.n, equations.pattern
+    matrix = {
+        "banded": Banded(n, *pattern),
+        "SuperLU_MT": Sparse(n, *pattern),
+        "fixed order": in_fixed_order(equations),
+        "fixed order, columns in pairs": in_fixed_order(equations, PairedColumns),
+        "blocks in a fixed order": in_fixed_order(equations, BlockLU),
+    }
+    assert matrix[kind].sentence().startswith(kind)
+    times = np.array([0.2, 0.4])
+    rows, status = chain.through(chain.native(matrix=matrix[kind]), times)
+    expected, _ = chain.through(chain.native(matrix=Dense(n, *pattern)), times)
+    assert status is Status.STOP
+    at = np.concatenate([equations.at["q"], equations.at["u"]])
+    np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-7)
+
+
+def test_a_band_is_found_in_a_chain(chain):
+    ordered = Problem(hanging_chain(), order=narrowed)
+    band = Banded(ordered.equations.n, *ordered.equations.pattern)
+    assert band.lower == band.upper == 10
+    ida, times = ordered.native(matrix=band), np.array([0.2, 0.4])
+    rows, _ = ordered.through(ida, times)
+    expected, _ = chain.through(chain.native(), times)
+    for unknown in ("q", "u"):
+        at, natural = ordered.equations.at[unknown], chain.equations.at[unknown]
+        np.testing.assert_allclose(rows[:, at], expected[:, natural], atol=1e-5)
+
+
+def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, monkeypatch):
+    monkeypatch.setattr(choice, "WORTH_COMPILING", np.inf)
+    assert type(chosen(chain.equations)[1]) is FixedOrder, "blocks would save too little to be compiled"
+    monkeypatch.setattr(choice, "WORTH_COMPILING", 0.0)
+    assert isinstance(chosen(chain.equations)[1], BlockLU)
+    monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
+    assert type(chosen(chain.equations)[1]) is FixedOrder
+    monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
+    _, matrix = chosen(chain.equations)
+    assert isinstance(matrix, Banded)
+    assert (matrix.rows.size, matrix.lower) == (chain.equations.pattern[0].size, 10)
+    assert isinstance(chosen(squeezer.equations)[1], Dense)
+
+
+def test_blocks_of_a_long_chain_come_from_memory():
+    """Per node they cost more than where a cache holds them all, and entry by entry the chain is solved faster."""
+
+    def cost(rods):
+        n, nodes = 10 * rods, 3 * rods
+        order = EliminationOrder(np.arange(n), fill=10 * n, updates=100 * n)
+        return choice.block_cost(n, order, nodes) / choice.fixed_cost(n, order, choice.FIXED)
+
+    assert cost(100) < 1 < cost(3000)
+
+
+def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
+    def missing():
+        raise libraries.Unavailable("no SuperLU_MT")
+
+    monkeypatch.setattr(choice, "superlu_cost", lambda *_: 0.0)
+    assert isinstance(chosen(chain.equations)[1], Sparse)
+    monkeypatch.setattr("stiffmbs.solve.ida.matrices.sparse_libraries", missing)
+    assert isinstance(chosen(chain.equations)[1], FixedOrder)
+
+
+@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns, BlockLU])
+def test_pivots_are_sought_anew_where_they_have_become_small(chain, kind):
+    """The order found far from the start, where the matrix is another one, serves all the same."""
+    ida = chain.native(matrix=in_fixed_order(chain.equations, kind))
+    for scale in (1e-6, 1e6):  # cj is the inverse of the step: from 1e6 to 1 and back
+        ida.begin(0.0, chain.y, chain.yp, first_step=1e-6 * scale)
+        _, status = ida.advance(np.array([0.1]), 0.1, np.empty((1, chain.equations.n)))
+        assert status is not Status.FAILED
+    rows, _ = chain.through(ida, np.array([0.4]))
+    expected, _ = chain.through(chain.native(), np.array([0.4]))
+    at = np.concatenate([chain.equations.at["q"], chain.equations.at["u"]])
+    np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-6)
+
+
+def test_other_layouts_of_linear_solvers_are_noticed(monkeypatch):
+    found = libraries.ida_libraries()
+    operations.replaceable.cache_clear()
+    assert operations.replaceable(found)
+    monkeypatch.setattr(operations, "MOST_WORDS", 1)
+    operations.replaceable.cache_clear()
+    assert not operations.replaceable(found)
+    monkeypatch.undo()
+    operations.replaceable.cache_clear()
+
+
+def test_history_tells_time_order_and_size_of_each_step(pendulum):
+    ida = pendulum.native()
+    pendulum.through(ida, np.array([2.0]))
+    history, counted = ida.history, ida.statistics()
+    assert history.count == len(history.t) == counted["steps"]
+    np.testing.assert_allclose(np.diff(history.t), history.step[1:], atol=1e-14)
+    assert history.t[-1] == pytest.approx(2.0, abs=1e-13)
+    assert set(history.order) == {1, 2, 3, 4, 5}
+    assert history.order[-1] == counted["order"]
+    assert counted["newton_iterations"] >= counted["steps"]
+    assert counted["rejected"] == counted["error_test_failures"] + counted["convergence_failures"] > 0
+
+
+def test_order_and_step_stay_below_their_limits(pendulum):
+    ida = pendulum.native(max_order=2, max_step=1e-3)
+    pendulum.through(ida, np.array([0.5]))
+    assert ida.history.order.max() == 2
+    assert ida.history.step.max() <= 1e-3 * (1 + 1e-12)
+
+
+def test_own_steps_are_those_of_the_history(pendulum):
+    ida = pendulum.native(reported=pendulum.equations.at["q"])
+    ida.begin(0.0, pendulum.y, pendulum.yp)
+    t, q, count, status = np.empty(10_000), np.empty((10_000, 6)), 0, Status.GOING
+    while status is Status.GOING:
+        taken, status = ida.steps(1.0, t[count:], q[count:])
+        count += taken
+    np.testing.assert_allclose(t[:count], ida.history.t, atol=1e-14)
+    assert t[count - 1] == ida.t == 1.0
+    np.testing.assert_array_equal(q[count - 1], ida.y[pendulum.equations.at["q"]])
+
+
+def test_derivatives_are_those_of_the_motion(pendulum):
+    at, times = pendulum.equations.at, np.array([0.5, 1.0])
+    ida = pendulum.native()
+    ida.begin(0.0, pendulum.y, pendulum.yp)
+    y, yp = np.empty((2, ida.y.size)), np.empty((2, ida.y.size))
+    served, status = 0, Status.GOING
+    while status is Status.GOING:
+        more, status = ida.advance(times[served:], 1.0, y[served:], yp[served:])
+        served += more
+    np.testing.assert_allclose(yp[:, at["q"]], y[:, at["u"]], atol=1e-5)
+    np.testing.assert_allclose(ida.interpolate(1.0), ida.y, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(ida.interpolate(1.0, 1)[at["q"]], ida.y[at["u"]], atol=1e-5)
+    with pytest.raises(ValueError, match="outside the last step"):
+        ida.interpolate(0.1)
+
+
+def test_it_begins_again_as_new(pendulum):
+    times = np.linspace(0, 1, 11)[1:]
+    ida = pendulum.native()
+    first, _ = pendulum.through(ida, times)
+    steps = ida.statistics()["steps"]
+    again, _ = pendulum.through(ida, times)
+    np.testing.assert_array_equal(first, again)
+    assert ida.statistics()["steps"] == ida.history.count == 2 * steps
+
+
+def test_suppressed_multipliers_are_out_of_the_error_test_alone(pendulum, cart_pendulum_reference):
+    times = np.linspace(0, 10, 101)[1:]
+    steps, at = {}, pendulum.equations.at["q"]
+    for name, suppressed in (("huge tolerance", None), ("suppressed", pendulum.multipliers)):
+        atol = pendulum.atol if suppressed is None else np.full(pendulum.equations.n, pendulum.rtol)
+        ida = pendulum.native(atol=atol, suppressed=suppressed)
+        rows, status = pendulum.through(ida, times)
+        assert status is Status.STOP
+        np.testing.assert_allclose(rows[:, at[0]], cart_pendulum_reference(times)[0], atol=2e-6)
+        steps[name] = ida.statistics()["steps"]
+        assert not pendulum.multipliers[ida.worst()[0]]
+    assert steps["suppressed"] < 0.8 * steps["huge tolerance"]
+
+
+def test_the_worst_unknown_is_the_one_with_the_tightest_tolerance(pendulum):
+    atol = np.full(pendulum.equations.n, 1e15)
+    speed = pendulum.equations.at["u"][5]
+    atol[speed] = 1e-8
+    ida = pendulum.native(atol=atol)
+    pendulum.through(ida, np.array([0.5]))
+    assert ida.worst()[0] == speed
+    assert 0 < ida.worst()[1] < np.sqrt(len(atol))
+
+
+def test_a_call_stops_where_the_ball_meets_the_floor(ball):
+    ida = ball.native()
+    ida.begin(0.0, ball.y, ball.yp)
+    times, rows = np.linspace(0, 1, 101), np.empty((101, ball.equations.n))
+    served, status = 0, Status.GOING
+    while status is Status.GOING:
+        more, status = ida.advance(times[served:], 1.0, rows[served:])
+        served += more
+    assert status is Status.ROOT
+    assert list(ida.roots()) == [1]  # above zero where the surfaces push
+    assert ida.t == pytest.approx(np.sqrt(2 / 9.81), abs=1e-8)
+    assert served == 46  # the times up to 0.45 s
+    np.testing.assert_allclose(rows[:46, 1], 1 - 9.81 * times[:46] ** 2 / 2, atol=1e-7)
+    assert ida.y[1] == pytest.approx(0, abs=1e-7)
+    ida.begin(ida.t, ida.y.copy(), ida.yp.copy())
+    assert ida.history.t[-1] == ida.t  # the step ends where it was cut short
+    assert ida.history.step.sum() == pytest.approx(ida.t, abs=1e-14)
+
+
+def sliding(force):
+    """A body of 1 kg that moves along x at 1 m/s under a force in that direction."""
+    model = Model("Sliding", gravity=(0, 0))
+    body = model.add("body", Body(mass=1, inertia=1, velocity=(1, 0)))
+    model.add("force", AppliedForce(i=body.at(0, 0), force=(force, 0)))
+    return Problem(model, rtol=1e-6)
+
+
+def test_a_residual_without_a_value_cuts_the_step_alone():
+    """A wall at x = 1 m, behind which its force is not defined: the body is thrown back as fast as it came."""
+    wall = sliding("-1e-3*sqrt(1 - body.x)^-3")
+    ida = wall.native()
+    _, status = wall.through(ida, np.array([2.0]), first_step=1.9)  # through the wall
+    assert status is Status.STOP
+    assert ida.statistics()["convergence_failures"] > 0
+    np.testing.assert_allclose(ida.y[[0, 3]], (0, -1), atol=0.01)
+
+
+def test_a_run_into_the_undefined_fails_in_words():
+    undefined = sliding("1 + sqrt(1 - body.x)")
+    ida = undefined.native()
+    rows, status = undefined.through(ida, np.linspace(0, 2, 201)[1:])
+    assert status is Status.FAILED
+    assert "no solution was found beyond this instant" in ida.failure()
+    assert 0.99 < ida.y[0] <= 1
+    assert 0 < len(rows) < 200
+    assert np.all(np.isfinite(rows))
+
+
+def test_a_stop_behind_the_time_reached_is_refused(pendulum):
+    ida = pendulum.native()
+    pendulum.through(ida, np.array([1.0]))
+    with pytest.raises(ValueError, match="invalid argument"):
+        ida.advance(np.empty(0), 0.2, np.empty((0, ida.y.size)))
+
+
+@pytest.mark.parametrize("shape", [(3, 20), (2, 19)])
+def test_output_rows_of_another_shape_are_refused(pendulum, shape):
+    ida = pendulum.native()
+    ida.begin(0.0, pendulum.y, pendulum.yp)
+    with pytest.raises(ValueError, match=r"output rows: .* expected float64 of \(2, 20\)"):
+        ida.advance(np.array([0.1, 0.2]), 0.2, np.empty(shape))
+
+
+def test_two_threads_solve_what_one_does(pendulum):
+    times, found = np.linspace(0, 5, 51)[1:], {}
+    expected, _ = pendulum.through(pendulum.native(), times)
+
+    def work(name):
+        ida = pendulum.native()
+        found[name] = [pendulum.through(ida, times)[0] for _ in range(20)]
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for rows in (rows for several in found.values() for rows in several):
+        np.testing.assert_array_equal(rows, expected)
+
+
+def test_everything_is_freed(chain):
+    def memory():
+        gc.collect()
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    if not os.path.exists("/proc/self/statm"):
+        pytest.skip("no /proc here")
+
+    def some(count):
+        for _ in range(count):
+            ida = chain.native()
+            ida.begin(0.0, chain.y, chain.yp)
+            ida.advance(np.empty(0), 1e-6, np.empty((0, ida.y.size)))
+
+    some(50)
+    before = memory()
+    some(150)
+    assert memory() - before < 4e6  # one instance of 120 unknowns holds 0.1 to 0.2 MB
+
+
+def test_closing_twice_and_failing_at_the_start_are_harmless(pendulum):
+    ida = pendulum.native()
+    alive = weakref.ref(ida)
+    ida.close()
+    ida.close()
+    del ida
+    assert alive() is None
+    with pytest.raises(ValueError, match=r"atol: found shape \(3,\), expected \(20,\)"):
+        pendulum.native(atol=np.ones(3))
+    with pytest.raises(ValueError, match="invalid argument"):
+        pendulum.native(max_order=9)
+
+
+def test_a_forked_process_goes_on_by_itself(pendulum):
+    times = np.array([1.0])
+    ida = pendulum.native()
+    expected, _ = pendulum.through(ida, times)
+    child = os.fork()
+    if child == 0:
+        rows, _ = pendulum.through(ida, times)
+        os._exit(0 if np.array_equal(rows, expected) else 1)
+    assert os.waitpid(child, 0)[1] == 0
+    np.testing.assert_array_equal(pendulum.through(ida, times)[0], expected)

@@ -1,0 +1,95 @@
+"""Orders 3 to 5 are given up where they creep along a vibration below the tolerance, and nowhere else."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import Body, Bushing, Model
+from stiffmbs.jobs.job import prepare
+from stiffmbs.solve.bdf import Integrator
+from stiffmbs.solve.error_control import stability_limit as order_watch
+from stiffmbs.solve.trajectory import Grid
+
+
+def rod_on_bushing(stiffness):
+    """A pendulum of 1 m and 1 kg whose pin is an undamped bushing, let go from 60 degrees in an unloaded bushing."""
+    model = Model(gravity=(0, -9.81))
+    angle = -np.pi / 6
+    centre = (0.5 * np.cos(angle), 0.5 * np.sin(angle))
+    rod = model.add("rod", Body(mass=1, inertia=1 / 12, position=centre, angle=angle))
+    model.add("pin", Bushing(i=rod.at(-0.5, 0), j="ground", stiffness=[stiffness, stiffness, 0], damping=[0, 0, 0]))
+    return model
+
+
+def solved(model, **settings):
+    return stiffmbs.run(model, solver="bdf", duration=0.3, points=101, **settings)
+
+
+@pytest.mark.parametrize(("stiffness", "rtol"), [(1e9, 1e-5), (1e10, 1e-6)])
+def test_a_vibration_below_the_tolerance_is_not_followed(stiffness, rtol, monkeypatch):
+    mended = solved(rod_on_bushing(stiffness), rtol=rtol)
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    creeping = solved(rod_on_bushing(stiffness), rtol=rtol)
+    assert mended.solver["steps"] < 0.7 * creeping.solver["steps"]
+    assert any("order was held at 2" in note and "steps" in note for note in mended.notes)
+    np.testing.assert_allclose(mended["rod.angle"], creeping["rod.angle"], atol=100 * rtol)
+
+
+def test_a_faint_vibration_is_damped_away_and_the_order_free_again(examples, monkeypatch):
+    scene = stiffmbs.load_scene(examples / "half_car.yaml")
+    mended = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    creeping = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    assert mended.solver["steps"] < 0.8 * creeping.solver["steps"]
+    assert mended.notes == ()
+    np.testing.assert_allclose(mended["chassis.y"], creeping["chassis.y"], atol=2e-6)
+
+
+def test_a_pendulum_on_a_stiff_undamped_bushing_swings_as_on_a_pin():
+    """By its energy: omega^2 = 3 g/l (sin 30 deg + sin of the angle below the horizontal)."""
+    solution = solved(rod_on_bushing(1e9), rtol=1e-6)
+    fallen = np.sin(solution["rod.angle"][0]) - np.sin(solution["rod.angle"])
+    np.testing.assert_allclose(np.abs(solution["rod.omega"]), np.sqrt(3 * 9.81 * fallen), atol=1e-3)
+
+
+@pytest.mark.parametrize("name", ["cart_pendulum", "chain", "andrews"])
+def test_scenes_without_such_a_vibration_are_solved_as_before(examples, name, monkeypatch):
+    scene = stiffmbs.load_scene(examples / f"{name}.yaml")
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 100)
+    watched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    unwatched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    assert watched.solver["steps"] == unwatched.solver["steps"]
+    assert watched.notes == unwatched.notes
+
+
+def test_states_are_compared_with_the_cubics_of_least_squares():
+    random, n = np.random.default_rng(2), 5
+    t = 3.0 + np.cumsum(0.5 + random.random(order_watch.STATES_LOOKED_AT))
+    rows = np.vander(t - 9.0, 4) @ random.normal(size=(4, n)) + 1e-4 * random.normal(size=(len(t), n))
+    atol = 1e-6 * (1.0 + random.random(n))
+    x, scale = (2 * t - t[0] - t[-1]) / (t[-1] - t[0]), 1e-5 * np.abs(rows[-1]) + atol
+    best = np.polyfit(x, rows, 3)
+    off = (rows - np.vander(x, 4) @ best) / scale
+    expected = np.sqrt((off**2).mean(axis=1).max()), np.sqrt(((best[0] / scale) ** 2).mean())
+    least, *found = order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)
+    np.testing.assert_allclose(found, expected, rtol=1e-7)
+    assert 0 < least < found[0]
+    rows[:, 0] += 1e3 * np.cos(3.0 * t)
+    assert order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)[0] > order_watch.NEGLIGIBLE
+
+
+def test_ida_is_not_started_where_it_is_to_stop(monkeypatch):
+    """It refuses to: an order that is to change there waits for the next start."""
+    job = prepare(rod_on_bushing(1e4), duration=0.1, solver="bdf")
+    integrator = Integrator(job.dynamics, job.settings)
+    for _ in integrator.run(job.start, Grid(0.0, 0.1, np.array([0.1]))):
+        pass
+    engine, starts = integrator.engine, []
+    monkeypatch.setattr(engine, "begin", lambda *given: starts.append(given))
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "due", lambda *_: True)
+    monkeypatch.setattr(order_watch.StabilityLimitDetection, "changed", lambda *_: True)
+    engine._adapt(0.1)
+    assert not starts
+    engine._adapt(0.2)
+    assert len(starts) == 1
