@@ -11,6 +11,7 @@ from ..solve.dynamics import Dynamics, OutputRows
 from .glance import Glance
 from .growth import senseless
 from .lost_turns import lost_turns_sentence
+from .near_limits import near_limits_sentence
 from .singular_passage import singular_passage_sentence
 
 
@@ -23,7 +24,7 @@ class MotionNotes:
     senseless : tuple of str
         What no motion of the scene can be: growth without bound, open joints.
     uncertain : tuple of str
-        What rounding decides: passages of singular poses, lost turns.
+        What rounding decides or tolerances may: passages of singular poses, lost turns, forces far outside of their use.
     """
 
     senseless: tuple[str, ...]
@@ -55,5 +56,6 @@ def motion_notes(
         (
             *(singular_passage_sentence(dynamics, rows, rtol, again) if rows.lam.size else ()),
             *(lost_turns_sentence(dynamics, rows) if dynamics.system.n_counters else ()),
+            *(near_limits_sentence(dynamics, rows) if dynamics.system.has_limits else ()),
         ),
     )
