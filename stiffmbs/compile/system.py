@@ -262,6 +262,10 @@ class System:
             self._terms[term_set, name] = self._term(term_set, name)
         return self._terms[term_set, name]
 
+    def forget_terms(self) -> None:
+        """Let go of the terms asked for so far: a set-up asks for them again and again, a run for few.  Of a car they take 0.8 MB."""
+        self._terms.clear()
+
     def _term(self, term_set: str, name: str) -> Term:
         k = TERM_SETS[term_set].index(name)
         axes = TERM_AXES[name]

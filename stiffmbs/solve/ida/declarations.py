@@ -90,7 +90,7 @@ _NUMBERS: dict[str, Any] = {"int": ctypes.c_int, "long": ctypes.c_long, "double"
 
 
 @cache
-def declared(index: type[Any]) -> dict[str, tuple[Any, list[Any]]]:
+def declared(index: Any) -> dict[str, tuple[Any, list[Any]]]:
     """Result and argument types of each function; all that is not a number is passed as an address.
 
     Parameters
