@@ -245,6 +245,11 @@ class System:
         """Number of event functions and limits, which are the first values of the set ``event_function``; arguments of laws follow."""
         return self.first_limit + sum(group.count * group.entries["limit"] for group in self.groups)
 
+    @property
+    def has_limits(self) -> bool:
+        """Whether the law of a force ends to hold somewhere."""
+        return self.n_event_functions > self.first_limit
+
     @cached_property
     def turning(self) -> np.ndarray:
         """The numbers of the coordinates that are angles; none in space."""

@@ -9,6 +9,7 @@ fields, its equations and their names.
 from __future__ import annotations
 
 import builtins
+import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -219,6 +220,10 @@ class Force(Element):
         Whether it stands for a body's turning in space, and the body's kinematics, p' = Z(p) w, belong to it.
     beyond : str
         What is wrong where one of its `limits` is passed: "found ..., expected ...".
+    doubtful : float
+        Value of its limits below which the motion is doubtful; none where the limits alone tell.
+    doubt : str
+        What is doubtful there, after the element's name.
 
     A force may have states of its own, values with x' = rate, zero at the start: `own_states` names them, `rates` has their rates,
     and its equations see them as ``e.own``.
@@ -228,6 +233,8 @@ class Force(Element):
     may_keep_energy: ClassVar[bool] = True
     turns: ClassVar[bool] = False
     beyond: ClassVar[str] = ""
+    doubtful: ClassVar[float] = -math.inf
+    doubt: ClassVar[str] = ""
 
     def own_states(self) -> tuple[str, ...]:
         """The names of its own states; channels have them behind the element's name."""

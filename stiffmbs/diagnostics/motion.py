@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
 
 from ..solve.dynamics import Dynamics, OutputRows
 from .glance import Glance
 from .growth import senseless
 from .lost_turns import lost_turns_sentence
+from .near_limits import near_limits_sentence
 from .singular_passage import singular_passage_sentence
 
 
@@ -20,14 +24,17 @@ class MotionNotes:
     senseless : tuple of str
         What no motion of the scene can be: growth without bound, open joints.
     uncertain : tuple of str
-        What rounding decides: passages of singular poses, lost turns.
+        What rounding decides or tolerances may: passages of singular poses, lost turns, forces far outside of their use.
     """
 
     senseless: tuple[str, ...]
     uncertain: tuple[str, ...]
 
 
-def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None) -> MotionNotes:
+def motion_notes(
+    dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None, rtol: float,
+    again: Callable[[np.ndarray], OutputRows],
+) -> MotionNotes:  # fmt: skip
     """What there is to say of a motion.
 
     Parameters
@@ -39,11 +46,16 @@ def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, see
         Whether the states are brought back to the constraints, so that drift is not shown.
     seen : Glance or None
         What the rows show at a glance.
+    rtol : float
+        Of the run.
+    again : callable
+        The same run, reported at other instants, s.
     """
     return MotionNotes(
         tuple(senseless(dynamics, rows, on_constraints, seen)),
         (
-            *(singular_passage_sentence(dynamics, rows) if rows.lam.size else ()),
+            *(singular_passage_sentence(dynamics, rows, rtol, again) if rows.lam.size else ()),
             *(lost_turns_sentence(dynamics, rows) if dynamics.system.n_counters else ()),
+            *(near_limits_sentence(dynamics, rows) if dynamics.system.has_limits else ()),
         ),
     )

@@ -145,7 +145,9 @@ def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
     examined = (
         None if sound else results_of_run(job.data, job.dynamics.system, rows, job.settings, trajectory.step_times)
     )
-    of_motion = motion_notes(job.dynamics, rows, job.on_constraints, seen)
+    of_motion = motion_notes(
+        job.dynamics, rows, job.on_constraints, seen, job.settings.rtol, lambda times: _reported_at(job, times)
+    )
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     broken, undefined = (examined.broken_balance, examined.undefined) if examined else ((), ())
     wrong = (*(of_motion.senseless or broken), *of_motion.uncertain, *undefined)
@@ -174,6 +176,12 @@ def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints)
     seen = glance_at(job.dynamics.system, rows, trajectory.step_times, OVERLOOKED_PART)
     return Computed(trajectory, rows, left_out, seen)
+
+
+def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
+    """The run once more, reported at its start, at other instants, and at its end."""
+    again = replace(job, grid=replace(job.grid, times=np.union1d([job.grid.start, job.grid.end], times)))
+    return reported(job.dynamics, again.integrate(), job.on_constraints)[0]
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:

@@ -34,10 +34,15 @@ LOOK = 32
 HELD_BACK = 0.05
 """Part of those steps that stability held back, from which on the scene counts as stiff: where it holds all of them,
 steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
-WORTH_A_TRIAL = 6.0
-"""What is left for explicit steps must cost so many trials of the implicit integrator before one is made."""
 COSTS_MORE, FAIR_TRIAL = 1.1, 200
 """The implicit integrator is left when so many steps of it have cost so much more than explicit ones on the same way."""
+WORTH_A_TRIAL = 6.0
+"""What is left for explicit steps must cost so many fair trials of the implicit integrator before one is made."""
+SHORT_TRIAL, WORTH_A_SHORT_TRIAL = 80, 12.0
+"""Where that is less, but so many times what so few steps cost, these are made."""
+HOPELESS = 2.2
+"""The implicit integrator is left where the later half of a short trial has cost so much more than explicit steps.  Its steps
+grow from the start on, and where they come to be long enough they are near it by then (on a car 1.1 to 1.3 times, where they stay short 3.4 and more)."""
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
 as many times after each further one."""
@@ -91,12 +96,14 @@ class _Shared:
         self._explicit_step = cost.of_explicit_step(dynamics)
         self._implicit_step = cost.of_implicit_step(n)
         self._trial = cost.of_implicit_start(n) + FAIR_TRIAL * self._implicit_step  # what one costs at the most
+        self._short_trial = cost.START + SHORT_TRIAL * self._implicit_step
         self._implicit: bdf.Integrator | None = None
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
         self._segments: list[Segment] = []
         self._messages: list[str] = []
+        self._short = False  # whether the trial at hand is a short one that is still to be looked at
         self._gave_up = False  # whether explicit steps could not go on
 
     def run(self, start: InitialValues) -> Trajectory:
@@ -128,7 +135,9 @@ class _Shared:
         """Whether steps as short as stability asks for at a state are so many that trying BDF costs little; the rate."""
         rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
-        return (self._grid.end - t) * self._explicit_cost > WORTH_A_TRIAL * self._trial, rate
+        left = (self._grid.end - t) * self._explicit_cost
+        self._short = left <= WORTH_A_TRIAL * self._trial
+        return not self._short or left > WORTH_A_SHORT_TRIAL * self._short_trial, rate
 
     def _rest(self, t: float) -> Grid:
         """What is left of the grid."""
@@ -176,7 +185,7 @@ class _Shared:
     def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
         """Implicit steps from t on; the time at which they were left, or None at the end."""
         self._implicit = self._implicit or bdf.Integrator(self._dynamics, self._settings)
-        self._implicit.engine.pause_after(FAIR_TRIAL)
+        self._implicit.engine.pause_after(SHORT_TRIAL if self._short else FAIR_TRIAL)
         self._pace, self._before = _Pace(t), self._effort()
         pays = None if self._gave_up else self._implicit_pays
         segment = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
@@ -193,9 +202,18 @@ class _Shared:
 
     def _implicit_pays(self, reached: Reached) -> bool:
         """Whether BDF keeps ahead of explicit steps, over so many of its steps that its start does not count."""
+        assert self._implicit is not None
         effort = self._effort()
         taken, way = effort.steps - self._before.steps, reached.t - self._pace.t
-        if taken < FAIR_TRIAL or self._is_breakpoint(reached.t):
+        if self._is_breakpoint(reached.t):
+            return True
+        if self._short:
+            self._short = False
+            self._implicit.engine.pause_after(FAIR_TRIAL)
+            if not self._promises(effort, taken):
+                self._trial = cost.START + effort.cost - self._before.cost
+                return False
+        if taken < FAIR_TRIAL:
             return True
         spent, explicit = effort.cost - self._before.cost, way * self._explicit_cost
         self._pace, self._before = _Pace(reached.t), effort
@@ -203,6 +221,15 @@ class _Shared:
         if not pays:
             self._trial = cost.of_implicit_start(self._unknowns) + spent - explicit  # as seen: the way is not lost
         return pays
+
+    def _promises(self, effort: _Effort, taken: int) -> bool:
+        """Whether the later half of a short trial keeps within sight of explicit steps."""
+        assert self._implicit is not None
+        ends, later = self._implicit.engine.history().t, SHORT_TRIAL // 2
+        if taken < SHORT_TRIAL or len(ends) <= later:  # a breakpoint or an event ended it: the steps begin anew
+            return True
+        spent = (effort.cost - self._before.cost) * later / taken
+        return bool(spent < HOPELESS * (ends[-1] - ends[-1 - later]) * self._explicit_cost)
 
     def _is_breakpoint(self, t: float) -> bool:
         """Whether inputs may still show at t what they were before: no integrator can start there."""

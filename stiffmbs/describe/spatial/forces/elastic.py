@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, WithJsonSchema, field_validator
@@ -102,6 +103,11 @@ class Elastic(Force):
     beyond: ClassVar[str] = (
         "found its bodies turned by three quarters of a turn against each other (an axis about which they are free: "
         "tilted by 135 degrees), expected less; a vibration that grows, as shimmy, is told by 'stiffmbs modes' with an earlier --at"
+    )
+    doubtful: ClassVar[float] = math.sqrt(0.5)  # at half a turn, and at a tilt of 90 degrees
+    doubt: ClassVar[str] = (
+        "turns its bodies by more than half a turn against each other (an axis about which they are free: tilts it by more than a "
+        "right angle)"
     )
 
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")

@@ -32,7 +32,7 @@ CHANGED = 2.0
 SERVES = 50
 """Factorisations after which it is made in any case."""
 WAITS_FOR = 20
-"""Factorisations with pivots before the next attempt without."""
+"""Factorisations with pivots before the next attempt without, at the most: one after the first refusal, two after the second, and so on."""
 COORDINATE, VELOCITY = 1, 2
 """Kinds of unknowns; multipliers are 0."""
 SHAPES = 16
@@ -323,7 +323,7 @@ def setup(solver, matrix):
         if _trusted(s, f):
             return int32(OK)
         s.refused += 1
-        s.waits = WAITS_FOR
+        s.waits = min(s.refused, WAITS_FOR)
     s.pivoted = 1
     if not _has_pivots(s):
         s.last_flag = NOT_COMPILED
