@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import re
-from functools import cache
 from typing import Any
 
 DECLARATIONS = """
@@ -89,8 +88,7 @@ _DECLARATION = re.compile(r"^([\w ]+?\**) (\w+)\((.*)\)$", re.MULTILINE)
 _NUMBERS: dict[str, Any] = {"int": ctypes.c_int, "long": ctypes.c_long, "double": ctypes.c_double, "void": None}
 
 
-@cache
-def declared(index: Any) -> dict[str, tuple[Any, list[Any]]]:
+def declared(index: type[Any]) -> dict[str, tuple[Any, list[Any]]]:
     """Result and argument types of each function; all that is not a number is passed as an address.
 
     Parameters

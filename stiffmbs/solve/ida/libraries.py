@@ -45,9 +45,14 @@ class Libraries:
 
     def __getattr__(self, name: str) -> Any:
         function = self._found(name)
-        function.restype, function.argtypes = declared(self.index)[name]
+        function.restype, function.argtypes = self._declared[name]
         object.__setattr__(self, name, function)
         return function
+
+    @cached_property
+    def _declared(self) -> dict[str, tuple[Any, list[Any]]]:
+        """What the headers say of all functions."""
+        return declared(self.index)
 
     def _found(self, name: str) -> Any:
         if name.startswith("__"):
