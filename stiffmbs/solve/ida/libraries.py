@@ -64,9 +64,16 @@ class Libraries:
 
     def address(self, name: str) -> int:
         """A function's address, for compiled code."""
-        address = ctypes.cast(self._found(name), ctypes.c_void_p).value
-        assert address is not None
-        return address
+        if name not in self._addresses:
+            address = ctypes.cast(self._found(name), ctypes.c_void_p).value
+            assert address is not None
+            self._addresses[name] = address
+        return self._addresses[name]
+
+    @cached_property
+    def _addresses(self) -> dict[str, int]:
+        """Those asked for so far."""
+        return {}
 
     @cached_property
     def _with_threads(self) -> ctypes.PyDLL | None:
