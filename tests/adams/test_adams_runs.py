@@ -55,7 +55,7 @@ MARKER/13, PART=1, QP=1,0,0
         ("GCON/1, FUNCTION=DX(21,1)+DY(21,1)", 1),
         ("GCON/1, FUNCTION=VX(21)-0.5*WZ(21)", 1),
         ("MOTION/1, I=21, J=1, X, FUNC=TIME", 1),
-        ("MOTION/1, I=21, J=1, B2, FUNC=TIME", 1),
+        pytest.param("MOTION/1, I=21, J=1, B2, FUNC=TIME", 1, marks=pytest.mark.long),
     ],
 )
 def test_constraints_take_as_many_freedoms_as_in_adams(statement, equations):
@@ -358,6 +358,7 @@ def test_the_joint_holds_before_assembly_moves_parts():
     assert any("assembly changed PART_2.x by -0.001 m" in note for note in solution.notes)
 
 
+@pytest.mark.long
 def test_a_motion_and_a_force_by_splines_in_millimetres():
     """A slider led by a cubic spline of time; a second one pushed by Akima's curve of the distance between both."""
     from scipy.interpolate import Akima1DInterpolator, CubicSpline
@@ -392,12 +393,13 @@ END
     np.testing.assert_allclose(solution["PART_3.x"], exact[0], atol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "function",
     [
         "DM(20,11)-2-0.1*SIN(5*TIME)",
-        pytest.param("DM(20,11)-2.0+0*TIME", marks=pytest.mark.long),
-        pytest.param("DM(20,11)**2-4", marks=pytest.mark.long),
+        "DM(20,11)-2.0+0*TIME",
+        "DM(20,11)**2-4",
     ],
 )
 def test_a_general_constraint_acts_on_its_marker(function):

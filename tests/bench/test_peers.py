@@ -35,7 +35,7 @@ NUMPY = Maths(np.sin, np.cos, np.sqrt, min, max)
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.long if name == "half_car" else ()) for name in PROBLEMS]
+    "name", [pytest.param(name, marks=pytest.mark.long if name in ("andrews", "half_car") else ()) for name in PROBLEMS]
 )
 def test_all_tools_solve_the_same_problem(name):
     problem = PROBLEMS[name]
@@ -187,6 +187,7 @@ def test_exact_velocities_and_reactions_of_the_cart_pendulum():
     np.testing.assert_allclose(exact.lam[500, 0], -107.1068184413, atol=1e-8)
 
 
+@pytest.mark.long
 def test_stiffness_is_measured_at_both_ends():
     rows = OverStiffness((1e4, 1e5)).glanced()
     assert [(row.solver, row.setting) for row in rows] == [

@@ -59,6 +59,7 @@ def test_a_guide_is_pressed_by_force_moment_and_torsion():
     np.testing.assert_allclose(along_axis(solution), 3 - 0.1 * pressure / 2 * solution.time, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_sleeve_rubs_against_the_velocity_of_its_surface():
     """The direction of sliding (v, R w) stays where mass and I/R^2 are as large as each other; the friction is mu N."""
     R = np.sqrt(0.06 / 2)
@@ -80,7 +81,10 @@ def test_a_body_stays_where_friction_holds_it():
     assert along_axis(run(model, 0.5))[-1] == pytest.approx(1e-3 * np.arctanh(3 / 5), rel=1e-6)
 
 
-@pytest.mark.parametrize("joint", ["revolute", "cylindrical", "prismatic", "spherical"])
+@pytest.mark.parametrize(
+    "joint",
+    ["revolute", *(pytest.param(each, marks=pytest.mark.long) for each in ("cylindrical", "prismatic")), "spherical"],
+)
 def test_derivatives_by_position_velocity_and_reaction(joint):
     rng = np.random.default_rng(5)
     model = three_bodies_in_space(rng)

@@ -80,7 +80,7 @@ DURATIONS = {
     "half_car": 0.3, "stick_slip": 0.8, "bouncing_ball": 0.6, "cam_follower": 0.05, "dead_centres": 0.3,
     "elastic_bearing": 0.01, "front_axle": 0.6,
 }  # fmt: skip
-LONG = ("half_car", "stick_slip")
+LONG = ("half_car", "half_car_at_rest", "stick_slip")
 STIFF = ("elastic_bearing", "half_car", "cam_follower", "stick_slip")
 WITHOUT_POTENTIAL = ("andrews",)
 """A constant torque has a potential in the plane, and none in space."""
@@ -94,7 +94,7 @@ def runs():
             path, {} if kinematic else BDF, id=f"{path.stem}-{'kinematic' if kinematic else 'bdf'}", marks=long
         )
         if not kinematic and path.stem not in STIFF:
-            yield pytest.param(path, DOP853, id=f"{path.stem}-dop853")
+            yield pytest.param(path, DOP853, id=f"{path.stem}-dop853", marks=long)
 
 
 @pytest.mark.parametrize(("path", "settings"), list(runs()))

@@ -68,7 +68,7 @@ def test_accelerations_with_every_kind_of_joint_and_actuator(tmp_path, seed):
     assert worst_difference(path, compiled(EVERYTHING), seed) < 1e-6
 
 
-@pytest.mark.parametrize("name", ["reacher", "inverted_double_pendulum"])
+@pytest.mark.parametrize("name", [pytest.param("reacher", marks=pytest.mark.long), "inverted_double_pendulum"])
 def test_accelerations_of_public_models(name):
     assert worst_difference(_public(name), compiled(_public(name)), 3) < 1e-9
 
@@ -120,7 +120,9 @@ CLOSED = """<mujoco><worldbody>
     [
         ('<connect name="tie" body1="b" body2="c" anchor="0 0 -.4"/>', 1),
         ('<weld name="tie" body1="b" body2="c"/>', 0),
-        ('<joint name="tie" joint1="first" joint2="second" polycoef="0 -2 0 0 0"/>', 2),
+        pytest.param(
+            '<joint name="tie" joint1="first" joint2="second" polycoef="0 -2 0 0 0"/>', 2, marks=pytest.mark.long
+        ),
         ('<joint name="tie" joint1="first" joint2="second" polycoef="0 -2 0.5 0 0"/>', 2),
         ('<joint name="tie" joint1="third"/>', 2),
         ('<joint name="tie" joint1="third" active="false"/>', 3),
