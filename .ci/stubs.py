@@ -16,9 +16,10 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic_core import PydanticUndefined
 
 import stiffmbs
-from stiffmbs.describe.element import Element, JointName
+from stiffmbs.describe.element import Element
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.formula import Formula
+from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.marker import MarkerReference
 from stiffmbs.describe.python_function import PythonFunction
 from stiffmbs.describe.roads.road import Road
@@ -66,9 +67,9 @@ from .jobs.check import check as check
 from .jobs.equilibrium import equilibrium as equilibrium
 from .jobs.quasi_static import quasi_static as quasi_static
 from .jobs.load_scene import load_scene as load_scene
-from .jobs.modes import modes as modes
+from .jobs.linearised.modes import modes as modes
 from .jobs.run import run as run
-from .jobs.transfer import transfer as transfer
+from .jobs.linearised.transfer import transfer as transfer
 from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state

@@ -56,11 +56,11 @@ from .errors import StiffmbsError as StiffmbsError
 from .jobs.check import Report as Report
 from .jobs.check import check as check
 from .jobs.equilibrium import equilibrium as equilibrium
+from .jobs.linearised.modes import modes as modes
+from .jobs.linearised.transfer import transfer as transfer
 from .jobs.load_scene import load_scene as load_scene
-from .jobs.modes import modes as modes
 from .jobs.quasi_static import quasi_static as quasi_static
 from .jobs.run import run as run
-from .jobs.transfer import transfer as transfer
 from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state

@@ -14,7 +14,6 @@ Examples
 ...         return [(e.force, e.i.point[0])]
 """
 
-from .describe.element import JointReference
 from .describe.formula.field import (
     ForceOfDeflection,
     ForceOfMotion,
@@ -26,6 +25,7 @@ from .describe.formula.field import (
     TorqueOfMotion,
     TorqueOfRate,
 )
+from .describe.joint_name import JointReference
 from .describe.loads import Loads
 from .describe.python_function import PythonFunction
 

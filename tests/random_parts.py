@@ -9,9 +9,10 @@ import numpy as np
 import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, spatial
 from stiffmbs.describe import model as plane
-from stiffmbs.describe.element import Component, Element, JointName
+from stiffmbs.describe.element import Component, Element
 from stiffmbs.describe.fields import Measured
 from stiffmbs.describe.formula.field import FormulaOf
+from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.marker import MarkerReference
 from stiffmbs.describe.python_function import PythonFunction
 from stiffmbs.describe.samples import Samples, types_in

@@ -8,9 +8,10 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic_core import PydanticUndefined
 
-from stiffmbs.describe.element import Force, Joint, JointName
+from stiffmbs.describe.element import Force, Joint
 from stiffmbs.describe.fields import Described, Measured
 from stiffmbs.describe.formula.field import FormulaOf
+from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.marker import MarkerReference, Placement
 from stiffmbs.describe.spatial.marker import Placement as SpatialPlacement
 from stiffmbs.describe.spatial.orientation import OrientationField

@@ -9,7 +9,8 @@ import numpy as np
 import stiffmbs
 from stiffmbs import spatial
 from stiffmbs.describe import model as plane
-from stiffmbs.describe.element import Element, Force, JointName
+from stiffmbs.describe.element import Element, Force
+from stiffmbs.describe.joint_name import JointName
 from stiffmbs.describe.samples import Samples
 from stiffmbs.describe.spatial import model as space
 from stiffmbs.show.drawing.derive import drawing_of

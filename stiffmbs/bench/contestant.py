@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ..describe.model_data import ModelData
-from ..jobs.run import prepare
+from ..jobs.job import prepare
 from ..solve.trajectory import Outcome
 
 if TYPE_CHECKING:

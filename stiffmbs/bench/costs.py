@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from ..describe.model_data import ModelData
-from ..jobs.run import Job, prepare
+from ..jobs.job import Job, prepare
 from ..solve import cost
 from .error_control import scene
 

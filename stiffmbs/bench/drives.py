@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..describe.model_data import ModelData
+from ..jobs.job import Job, prepare
 from ..jobs.load_scene import load_scene
-from ..jobs.run import Job, prepare, solved
+from ..jobs.run import solved
 from ..results.solution import Solution
 from ..solve.trajectory import Outcome
 from .error_control import EXAMPLES

@@ -14,7 +14,8 @@ import numpy as np
 
 from ..describe.building.model_builder import ModelBuilder
 from ..describe.model_data import ModelData
-from ..jobs.run import Job, prepare, solved
+from ..jobs.job import Job, prepare
+from ..jobs.run import solved
 from ..results.error_bars import ErrorBar
 from ..results.scales import scales
 from ..results.solution import Solution

@@ -21,8 +21,8 @@ from ..describe.joints.revolute import Revolute
 from ..describe.marker import Marker
 from ..describe.model import Model
 from ..describe.model_data import ModelData
+from ..jobs.job import Job, prepare
 from ..jobs.load_scene import load_scene
-from ..jobs.run import Job, prepare
 from ..solve.bdf import solve
 from ..solve.error_control.error_test import ErrorControl
 from ..solve.trajectory import Outcome

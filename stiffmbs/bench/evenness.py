@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..jobs.run import Job, prepare
+from ..jobs.job import Job, prepare
 from ..solve.bdf import solve
 from ..solve.error_control.error_test import CHOSEN, ErrorControl
 from ..solve.trajectory import Trajectory

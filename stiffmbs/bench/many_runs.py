@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..describe.model_data import ModelData
+from ..jobs.job import prepare
 from ..jobs.other_numbers import with_numbers
-from ..jobs.run import prepare
 from .benchmark import Row
 
 Work = Callable[[np.ndarray], np.ndarray]

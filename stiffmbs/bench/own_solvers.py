@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..describe.model_data import ModelData
-from ..jobs.run import prepare
+from ..jobs.job import prepare
 from ..solve.explicit.projected import TRAITS
 from ..solve.formulations import FORMULATIONS
 from ..solve.trajectory import Outcome, Trajectory

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..describe.model_data import ModelData
-from ..jobs.run import prepare
+from ..jobs.job import prepare
 from .benchmark import Row
 from .by_hand.ida import Equations, Run
 

@@ -12,8 +12,8 @@ import numpy as np
 from ..compile.machine.routines import Routine
 from ..describe.reading import read_scene
 from ..errors import SolverError
+from ..jobs.job import prepare
 from ..jobs.renumber import changes_of_numbers
-from ..jobs.run import prepare
 from ..studies.case_solver import CaseSolver, Task, written_scene
 from ..studies.simulation import Simulation, simulation
 from ..studies.started_steps import StartedSteps

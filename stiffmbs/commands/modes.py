@@ -44,7 +44,7 @@ def modes(
 
     Exit status: 0 done, 1 no motion leads to such a state or a file could not be written, 2 the input is wrong.
     """
-    from ..jobs.modes import modes as found_modes
+    from ..jobs.linearised.modes import modes as found_modes
     from ..results.files import check_output, write
     from ..show.modes import modes_text
 

@@ -45,8 +45,8 @@ def response(
     """
     import numpy as np
 
-    from ..jobs.inputs import force_on, parameter_of
-    from ..jobs.transfer import transfer
+    from ..jobs.linearised.inputs import force_on, parameter_of
+    from ..jobs.linearised.transfer import transfer
     from ..show.response import response_as_json, response_csv, response_text
 
     changes = changes_of(options)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from ..bench.turns import take_turns
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError
-from ..jobs.run import Runnable, data_of
+from ..jobs.job import Runnable, data_of
 from .at_error import AtError, decades, times_at
 from .entries import USUAL, Entry
 from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, base_settings, plan_of

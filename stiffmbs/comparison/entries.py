@@ -8,10 +8,10 @@ from typing import Any
 
 from ..describe.settings import RunSettings
 from ..errors import InputError
-from ..solve import SOLVERS, traits_of
+from ..solve import SOLVERS
 from ..solve.explicit.projected import TRAITS as SCHEMES
 from ..solve.formulations import FORMULATIONS
-from ..solve.settings import changed
+from ..solve.settings import changed, traits_of
 
 BDF, PROJECTED, DEFAULT_SCHEME = "bdf", "projected", "dop853"
 USUAL = (BDF, DEFAULT_SCHEME, "auto")

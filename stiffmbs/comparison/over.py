@@ -11,8 +11,8 @@ from ..describe.reading import read_scene
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..describe.units.units import Dimension, Quantity, in_text
 from ..errors import AssemblyError, InputError, SolverError
+from ..jobs.job import Runnable, data_of
 from ..jobs.load_scene import load_scene
-from ..jobs.run import Runnable, data_of
 from .at_error import times_at
 from .compare import measured, refuse_unmeasured
 from .comparison_over import AtValue, ComparisonOver

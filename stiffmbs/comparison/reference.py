@@ -10,11 +10,11 @@ import numpy as np
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from ..jobs.run import prepare, solved
+from ..jobs.job import prepare
+from ..jobs.run import solved
 from ..results.scales import kind_of, scales
 from ..results.solution import Solution
-from ..solve import traits_of
-from ..solve.settings import changed
+from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome
 from ..verification.settings_again import EXPLICIT, IMPLICIT
 from ..verification.solve_again import Deadline

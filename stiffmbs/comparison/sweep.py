@@ -12,8 +12,8 @@ from ..bench.turns import ONCE, Timed, seconds_of
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import StiffmbsError
+from ..jobs.job import Job, prepare
 from ..jobs.python_faults import up_to_a_fault
-from ..jobs.run import Job, prepare
 from ..results.channels import channels_of
 from ..solve.missing_rows import reported
 from ..solve.settings import near_constraints

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..describe.element import JointName
 from ..describe.formula.formula import Formula
 from ..describe.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
 from ..describe.formula.text import UNIT
 from ..describe.formula.value import formula_value
+from ..describe.joint_name import JointName
 from ..describe.marker import MarkerReference
 from ..describe.table import Table
 from .table_values import spline_data

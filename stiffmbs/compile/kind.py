@@ -12,9 +12,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..describe.element import Component, Element, Force, Joint, JointName
+from ..describe.element import Component, Element, Force, Joint
 from ..describe.files.followed import Followed
 from ..describe.formula.formula import Formula
+from ..describe.joint_name import JointName
 from ..describe.marker import MarkerReference, PlacedMarkers
 from ..describe.python_function import PythonFunction
 from ..describe.states.name import StateName, own_state

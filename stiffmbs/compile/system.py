@@ -221,37 +221,6 @@ class System:
             for term_set, terms in TERM_SETS.items()
         }
 
-    def writer(self, term_set: str, at: int) -> str:
-        """The name of the element that writes the value at a place of a set."""
-        group, element = self._writer(term_set, at)
-        return group.names[element]
-
-    def beyond(self, limit: int) -> str:
-        """What is wrong where a limit is passed, a value of the set ``event_function``."""
-        group, element = self._writer("event_function", limit)
-        return f"'{group.names[element]}': {group.kind.element.beyond}"  # type: ignore[attr-defined]
-
-    @cached_property
-    def doubts(self) -> tuple[np.ndarray, tuple[str, ...]]:
-        """For each limit of a force, the value below which the motion is doubtful, and what is doubtful there."""
-        found = [
-            (group.kind.element.doubtful, f"'{name}' {group.kind.element.doubt}")  # type: ignore[attr-defined]
-            for group in self.groups
-            if group.entries["limit"]
-            for name in group.names
-            for _ in range(group.entries["limit"])
-        ]
-        return np.array([value for value, _ in found]), tuple(words for _, words in found)
-
-    def _writer(self, term_set: str, at: int) -> tuple[Group, int]:
-        for g, group in enumerate(self.groups):
-            for k, term in enumerate(TERM_SETS[term_set]):
-                width = group.entries[term]
-                first = int(self.places[term_set][g, 1 + k])
-                if first <= at < first + group.count * width:
-                    return group, (at - first) // width
-        raise IndexError(f"the set {term_set} has no value {at}")
-
     @cached_property
     def reported(self) -> dict[str, int]:
         """The channels of joints and forces, and where each stands among the values of the output terms; -1 for one that is zero."""
@@ -286,18 +255,6 @@ class System:
         """The numbers of the coordinates that are angles; none in space."""
         flat = self.of_body.n_q == self.of_body.n_u
         return np.arange(self.of_body.linear, self.of_body.n_q * len(self.bodies) if flat else 0, self.of_body.n_q)
-
-    def values_of(self, values: np.ndarray, term_set: str, element: str) -> dict[str, np.ndarray]:
-        """The values that one element wrote for each term of a set."""
-        found = {}
-        for g, group in enumerate(self.groups):
-            if element in group.names:
-                e = group.names.index(element)
-                for k, term in enumerate(TERM_SETS[term_set]):
-                    width = group.entries[term]
-                    first = self.places[term_set][g, 1 + k] + e * width
-                    found[term] = values[first : first + width]
-        return found
 
     @cached_property
     def _terms(self) -> dict[tuple[str, str], Term]:

@@ -11,57 +11,22 @@ from __future__ import annotations
 import builtins
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from pydantic import GetJsonSchemaHandler, WithJsonSchema, model_validator
+from pydantic import GetJsonSchemaHandler, model_validator
 
 from .fields import Described, typed
 from .formula.formula import Formula
 from .loads import Loads
 from .marker import MarkerReference
-from .parts.names import names_of
 
 if TYPE_CHECKING:
     from .model_data import ModelData
 
 Symbolic = Any
-"""The element as its equations see it (`stiffmbs.compile.symbolic.frames.SymbolicElement`): a frame for a marker, a symbol for a number, an expression for a formula, a
+"""The element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`): a frame for a marker, a symbol for a number, an expression for a formula, a
 function for a formula or table of a variable, a symbolic element for a joint that is referred to; ``e.t`` for time,
 ``e.rate(expression)`` for a total time derivative, ``e.frames`` for the bodies."""
-
-
-COORDINATES = ("angle", "displacement")
-"""What the coordinates of joints are called."""
-
-
-class JointName(str):
-    """The name of a joint of the model, or of one of its coordinates (``sleeve.angle``), in a field of another element."""
-
-    @property
-    def joint(self) -> str:
-        """The joint's name."""
-        owner, _, last = self.rpartition(".")
-        return owner if owner and last in COORDINATES else str(self)
-
-    def coordinate_of(self, joint: Joint) -> str | None:
-        """Which of the joint's coordinates is meant; None where it has no such one, or there is a choice."""
-        name = self[len(self.joint) + 1 :]
-        if name:
-            return name if name in joint.coordinates else None
-        return joint.coordinates[0] if len(joint.coordinates) == 1 else None
-
-    @classmethod
-    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
-        from pydantic_core import core_schema
-
-        return core_schema.with_info_after_validator_function(
-            lambda text, info: cls(names_of(info).full(text)), core_schema.str_schema()
-        )
-
-
-JointReference = Annotated[
-    JointName, WithJsonSchema({"type": "string", "description": "the name of a joint, or of one of its coordinates"})
-]
 
 
 class Component(Described):

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .element import Element, Joint, JointName
+from .element import Element, Joint
+from .joint_name import JointName
 from .marker import MarkerReference
 
 if TYPE_CHECKING:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from .element import Element, Joint, JointName
+from .element import Element, Joint
+from .joint_name import JointName
 
 
 def unfit_joints(

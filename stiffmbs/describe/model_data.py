@@ -11,12 +11,13 @@ from pydantic import Field, field_validator, model_validator
 
 from .body import check_names
 from .check_marker import check_marker, listed
-from .element import Element, Force, Joint, JointName
+from .element import Element, Force, Joint
 from .fields import Described
 from .formula.formula import Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.nodes import TIME
 from .formula.text import UNIT
+from .joint_name import JointName
 from .marker import GROUND, MarkerReference
 from .parts.names import beginnings
 from .requests.check import by_channel, check_output

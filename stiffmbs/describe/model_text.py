@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..errors import InputError
-from .element import JointName
 from .fields import Described
 from .files.scene_text import scene_text
 from .formula.dimension import Known
+from .joint_name import JointName
 from .marker import MarkerReference
 from .model_data import ModelData
 from .states.amount import Amount

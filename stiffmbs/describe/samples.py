@@ -9,9 +9,10 @@ from typing import Any, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from ..errors import InputError
-from .element import Element, Joint, JointName
+from .element import Element, Joint
 from .fields import Measured
 from .formula.field import FormulaOf
+from .joint_name import JointName
 from .marker import MarkerReference
 
 

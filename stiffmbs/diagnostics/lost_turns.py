@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..compile.written_values import writer
 from ..solve.dynamics import Dynamics, OutputRows
 
 UNCERTAIN_TURN = 1.0
@@ -38,7 +39,7 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     if not np.nanmax(apart) > UNCERTAIN_TURN:
         return
     k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
-    name = system.writer("position", int(counted.source[worst]))
+    name = writer(system, "position", int(counted.source[worst]))
     yield (
         f"whole turns of the angle of '{name}' are not certain: at t = {rows.t[instants[k]]:.6g} s the orientations and the integral of "
         f"the angular velocity differ by {apart[k, worst]:.2g} rad; the steps are too long for the speed (tighten rtol, or shorten step), "

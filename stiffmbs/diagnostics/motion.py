@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
 
 from ..solve.dynamics import Dynamics, OutputRows
 from .glance import Glance
@@ -28,7 +31,10 @@ class MotionNotes:
     uncertain: tuple[str, ...]
 
 
-def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None) -> MotionNotes:
+def motion_notes(
+    dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None, rtol: float,
+    again: Callable[[np.ndarray], OutputRows],
+) -> MotionNotes:  # fmt: skip
     """What there is to say of a motion.
 
     Parameters
@@ -40,11 +46,15 @@ def motion_notes(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, see
         Whether the states are brought back to the constraints, so that drift is not shown.
     seen : Glance or None
         What the rows show at a glance.
+    rtol : float
+        Of the run.
+    again : callable
+        The same run, reported at other instants, s.
     """
     return MotionNotes(
         tuple(senseless(dynamics, rows, on_constraints, seen)),
         (
-            *(singular_passage_sentence(dynamics, rows) if rows.lam.size else ()),
+            *(singular_passage_sentence(dynamics, rows, rtol, again) if rows.lam.size else ()),
             *(lost_turns_sentence(dynamics, rows) if dynamics.system.n_counters else ()),
             *(near_limits_sentence(dynamics, rows) if dynamics.system.has_limits else ()),
         ),

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..compile.system import System
 from ..solve.dynamics import Dynamics, OutputRows
 
 MOST_INSTANTS = 400
@@ -26,7 +27,7 @@ def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     first, end = system.first_limit, system.n_event_functions
     if not len(rows.t):
         return
-    doubtful, words = system.doubts
+    doubtful, words = _doubts(system)
     for k in np.unique(np.linspace(0, len(rows.t) - 1, min(len(rows.t), MOST_INSTANTS)).astype(int)):
         state.q[:], state.u[:] = rows.q[k], rows.u[k]
         state.evaluate("event_function", rows.t[k])
@@ -38,3 +39,15 @@ def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
                 "'stiffmbs modes' and an earlier --at"
             )
             return
+
+
+def _doubts(system: System) -> tuple[np.ndarray, tuple[str, ...]]:
+    """For each limit of a force, the value below which the motion is doubtful, and what is doubtful there."""
+    found = [
+        (group.kind.element.doubtful, f"'{name}' {group.kind.element.doubt}")  # type: ignore[attr-defined]
+        for group in system.groups
+        if group.entries["limit"]
+        for name in group.names
+        for _ in range(group.entries["limit"])
+    ]
+    return np.array([value for value, _ in found]), tuple(words for _, words in found)

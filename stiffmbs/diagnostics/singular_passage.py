@@ -1,66 +1,113 @@
-"""A motion that goes through a nearly singular pose: reactions grow as 1/d before it and come back with the other sign.
+"""A motion that goes through a nearly singular pose: errors come back from it magnified, or decide which way it goes on.
 
-Beside a pose at which two branches of the motion meet, at a distance d, the multipliers of a motion that is off its branch by
-an error e grow as e/d^3.  Where they do, the last digits of the geometry decide which branch follows.
+Two branches of the motion meet in a singular pose, and beside it they turn away from each other: at a distance d (the smallest
+singular value of the joints' J, relative to its usual value) within a way of d.  Errors e of a motion that passes there
+come back as about e/d^2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from ..solve.dynamics import Dynamics, OutputRows
-from ..solve.storage import blocks, release
 from ..structure.overconstraint import listed
+from .singular_poses import NEARLY_SINGULAR, PosesOnTheWay, SingularPose
 
-GROWN = 200.0
-"""Times its usual value that a multiplier must reach on one side of a change of its sign; on the other one it must reach that value.
-Measured on 810 pairs of runs (bdf and dop853, 60 and 400 outputs) of sliders on turning guides, parallelograms, kites and slider cranks in
-the plane and in space, which miss their singular pose by parts d of their size.  From d = 1e-3 on it is resolved, and none is noted
-(growth up to 140 from 1e-2 on, 1800 at 1e-3, where no pose is near enough).  At 1e-4 the motion is resolved too; 7 % are noted, where
-a change of 1e-9 in a length comes back 1e3 to 1e6 times as large.  Where chance decides (1e-6 and less) 44 of 48 runs of the slider
-are noted, 18 of 56 and 18 of 48 of the four-bars and 6 of 32 in space: outputs far from the pose do not show its reactions."""
-SAMPLES = 1000
-"""Outputs from which the usual value is taken."""
-NOISE = 1e-9
-"""Part of the largest usual value below which multipliers are rounding."""
+DIP = 0.25
+"""Part of the det of its neighbours to which the parabola through three outputs may fall before the motion between them is looked at.
+The det goes as the square of the distance from a singular pose; where poses stay a twentieth of the usual away it falls to 0.1 and more."""
+MOST_DIPS, INSTANTS = 5, 201
+"""Dips looked at, the deepest ones, and instants within each."""
+MAGNIFIED = 10.0
+"""Error behind the pose, as a part of the size, over rtol/d^2.  Measured on sliders on turning guides, parallelograms, kites and
+cranks in space by bdf and dop853 at rtol 1e-8, d from 1e-4 to 5e-2: 0.2 to 50."""
+DECIDED, WORTH_TELLING = 0.1, 1e-3
+"""Expected errors, as parts of the size, from which on chance decides the branch, and from which on they are told."""
+LAST_DIGITS = 1e-10
+"""The smallest rtol that is of use, and the last digits of lengths."""
 
 
-def singular_passage_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
-    """A sentence on the first such pose between two outputs.
+def singular_passage_sentence(
+    dynamics: Dynamics, rows: OutputRows, rtol: float, again: Callable[[np.ndarray], OutputRows]
+) -> Iterator[str]:
+    """A sentence on the worst passage.
 
     Parameters
     ----------
     dynamics : Dynamics
     rows : OutputRows
+    rtol : float
+        Of the run.
+    again : callable
+        The same run, reported at other instants, s.
     """
-    turned = _turned_round(rows.lam)
-    if not turned:
+    dips = deepest_dips(rows.log_determinant)
+    if not dips:
         return
-    from .singular_poses import PosesOnTheWay
-
-    poses = PosesOnTheWay(dynamics.system, rows.t, rows.q)
-    for k in turned:
-        pose = poses.nearest(float(rows.t[k]), float(rows.t[k + 1]))
-        if pose is not None:
-            yield (
-                f"passes a singular pose near t = {pose.t:.6g} s, where {listed(list(pose.joints))} nearly depend on each other and their "
-                "reactions grow beyond bounds: more than one motion may follow, and the motion depends on the last digits of the "
-                f"geometry ({'; '.join(f'{body} at {place}' for body, place in zip(pose.bodies, pose.poses, strict=True))})"
-            )
-            return
+    usual = PosesOnTheWay(dynamics.system, rows.t, rows.q).usual
+    if not usual:
+        return
+    stretches = [np.linspace(rows.t[k - 1], rows.t[k + 1], INSTANTS) for k in sorted(dips)]
+    dense = again(np.unique(np.concatenate(stretches)))
+    poses = PosesOnTheWay(dynamics.system, dense.t, dense.q, usual)
+    nearest = [_nearest(poses, dense, stretch) for stretch in stretches]
+    d, pose = min(nearest, key=lambda found: found[0], default=(1.0, None))
+    if pose is not None:
+        yield from _sentence(pose, d, rtol)
 
 
-def _turned_round(lam: np.ndarray) -> list[int]:
-    """The outputs behind which a multiplier that has grown by far comes back with the other sign."""
-    usual = np.median(np.abs(lam[:: 1 + len(lam) // SAMPLES]), axis=0)
-    usual = np.maximum(usual, NOISE * usual.max())
-    found: list[int] = []
-    for block in [*blocks(len(lam) - 1)]:
-        before, behind = lam[block], lam[block.start + 1 : block.stop + 1]
-        size, other = np.abs(before), np.abs(behind)
-        grown = (np.minimum(size, other) > usual) & (np.maximum(size, other) > GROWN * usual)
-        found.extend(int(k) + block.start for k in np.flatnonzero((grown & (before * behind < 0.0)).any(axis=1)))
-        release(lam)
-    return found
+def deepest_dips(log_determinant: np.ndarray) -> list[int]:
+    """The outputs about which the joints may lose rank: the det falls to, or towards, a small part of its neighbours.
+
+    Parameters
+    ----------
+    log_determinant : ndarray, shape (n,)
+        Of [M J^T; J 0].
+    """
+    if len(log_determinant) < 3 or np.ptp(log_determinant) < np.log(1.25 / (DIP + 0.25)):
+        return []  # at a least value the parabola is at most a quarter of its bend below
+    D = np.nan_to_num(np.exp(log_determinant - np.nanmedian(log_determinant)))
+    k = 1 + np.flatnonzero((D[1:-1] <= D[:-2]) & (D[1:-1] < D[2:]))
+    part = _least(D[k - 1], D[k], D[k + 1]) / np.maximum(D[k - 1], D[k + 1])
+    deepest = np.argsort(part, kind="stable")[:MOST_DIPS]
+    return [int(k[i]) for i in deepest if part[i] < DIP]
+
+
+def _least(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """The least value of the parabola through three equidistant values, of which that in the middle is less than the last."""
+    slope, bend = (after - before) / 2, (before - 2 * at + after) / 2
+    return at - slope * slope / (4 * bend)
+
+
+def _nearest(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray) -> tuple[float, SingularPose | None]:
+    """The distance from a singular pose within a stretch, and the pose."""
+    inside = np.flatnonzero((dense.t >= stretch[0]) & (dense.t <= stretch[-1]))
+    if not len(inside):
+        return 1.0, None
+    D = np.nan_to_num(np.exp(dense.log_determinant[inside] - np.nanmax(dense.log_determinant[inside])))
+    least = int(np.argmin(D))
+    k, d = int(inside[least]), poses.distance(int(inside[least]))
+    if d > NEARLY_SINGULAR:
+        return d, None
+    if D[least] and 0 < least < len(D) - 1 and D[least] < D[least + 1]:
+        d *= float(np.sqrt(max(0.0, _least(*D[least - 1 : least + 2]) / D[least])))
+    return d, poses.nearest(float(dense.t[k]), float(dense.t[k]))
+
+
+def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
+    magnified = MAGNIFIED / max(d * d, np.finfo(float).tiny)
+    where = "; ".join(f"{body} at {place}" for body, place in zip(pose.bodies, pose.poses, strict=True))
+    at = f"near t = {pose.t:.6g} s, where {listed(list(pose.joints))} nearly depend on each other"
+    if magnified * LAST_DIGITS >= DECIDED:
+        yield (
+            f"passes a singular pose {at}: more than one motion may follow, and the motion depends on the last digits of the geometry "
+            f"({where})"
+        )
+    elif magnified * rtol >= WORTH_TELLING:
+        decided = "more than one motion may follow, and " if magnified * rtol >= DECIDED else ""
+        yield (
+            f"passes beside a singular pose {at}: {decided}errors come back about {magnified:.1g} times as large; set a smaller rtol "
+            f"({where})"
+        )

@@ -56,10 +56,12 @@ class PosesOnTheWay:
         Without redundant equations.
     t : ndarray, shape (n,)
     q : ndarray, shape (n, n_q)
+    usual : float, optional
+        That value where it is known of a longer way.
     """
 
-    def __init__(self, system: System, t: np.ndarray, q: np.ndarray) -> None:
-        self._system, self._t, self._q = system, t, q
+    def __init__(self, system: System, t: np.ndarray, q: np.ndarray, usual: float | None = None) -> None:
+        self._system, self._t, self._q, self._given = system, t, q, usual
         self._state = State(system)
         self._state.q[:] = q[0]
         self._state.evaluate("motion", float(t[0]))
@@ -69,8 +71,10 @@ class PosesOnTheWay:
         self._known: dict[int, float] = {}
 
     @cached_property
-    def _usual(self) -> float:
-        """The largest measure at a few poses on the way."""
+    def usual(self) -> float:
+        """The largest measure at a few poses on the way; 0 without loops."""
+        if self._given is not None or not self._loops:
+            return self._given or 0.0
         looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), USUAL_POSES)).astype(int)
         return max(self._least(int(k))[0] for k in looked_at)
 
@@ -84,7 +88,7 @@ class PosesOnTheWay:
         if not self._loops:
             return 1.0
         if k not in self._known:
-            self._known[k] = self._least(k)[0] / self._usual
+            self._known[k] = self._least(k)[0] / self.usual
         return self._known[k]
 
     def at_singular(self, k: int) -> slice:

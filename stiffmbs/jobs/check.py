@@ -24,7 +24,7 @@ from ..structure.messages.redundancy import (
 )
 from ..structure.messages.unconnected import unconnected_sentence
 from ..structure.overconstraint import Overconstraint, listed, overconstraints
-from .run import Examined, Runnable, data_of, examined
+from .job import Examined, Runnable, data_of, examined
 
 MOST_MOVES = 50
 """Bodies that are named of those which assembly moves; `Report.moved` has all."""

@@ -10,7 +10,7 @@ import numpy as np
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..results.solution import Solution
-from .run import Job, Runnable, data_of, prepare
+from .job import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
 from .solution_at_rest import solution_at_rest
 from .start_from import StartFrom

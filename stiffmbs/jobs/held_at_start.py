@@ -31,7 +31,7 @@ def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
     AssemblyError
         When no such state is found.
     """
-    from .run import examined
+    from .job import examined
 
     held = scene.held_at_start
     if held is None:

@@ -21,8 +21,8 @@ from ..describe.model_data import ModelData
 from ..describe.scene import Scene, notes_of
 from ..describe.settings import SteadyMotion
 from ..errors import StiffmbsError
+from .job import Job, start_of_job
 from .renumber import may_be_input, renumberable
-from .run import Job, start_of_job
 
 
 @dataclass(frozen=True)

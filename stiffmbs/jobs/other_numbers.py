@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from ..errors import InputError
+from .job import Job, prepare
 from .renumber import renumbered
-from .run import Job, prepare
 
 
 def with_numbers(job: Job, name: str, **numbers: Any) -> Job:

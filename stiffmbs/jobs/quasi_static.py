@@ -13,7 +13,7 @@ from ..results.solution import Solution
 from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
 from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
-from .run import Runnable, data_of, prepare
+from .job import Runnable, data_of, prepare
 from .solution_at_rest import solution_at_rest
 
 

@@ -20,7 +20,7 @@ from ..describe.model_data import ModelData
 from ..describe.scene import Scene
 from ..describe.table import Table
 from ..presolve.presolve import may_be_apart
-from .run import Job, start_of_job
+from .job import Job, start_of_job
 
 HELD = ("dimensions", "gravity", "markers", "bodies", "joints")
 """What must be the same: it decides about coordinates, rank and the start."""

@@ -13,7 +13,7 @@ from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
 from ..solve.algebraic_states import failure
 from ..solve.trajectory import History, Outcome
-from .run import Job
+from .job import Job
 
 
 def solution_at_rest(

@@ -16,16 +16,15 @@ import numpy as np
 from ..diagnostics.glance import Glance
 from ..diagnostics.overlooked import Overlooked, overlooked, together
 from ..diagnostics.within_long_steps import overlooked_in_long_steps
-from ..solve import traits_of
 from ..solve.dynamics import OutputRows
 from ..solve.error_control.relaxation import Creep, creep_of, creeps
-from ..solve.settings import changed
+from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, Trajectory
 
 if TYPE_CHECKING:
     from ..compile.system import System
     from ..describe.settings import RunSettings
-    from .run import Job
+    from .job import Job
 
 ROUNDS, STARTS = 3, 1000
 """How often a run is taken again, and with how many starts at the most."""

@@ -8,8 +8,9 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-from ..describe.element import Element, JointName
+from ..describe.element import Element
 from ..describe.formula.formula import Formula
+from ..describe.joint_name import JointName
 from ..describe.joints.fixed import Fixed
 from ..describe.marker import GROUND, MarkerReference
 from ..describe.model_data import ModelData

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from ..compile.kind import Compilable
-from ..describe.element import Element, JointName
+from ..describe.element import Element
 from ..describe.formula.formula import Formula
+from ..describe.joint_name import JointName
 from ..describe.marker import GROUND, MarkerReference
 from ..describe.states.name import StateName
 from ..describe.states.state import StateValue

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..compile.system import System
 from ..describe.settings import RunSettings
-from ..solve import traits_of
 from ..solve.dynamics import OutputRows
+from ..solve.settings import traits_of
 from .energy_balance import BROKEN, Balance, potentials
 
 FINER = ("rtol", "max_step", "step")

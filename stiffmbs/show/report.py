@@ -18,7 +18,7 @@ from ..describe.figure import Figure
 from ..describe.scene import Scene
 from ..errors import InputError, StiffmbsError
 from ..jobs.check import Report, check
-from ..jobs.modes import modes
+from ..jobs.linearised.modes import modes
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import refuse_path, written_whole

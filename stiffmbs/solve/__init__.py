@@ -1,7 +1,6 @@
 """Initial values and integrators.  They see a `System`, never a kind of element."""
 
-from ..describe.settings import RunSettings
-from .solver import Traits, loaded_when_used
+from .solver import loaded_when_used
 
 SOLVERS = {
     "auto": loaded_when_used(".auto", __name__),
@@ -10,8 +9,3 @@ SOLVERS = {
     "kinematic": loaded_when_used(".kinematic", __name__),
 }
 """By the name in the settings; a new solver is one entry here, and its name in `RunSettings.solver`."""
-
-
-def traits_of(settings: RunSettings) -> Traits:
-    """The traits of the solver that the settings choose."""
-    return SOLVERS[settings.solver].traits(settings)

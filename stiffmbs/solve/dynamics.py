@@ -53,6 +53,8 @@ class OutputRows:
         Energies, J, and the power of what has no potential, W.
     position_violation, velocity_violation, drift : ndarrays
         Largest violation of a joint, the norm over its equations, in C and in J u + C_t, and in C before projection.
+    log_determinant : ndarray, shape (n,)
+        log |det| of [M J^T; J 0], without the logarithms of units: small where joints nearly lose rank.
     status : int
         Why the instant after the last row has no solution (`stiffmbs.solve.failures`); 0 where all have one.
     """
@@ -69,6 +71,7 @@ class OutputRows:
     position_violation: np.ndarray
     velocity_violation: np.ndarray
     drift: np.ndarray
+    log_determinant: np.ndarray
     status: int
 
     @property
@@ -262,7 +265,7 @@ class Dynamics:
             Whether each state is first brought back to the constraints.
         """
         system, count, n_output = self.system, len(t), self._n_output
-        widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 3)
+        widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 4)
         rows = [allocated(count, width) for width in widths]
         kinetic, potential, power = (allocated(count) for _ in range(3))
         done = 0
@@ -281,9 +284,9 @@ class Dynamics:
             release(*rows, kinetic, potential, power, q, u)
             if done < block.stop:
                 break
-        q, u, acceleration, lam, values, largest = (array[:done] for array in rows)
-        position, velocity, drift = largest.T
+        q, u, acceleration, lam, values, judged = (array[:done] for array in rows)
+        position, velocity, drift, log_determinant = judged.T
         return OutputRows(
             t[:done], q, u, acceleration, lam, values, kinetic[:done], potential[:done], power[:done],
-            position, velocity, drift, int(self._cells["status"]),
+            position, velocity, drift, log_determinant, int(self._cells["status"]),
         )  # fmt: skip

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..compile.written_values import values_of
 from ..errors import AssemblyError
 from .algebraic_states import failure
 from .dynamics import POSITION_TOLERANCE, Dynamics
@@ -197,7 +198,7 @@ def _undefined_sentence(dynamics: Dynamics, t: float) -> str:
     for term_set in ("motion", "acceleration"):
         state.evaluate(term_set, t)
         for name in (name for group in system.groups for name in group.names):
-            values = system.values_of(state.values[term_set], term_set, name)
+            values = values_of(system, state.values[term_set], term_set, name)
             if not all(np.all(np.isfinite(part)) for part in values.values()):
                 return f"'{name}' has no finite value at the start, expected equations that are defined there"
     return "the accelerations at the start are not finite, expected forces and masses of ordinary size"

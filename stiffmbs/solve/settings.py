@@ -1,4 +1,4 @@
-"""What the settings of a run mean for it: the instants to report, what its states are good for, what is asked in vain."""
+"""What the settings of a run mean for it: the solver's traits, the instants to report, what its states are good for, what is asked in vain."""
 
 from __future__ import annotations
 
@@ -9,11 +9,16 @@ import numpy as np
 
 from ..compile.system import System
 from ..describe.settings import RunSettings
-from . import traits_of
+from . import SOLVERS
 from .solver import Traits
 from .trajectory import Grid
 
 DEFAULT_POINTS = 1001
+
+
+def traits_of(settings: RunSettings) -> Traits:
+    """The traits of the solver that the settings choose."""
+    return SOLVERS[settings.solver].traits(settings)
 
 
 def may_presolve(settings: RunSettings) -> bool:

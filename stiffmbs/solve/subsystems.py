@@ -12,13 +12,12 @@ from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..presolve.linear_equations import independent_coordinates
 from ..presolve.presolve import Part, parts_of
-from . import traits_of
 from .alike_mechanisms import alike
 from .auto import begins_implicit
 from .dynamics import Dynamics
 from .events.restart import restarted
 from .initial import InitialValues
-from .settings import may_presolve
+from .settings import may_presolve, traits_of
 from .storage import allocated
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..compile.system import System
+from ..compile.written_values import writer
 from .dynamics import Dynamics
 
 BEYOND_LAST_STATE = (0.0, 1e-12, 1e-9, 1e-6)
@@ -51,7 +52,7 @@ def _move(dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> None:
 def _undefined(system: System, values: np.ndarray, term_set: str) -> str:
     """The first element that wrote a value that is not finite."""
     wrong = np.flatnonzero(~np.isfinite(values[: system.n_values(term_set)]))
-    return system.writer(term_set, int(wrong[0])) if len(wrong) else ""
+    return writer(system, term_set, int(wrong[0])) if len(wrong) else ""
 
 
 def _open(dynamics: Dynamics, t: float) -> str:
@@ -93,7 +94,7 @@ def _pulls(dynamics: Dynamics, t: float) -> Iterator[tuple[float, str, int]]:
     of_joints = np.abs(values[jacobian.source] * lam[jacobian.row] / system.mass[jacobian.column])
     if len(of_forces):
         k = int(np.argmax(of_forces))
-        yield float(of_forces[k]), system.writer("motion", int(force.source[k])), int(force.row[k])
+        yield float(of_forces[k]), writer(system, "motion", int(force.source[k])), int(force.row[k])
     if len(of_joints):
         k = int(np.argmax(of_joints))
         yield float(of_joints[k]), system.equations[jacobian.row[k]][0], int(jacobian.column[k])

@@ -17,9 +17,10 @@ from ..describe.reading import made_scene
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
+from ..jobs.job import Job, prepare
 from ..jobs.number_plan import NumberPlan, number_plan
 from ..jobs.renumber import renumbered
-from ..jobs.run import Finished, Job, finished, prepare, solved
+from ..jobs.run import Finished, finished, solved
 from ..results.channels import channels_of
 from ..results.solution import Solution
 from ..solve.settings import changed
@@ -211,7 +212,7 @@ def written_scene(model: Any) -> WrittenScene:
     """
     from ..describe.model_text import model_text
     from ..describe.reading import read_scene
-    from ..jobs.run import data_of
+    from ..jobs.job import data_of
 
     data = data_of(model)
     if isinstance(data, Scene) and not _as_written(data):

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError, SolverError, StiffmbsError
-from ..jobs.run import Runnable, solved
+from ..jobs.job import Runnable
+from ..jobs.run import solved
 from ..results.solution import Solution
 from ..solve.settings import changed
 from ..solve.trajectory import Grid, Outcome

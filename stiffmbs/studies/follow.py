@@ -12,7 +12,7 @@ from ..describe.requests.order import units
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError
-from ..jobs.run import Job, Runnable, data_of, prepare
+from ..jobs.job import Job, Runnable, data_of, prepare
 from ..jobs.start_from import StartFrom
 from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, InputError, SolverError
-from ..jobs.run import Job, Runnable, data_of, prepare
+from ..jobs.job import Job, Runnable, data_of, prepare
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
 from ..jobs.taken_again import CREPT, exactly, relaxed
 from ..results.channels import channels_of, turns_of

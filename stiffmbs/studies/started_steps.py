@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.inputs.features import InputFeatures
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from ..jobs.run import Job
+from ..jobs.job import Job
 from ..solve.bdf import Integrator
 from ..solve.events.restart import just_after, just_before, restarted
 from ..solve.ida.engine import Reached

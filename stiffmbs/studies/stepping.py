@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import SolverError
-from ..jobs.run import Job
+from ..jobs.job import Job
 from ..solve import SOLVERS
 from ..solve.bdf import Integrator
 from ..solve.events.restart import just_after, restarted

@@ -16,7 +16,7 @@ import numpy as np
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
-from ..jobs.run import Runnable
+from ..jobs.job import Runnable
 from ..solve.settings import changed, output_grid
 from .case_solver import CaseSolver, Row, Task, written_scene
 from .cases import Cases, cases_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..diagnostics.singular_poses import PosesOnTheWay
-from ..jobs.run import Job
+from ..jobs.job import Job
 from ..results.body_axes import from_own_axes
 from ..results.solution import Solution
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from ..describe.settings import RunSettings
 from ..results.solution import Solution
-from ..solve import traits_of
-from ..solve.settings import changed
+from ..solve.settings import changed, traits_of
 
 EXPLICIT: dict[str, Any] = {"solver": "projected", "scheme": "dop853", "projection": True}
 IMPLICIT: dict[str, Any] = {"solver": "bdf", "formulation": "SI2"}

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import StiffmbsError
-from ..jobs.run import Job, changed, solved
+from ..jobs.job import Job
+from ..jobs.run import solved
 from ..results.solution import Solution
+from ..solve.settings import changed
 from ..solve.trajectory import Grid, Outcome
 
 LOOKS_AHEAD = 0.3

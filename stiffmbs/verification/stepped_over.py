@@ -19,15 +19,14 @@ from ..compile.reactions import reactions
 from ..compile.system import System
 from ..diagnostics.singular_poses import PosesOnTheWay
 from ..errors import StiffmbsError
-from ..jobs.run import Job
+from ..jobs.job import Job
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import may_be_missing
 from ..results.solution import Solution
-from ..solve import traits_of
 from ..solve.dynamics import OutputRows
 from ..solve.events.restart import restarted
 from ..solve.missing_rows import reported
-from ..solve.settings import changed, near_constraints
+from ..solve.settings import changed, near_constraints, traits_of
 from ..solve.trajectory import Grid, Outcome
 from .dense_sampling import apart
 from .settings_again import EXPLICIT

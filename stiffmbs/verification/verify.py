@@ -26,13 +26,13 @@ from typing import Any, Unpack
 import numpy as np
 
 from ..describe.settings import RunSettings, Settings, takes_settings
-from ..jobs.run import Job, Runnable, prepare, solved
+from ..jobs.job import Job, Runnable, prepare
+from ..jobs.run import solved
 from ..jobs.start_from import StartFrom
 from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution
-from ..solve import traits_of
-from ..solve.settings import changed
+from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from .dense_sampling import DenseSamples, dense_samples, more_instants
 from .diagnostics import Comparison, diagnostics

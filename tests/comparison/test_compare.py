@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs.comparison.entries import entries_of
 from stiffmbs.comparison.reference import reference
 from stiffmbs.describe.settings import RunSettings
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 
 OSCILLATOR = """
 bodies: {block: {mass: 2, inertia: 1, position: [0.1, 0]}}

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome
 
 SLED = """

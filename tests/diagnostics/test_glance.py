@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.diagnostics.glance import glance_at
 from stiffmbs.diagnostics.overlooked import contradicting_rows
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.results.energy_balance import energy_balance
 from stiffmbs.solve.missing_rows import reported
 

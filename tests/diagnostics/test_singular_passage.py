@@ -1,8 +1,11 @@
 """A slider on a turning guide, whose line passes the guide's hinge: the nearer it does, the less is known of what follows."""
 
+import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.diagnostics.singular_passage import deepest_dips
+from stiffmbs.stress.families.structure.singular_passages import four_bar
 
 NOTE = "passes a singular pose near t = 0."
 
@@ -33,3 +36,27 @@ def test_a_branch_that_rounding_chooses_is_told(solver):
 def test_a_swing_that_is_resolved_is_not(solver):
     solution = stiffmbs.run(slider(0.05), duration=1.0, points=200, solver=solver, rtol=1e-8)
     assert solution.success and not any("singular pose near" in note for note in solution.notes)
+
+
+@pytest.mark.parametrize("points", [41, 401])
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_a_pose_between_two_outputs_is_seen(solver, points):
+    """A kite whose flat pose the motion crosses, whatever its branch, far faster than the outputs show."""
+    solution = stiffmbs.run(four_bar(1.0 + 1e-9, 0.5), duration=0.5, points=points, solver=solver)
+    (note,) = [note for note in solution.notes if "singular pose" in note]
+    assert "more than one motion may follow" in note and "a, b, c and d" in note
+
+
+def test_a_passage_that_a_smaller_rtol_resolves_is_told_as_such():
+    notes = [stiffmbs.run(slider(1e-4), duration=1.0, points=101, rtol=rtol).notes for rtol in (1e-6, 1e-10)]
+    assert any("errors come back about" in note and "set a smaller rtol" in note for note in notes[0])
+    assert not any("singular pose near" in note for note in notes[1])
+
+
+def test_dips_are_seen_from_outputs_on_both_sides():
+    t = np.linspace(0, 1, 60)
+    passed = 2 * np.log(np.abs(np.sin(3 * (t - 0.4242))))  # the det goes as the square of the distance from the pose
+    assert deepest_dips(passed) == [int(np.argmin(passed))]
+    assert deepest_dips(np.log(1 + 0.5 * np.cos(9 * t))) == []
+    passed[20] = np.nan
+    assert deepest_dips(passed)[-1] in (20, int(np.nanargmin(passed)))

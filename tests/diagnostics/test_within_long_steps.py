@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.diagnostics import within_long_steps
 from stiffmbs.diagnostics.within_long_steps import overlooked_in_long_steps
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.events.long_steps import MIDDLE, WHOLE, LongSteps
 
 SOLVERS = (

@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.law_zones import zones_of
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.stress.case import Outcome
 from stiffmbs.stress.families.events import within_one_step
 from stiffmbs.stress.fuzzers import contacts

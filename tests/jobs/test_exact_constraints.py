@@ -11,7 +11,8 @@ import stiffmbs
 from stiffmbs.describe.model import FORCES
 from stiffmbs.errors import SolverError
 from stiffmbs.jobs import taken_again
-from stiffmbs.jobs.run import prepare, solved
+from stiffmbs.jobs.job import prepare
+from stiffmbs.jobs.run import solved
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.stress.families.structure.large_multipliers import barely_held, pulled, swing_error
 from stiffmbs.stress.pendulum import bar_rate, swing

@@ -7,8 +7,8 @@ import pytest
 
 import stiffmbs
 from stiffmbs import InputError
+from stiffmbs.jobs.job import prepare
 from stiffmbs.jobs.other_numbers import with_numbers
-from stiffmbs.jobs.run import prepare
 
 SETTINGS = {"duration": 0.5, "points": 11, "rtol": 1e-8}
 

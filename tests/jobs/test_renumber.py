@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.jobs.job import prepare
 from stiffmbs.jobs.renumber import renumbered
-from stiffmbs.jobs.run import prepare, solved
+from stiffmbs.jobs.run import solved
 
 CHANGES = {
     "half_car.yaml": [("k_b", "3e6"), ("zeta", "0.3"), ("V", "9"), ("forces.front_spring.preload", "-9100")],

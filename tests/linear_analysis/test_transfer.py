@@ -9,7 +9,7 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
-from stiffmbs.jobs.transfer import transfer
+from stiffmbs.jobs.linearised.transfer import transfer
 
 from ..conftest import EXAMPLES
 

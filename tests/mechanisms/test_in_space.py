@@ -11,7 +11,7 @@ from stiffmbs.describe.element import Element
 from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial import model as spatial_model
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 
 from ..conftest import EXAMPLE_SCENES, EXAMPLES
 

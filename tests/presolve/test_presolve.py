@@ -17,7 +17,7 @@ from stiffmbs.commands.main import main
 from stiffmbs.compile.coordinates import all_independent
 from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.stress.random_tree import random_tree
 

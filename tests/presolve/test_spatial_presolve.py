@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import stiffmbs
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial.orientation import matrix
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.spatial import (
     Body,
     Drive,

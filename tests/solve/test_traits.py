@@ -7,8 +7,9 @@ import pytest
 
 import stiffmbs
 from stiffmbs.describe.settings import RunSettings
-from stiffmbs.solve import SOLVERS, traits_of
+from stiffmbs.solve import SOLVERS
 from stiffmbs.solve.explicit.projected import TRAITS, solve
+from stiffmbs.solve.settings import traits_of
 from stiffmbs.solve.solver import FOR_ALL_SOLVERS, Registered, Traits
 
 CHOICES = (

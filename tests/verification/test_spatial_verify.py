@@ -9,8 +9,8 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.jobs import taken_again
+from stiffmbs.jobs.job import prepare
 from stiffmbs.jobs.other_numbers import with_numbers
-from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.native.statuses import NO_BALANCE
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import singledispatchmethod
 
-from ...describe.element import Joint, JointName
+from ...describe.element import Joint
+from ...describe.joint_name import JointName
 from ...describe.joints.constraint_equation import ConstraintEquation
 from ...describe.joints.coupler import Coupler
 from ...describe.joints.drive import Drive

@@ -9,7 +9,7 @@ import numpy as np
 
 from ... import spatial
 from ...describe.model_data import ModelData
-from ...jobs.run import prepare
+from ...jobs.job import prepare
 from ...solve.trajectory import Outcome, Trajectory
 from ..contestant import Contestant, Failed, Solve
 from ..peers.mounted.mounted import GROUND, Mount, Mounted, Shaken, Solid, Strut

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from ...describe.model_data import ModelData
-from ...jobs.run import prepare
+from ...jobs.job import prepare
 from ...solve.trajectory import Outcome, ProgressCallback
 from ..benchmark import Row
 from ..drives import CARS, SOLVERS, Car, Seen, converged, seen

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...describe.model_data import ModelData
 from ...describe.reading import read_scene
-from ...jobs.run import prepare
+from ...jobs.job import prepare
 from ..benchmark import Row
 
 SCENE = """

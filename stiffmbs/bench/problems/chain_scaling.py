@@ -10,7 +10,7 @@ from .chain import TIMES, chain, reference
 
 LENGTH = 1.0
 MEMORY_OF = (
-    "from stiffmbs.bench.problems.chain import chain; from stiffmbs.jobs.run import prepare; "
+    "from stiffmbs.bench.problems.chain import chain; from stiffmbs.jobs.job import prepare; "
     f"prepare(chain(n, {LENGTH}), rtol=1e-6).integrate()"
 )
 

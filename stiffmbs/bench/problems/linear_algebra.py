@@ -14,7 +14,7 @@ from ...compile.equations import Equations
 from ...compile.machine.routines import TERMS
 from ...compile.terms import TERM_SETS
 from ...describe.model_data import ModelData
-from ...jobs.run import Job, prepare
+from ...jobs.job import Job, prepare
 from ...solve.bdf import Integrator
 from ...solve.error_control.error_test import CHOSEN
 from ...solve.formulations import FORMULATIONS

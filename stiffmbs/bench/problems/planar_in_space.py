@@ -12,10 +12,10 @@ import numpy as np
 from ...compile.bodies import BODY_KINDS
 from ...describe.model import PlanarData
 from ...jobs.in_space import in_space
+from ...jobs.job import Job, prepare
 from ...jobs.load_scene import load_scene
-from ...jobs.run import Job, prepare
 from ..benchmark import Row
-from .example_scenes import example_scenes
+from ..scenes.examples import example_scenes
 
 ROUNDS = 9
 

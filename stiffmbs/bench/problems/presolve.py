@@ -10,11 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ...jobs.job import prepare
 from ...jobs.load_scene import load_scene
-from ...jobs.run import prepare, run
+from ...jobs.run import run
 from ...structure.messages.presolve_report import unknowns
 from ..benchmark import Row
-from .example_scenes import example_scenes
+from ..scenes.examples import example_scenes
 
 ROUNDS = 21
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...jobs.run import prepare
+from ...jobs.job import prepare
 from ..contestant import Contestant, Solve, own
 from ..peers.trees.scene import scene_of
 from ..peers.trees.tree import GROUND, Link, Tree

@@ -20,7 +20,7 @@ from ...describe.states.equation import Reported, StateEquation
 from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import angle_rate
-from .frames import SymbolicElement
+from .element import SymbolicElement
 from .losses import power_of_force, power_of_joint
 from .stated import Stated, stated_by_force, stated_by_joint
 from .symbols import Symbols, symbols_of

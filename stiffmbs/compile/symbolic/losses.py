@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from .frames import SymbolicElement
+from .element import SymbolicElement
 from .stated import Stated
 from .symbols import Symbols
 

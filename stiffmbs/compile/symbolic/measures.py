@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from .frames import SymbolicElement
+from .element import SymbolicElement
 
 
 def measure(name: str, e: SymbolicElement, markers: list[Any]) -> sp.Expr:

@@ -18,9 +18,10 @@ from ..kind import Kind
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
-from .frames import ReferredJoint, SymbolicComponent, SymbolicElement
+from .element import SymbolicElement
 from .measures import measure, own_coordinate
 from .python_call import python_law
+from .referred import ReferredJoint, SymbolicComponent
 from .spline import Spline
 
 NARROW: dict[type[sp.Basic], str] = {

@@ -3,65 +3,28 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Callable, Collection, Mapping
-from typing import Any, ClassVar, Generic, TypeVar, overload
+from collections.abc import Mapping
+from typing import Any, overload
 
 from pydantic import TypeAdapter
 from pydantic import ValidationError as PydanticError
 
 from ...errors import InputError
-from ..body import check_names
-from ..element import Element, Force, Joint
-from ..fields import Described, sentence
-from ..formula.names import NAMES
+from ..element import Force, Joint
+from ..fields import sentence
 from ..formula.text import FormulaError
 from ..given import Law
-from ..kinds import Kinds
 from ..marker import GROUND, MarkerReference
-from ..model_data import RESERVED, ModelData, check_element, contents
-from ..own_elements import check_class
 from ..requests.check import ByChannel, by_channel, check_output
 from ..requests.order import dimensions, with_named
 from ..requests.output_field import RequestField
 from ..states.inputs import InputValue
 from ..states.linear_system import StateEntry
-from ..states.section import check_states, names_in_formulas
-from .handle import Handle
-
-Data = TypeVar("Data", bound=ModelData)
-Body = TypeVar("Body", bound=Described)
-BodyHandle = TypeVar("BodyHandle", bound=Handle)
+from .sections import Body, BodyHandle, Data, Sections, key_of
 
 
-class ModelBuilder(Generic[Data, Body, BodyHandle]):
-    """Base of the models built in Python.
-
-    Attributes
-    ----------
-    data_type, body_type, handle_type : types
-        The class of what is built, of its bodies, and of what stands for a body that has been added.
-    kinds : Kinds, Kinds
-        The joints and the forces of the family, by kind.
-    """
-
-    data_type: type[Data]
-    body_type: type[Body]
-    handle_type: type[BodyHandle]
-    kinds: ClassVar[tuple[Kinds, Kinds]]
-
-    def __init__(self, name: str, gravity: Any) -> None:
-        self.name = name
-        self.gravity = gravity
-        self.markers: dict[str, Any] = {}
-        self.bodies: dict[str, Body] = {}
-        self.states: dict[str, StateEntry] = {}
-        self.inputs: dict[str, Any] = {}
-        self.joints: dict[str, Joint] = {}
-        self.forces: dict[str, Force] = {}
-        self.requests: dict[str, Any] = {}
-
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {contents(self)}>"
+class ModelBuilder(Sections[Data, Body, BodyHandle]):
+    """Base of the models built in Python."""
 
     @overload
     def add(self, name: str, part: Body) -> BodyHandle: ...
@@ -143,56 +106,10 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         """
         name = str(name)
         section = self._found(name)
-        self._changed(name, section, lambda: section.pop(_key(name)))
+        self._changed(name, section, lambda: section.pop(key_of(name)))
 
     def _handle(self, name: str) -> BodyHandle | None:
         return self.handle_type(name, self) if name in self.bodies else None
-
-    def _sections(self) -> tuple[dict[str, Any], ...]:
-        return self.bodies, self.states, self.inputs, self.joints, self.forces, self.requests
-
-    def _found(self, name: str) -> dict[str, Any]:
-        """The section that holds a part."""
-        for section in (self.markers,) if name.startswith(f"{GROUND}.") else self._sections():
-            if _key(name) in section:
-                return section
-        raise InputError(f"{name}: found no part of that name, expected one of {self!r}")
-
-    def _section_for(self, name: str, part: Any) -> dict[str, Any]:
-        """The section that a part belongs to."""
-        if isinstance(part, self.body_type):
-            return self.bodies
-        if isinstance(part, StateEntry):
-            return self.states
-        if not isinstance(part, Joint | Force):
-            raise InputError(f"{name}: found {part!r}, expected a body, a joint or a force{self._of_the_family()}")
-        check_class(type(part))
-        if not any(kinds.fits(part) for kinds in self.kinds):
-            raise InputError(
-                f"{name}: found {part!r}, expected a joint or a force whose markers are{self._of_the_family()}"
-            )
-        return self.joints if isinstance(part, Joint) else self.forces
-
-    def _changed(self, name: str, section: dict[str, Any], change: Callable[[], object]) -> None:
-        """Change a section, unless other parts then name what is no longer there."""
-        before = dict(section)
-        change()
-        try:
-            for other, element in (*self.joints.items(), *self.forces.items()):
-                self._check_element(other, element)
-            self._check_states(self.states, self._names())
-            self.data_type.model_construct(**self._content()).check_requests()
-        except ValueError as error:
-            section.clear()
-            section.update(before)
-            raise InputError(f"{name}: found it in use ({error}), expected what names it changed first") from None
-
-    def _of_the_family(self) -> str:
-        return " of stiffmbs.spatial" if self._dimensions() == 3 else " of the plane (stiffmbs)"
-
-    def _dimensions(self) -> int:
-        dimensions: int = self.data_type.model_fields["dimensions"].default
-        return dimensions
 
     def mark(self, name: str, marker: Any) -> None:
         """Give a marker on ground a name, for references and formulas: ``ground.name``.
@@ -268,58 +185,6 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
             raise InputError(str(error)) from None
         self.requests[name] = read
 
-    @staticmethod
-    def _check_spelling(name: object, what: str) -> None:
-        try:
-            check_names([name], what)
-        except ValueError as error:
-            raise InputError(str(error)) from None
-
-    def _check_name(self, name: str) -> None:
-        self._check_spelling(name, "part")
-        if name in RESERVED or any(name in section for section in self._sections()):
-            raise InputError(f"{name}: found a name that is taken or reserved, expected another")
-
-    def _check(self, name: str, part: Described) -> None:
-        try:
-            if isinstance(part, Element):
-                self._check_element(name, part)
-            if isinstance(part, StateEntry):
-                self._check_states({name: part}, known=None)
-        except ValueError as error:
-            raise InputError(str(error)) from None
-
-    def _check_element(self, name: str, part: Element) -> None:
-        check_element(
-            name,
-            part,
-            self.bodies,
-            self.joints,
-            self.markers,
-            NAMES[self._dimensions()],
-            self._names(),
-        )
-
-    def _names(self) -> set[str]:
-        return names_in_formulas(self.states) | set(self.inputs)
-
-    def _check_states(self, states: Mapping[str, StateEntry], known: Collection[str] | None) -> None:
-        check_states(states, self.bodies, self.markers, self.joints, NAMES[self._dimensions()], known)
-
-    def _content(self) -> dict[str, Any]:
-        sections = ("name", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests")
-        return {section: getattr(self, section) for section in sections}
-
-    def data(self) -> Data:
-        """The model as it would stand in a scene.
-
-        Raises
-        ------
-        InputError
-            When the model has no body.
-        """
-        return self.data_type(**self._content())
-
     def to_scene(self) -> str:
         """The text of a scene file that holds the model: `stiffmbs.read_scene` makes the same model of it.
 
@@ -331,8 +196,3 @@ class ModelBuilder(Generic[Data, Body, BodyHandle]):
         from ..model_text import model_text
 
         return model_text(self.data())
-
-
-def _key(name: str) -> str:
-    """The name in its section: that of a marker of ground is without its owner."""
-    return name.removeprefix(f"{GROUND}.")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ...jobs.check import Report
     from ...jobs.equilibrium import EquilibriumFound
     from ...jobs.given_inputs import Given
-    from ...jobs.modes import Modes
+    from ...jobs.linearised.modes import Modes
     from ...jobs.start_from import StartFrom
     from ...results.solution import Solution
     from ...studies.simulation import Simulation
@@ -92,7 +92,7 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         **changes: Unpack[Settings],
     ) -> Modes:
         """Natural frequencies, damping and shapes; parameters, result and errors are those of `stiffmbs.modes`."""
-        from ...jobs.modes import modes
+        from ...jobs.linearised.modes import modes
 
         return modes(self, settings, at, start_from, **changes)
 

@@ -7,7 +7,8 @@ from typing import Any
 
 from pydantic import Field
 
-from ..element import Joint, JointReference, Symbolic
+from ..element import Joint, Symbolic
+from ..joint_name import JointReference
 from ..units import si
 from .friction import Friction
 

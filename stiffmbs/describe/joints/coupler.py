@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from ..element import JointReference, Symbolic
+from ..element import Symbolic
+from ..joint_name import JointReference
 from ..units import si
 from .relation import Relation
 

@@ -8,13 +8,14 @@ from typing import Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
-from ..element import Joint, JointReference, Symbolic
+from ..element import Joint, Symbolic
 from ..exactly_one import exactly_one
 from ..files.quoted import quoted
 from ..formula.dimension import UNKNOWN, Known, measured_in, product
 from ..formula.field import OfPosition, OfTimeAndStates
 from ..formula.formula import Formula
 from ..formula.text import FormulaError
+from ..joint_name import JointReference
 from ..joint_reference import unfit_joints
 from ..marker import MarkerReference
 from ..table import Table

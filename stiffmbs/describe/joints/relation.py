@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
-from ..element import Joint, JointName
+from ..element import Joint
+from ..joint_name import JointName
 from ..joint_reference import unfit_joints
 from .offset_constraint import OffsetConstraint
 

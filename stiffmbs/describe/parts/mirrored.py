@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...errors import InputError
-from ..element import Element, Joint, JointName
+from ..element import Element, Joint
 from ..formula.formula import Formula
 from ..formula.text import FormulaError
+from ..joint_name import JointName
 from ..marker import GROUND, MarkerReference
 from ..table import Table
 from .mirrored_formula import MirroredNames, mirrored_law

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ..check_marker import check_marker
-from ..element import JointName
 from ..files.quoted import quoted
 from ..formula.text import UNIT
+from ..joint_name import JointName
 from ..units.units import CONSTANTS, UNITS
 from .names import OF_RUN, OutputNames
 from .output import Output, channel

@@ -11,11 +11,11 @@ from pydantic_core import core_schema
 
 from ...errors import InputError
 from ..check_marker import check_marker, listed
-from ..element import JointName
 from ..files.quoted import quoted, written
 from ..formula.dimension import UNKNOWN, Known
 from ..formula.formula import Formula
 from ..formula.names import FormulaNames
+from ..joint_name import JointName
 from ..marker import GROUND
 from ..units.units import CONSTANTS, UNITS
 from .algebraic_state import AlgebraicState

@@ -12,7 +12,8 @@ import numpy as np
 from ...describe.marker import MarkerReference
 from ...describe.model_data import ModelData
 from ...errors import InputError
-from ...jobs.run import data_of, run
+from ...jobs.job import data_of
+from ...jobs.run import run
 from ...results.files import refuse_path, written_whole
 from ...results.solution import Solution
 from ..page.data import page_data

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.element import Element, Joint, JointName
+from ...describe.element import Element, Joint
 from ...describe.formula.formula import Formula
+from ...describe.joint_name import JointName
 from ...describe.marker import GROUND, MarkerReference
 from ...describe.model_data import ModelData
 from .bodies import derived_shape, given_shapes

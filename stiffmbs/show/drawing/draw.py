@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...errors import InputError
 from ...jobs.check import check
-from ...jobs.run import data_of
+from ...jobs.job import data_of
 from ...results.files import refuse_path, written_whole
 from .as_json import drawing_json, poses_json
 from .derive import drawing_of

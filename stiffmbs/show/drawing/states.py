@@ -8,7 +8,7 @@ import numpy as np
 
 from ...describe.model_data import ModelData
 from ...describe.settings import RunSettings
-from ...jobs.at_state import at_state
+from ...jobs.linearised.at_state import at_state
 from ...results.channels import channels_of
 from .poses import Poses, poses_of
 

@@ -8,6 +8,7 @@ from collections import deque
 
 import numpy as np
 
+from ...compile.written_values import writer
 from ...errors import SolverError
 from ..dynamics import Dynamics
 from .discontinuity import LARGER_MOVE, jumping, sliding
@@ -96,7 +97,7 @@ class Chattering:
         if self._to_come(middle - first, last - middle) > TOO_MANY:
             self.refuse(t, jumping(self._dynamics, t, q, u))
             name = (
-                f"'{self._dynamics.system.writer('event_function', event_function)}'"
+                f"'{writer(self._dynamics.system, 'event_function', event_function)}'"
                 if event_function >= 0
                 else "a force"
             )
@@ -127,7 +128,7 @@ class Chattering:
 def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     """That a force jumps back and forth."""
     return (
-        f"'{dynamics.system.writer('event_function', event_function)}' jumps back and forth, as a force does that changes its "
+        f"'{writer(dynamics.system, 'event_function', event_function)}' jumps back and forth, as a force does that changes its "
         "sign where the motion comes to rest: no motion follows it from there on; expected a force that is steep "
         "there, without a jump: joint_friction with its smooth_velocity, or tanh(v/0.001) in place of sign(v)"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compile.written_values import beyond
 from ...errors import SolverError
 from ..dynamics import Dynamics
 
@@ -24,4 +25,4 @@ def refuse_beyond_limits(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndar
     state.evaluate("event_function", t)
     passed = np.flatnonzero(state.values["event_function"][first:end] <= 0)
     if len(passed):
-        raise SolverError(f"stopped at t = {t:.9g} s: {system.beyond(first + int(passed[0]))}")
+        raise SolverError(f"stopped at t = {t:.9g} s: {beyond(system, first + int(passed[0]))}")

@@ -9,9 +9,10 @@ import numpy as np
 from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import arrays_of, fill, packed
 from ...compile.state import State
-from ..native.tables.linear import BLOCK_ELIMINATION, ELIMINATED, ENTRY_ELIMINATION
+from ..native.tables.linear import BLOCK_ELIMINATION, ELIMINATED, ENTRY_ELIMINATION, PIN_ELIMINATION
 from .joint_blocks import Joints, block_lists
 from .matrix_entries import entry_lists
+from .pins import pin_lists
 from .saddle_point import ACCELERATIONS
 
 MOST_UPDATES_PER_ENTRY = 20
@@ -56,17 +57,23 @@ class Eliminated:
         self._cells = self.table.view(ELIMINATED.cells)[0]
         if self.serves:
             by_blocks = system.of_body.dimensions == 3
-            layout = BLOCK_ELIMINATION if by_blocks else ENTRY_ELIMINATION
-            self._lists = block_lists(joints, system, kept) if by_blocks else entry_lists(joints.rows, system, kept)
+            of_pins = None if by_blocks else pin_lists(joints, system, kept)
+            if by_blocks:
+                layout, self._lists = BLOCK_ELIMINATION, block_lists(joints, system, kept)
+            elif of_pins:
+                layout, self._lists = PIN_ELIMINATION, of_pins
+            else:
+                layout, self._lists = ENTRY_ELIMINATION, entry_lists(joints.rows, system, kept)
             force = system.term("acceleration", "f")
             arrays = {
-                "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u),
+                "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
                 "lists": packed(layout, self._lists),
             }  # fmt: skip
             numbers = {
                 "n_u": system.n_u,
                 "n_f": len(force.source),
                 "by_blocks": by_blocks,
+                "by_pins": of_pins is not None,
                 "trees": _are_trees(joints.bodies),
             }
             self._arrays = {**arrays_of(ELIMINATED, arrays), "state": state.table, "kept": 1.0, **numbers}

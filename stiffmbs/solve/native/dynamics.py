@@ -16,7 +16,7 @@ from stiffmbs.compile.machine.native.evaluate import (
     evaluate,
     share_turns,
 )
-from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
+from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, log_determinant, solve
 from stiffmbs.compile.machine.native.orientation import take_unit_length
 from stiffmbs.solve.native.long_steps import contradicts
 from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NO_STATE, NOT_FINITE, SINGULAR
@@ -292,13 +292,13 @@ def _output_point(s, m, t, q, project, tolerance, largest):
     return 0
 
 
-def output_points(count, times, project, tolerance, n_output, q, u, acceleration, lam, output, largest, dynamics):
+def output_points(count, times, project, tolerance, n_output, q, u, acceleration, lam, output, judged, dynamics):
     """Everything that is reported at `count` instants, row by row; the number of rows done.
 
     q and u (rows of n_q, n_u) are brought back to the constraints where `project` asks for it; written are u', lam,
-    the values of the output terms, and in `largest` three numbers a row: the violations of positions and of
-    velocities (largest of a joint), and of positions before the projection.  Where an instant has no solution, the
-    dynamics' `status` holds why.
+    the values of the output terms, and in `judged` four numbers a row: the violations of positions and of
+    velocities (largest of a joint), of positions before the projection, and log |det| of the block matrix.  Where an
+    instant has no solution, the dynamics' `status` holds why.
     """
     m = dynamics_view(dynamics)
     s = state_view(m.state)
@@ -308,10 +308,12 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
             s.q[k] = at_row[k]
         for k in range(s.n_u):
             s.u[k] = u[row * s.n_u + k]
-        m.status = _output_point(s, m, times[row], at_row, project, tolerance, shifted(largest, 3 * row))
+        m.status = _output_point(s, m, times[row], at_row, project, tolerance, shifted(judged, 4 * row))
         if m.status < 0:
             return row
-        solution = factors_view(m.acceleration_factors).b
+        factors = factors_view(m.acceleration_factors)
+        judged[4 * row + 3] = log_determinant(factors)
+        solution = factors.b
         values = floats(s.values[OUTPUT])
         for k in range(s.n_q):
             at_row[k] = s.q[k]

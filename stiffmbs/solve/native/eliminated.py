@@ -9,6 +9,7 @@ from stiffmbs.compile.machine.native.access import compiled, state_view
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.solve.native.elimination.by_blocks import accelerate_by_blocks, blocks_view, move_by_blocks
 from stiffmbs.solve.native.elimination.by_entries import accelerate_by_entries, entries_view, move_by_entries
+from stiffmbs.solve.native.elimination.by_pins import accelerate_by_pins, move_by_pins, pins_view
 from stiffmbs.solve.native.tables.views import eliminated_view
 
 
@@ -27,6 +28,9 @@ def eliminated_accelerations(r, s, t):
         r.a[k] = 0.0
     for k in range(r.n_f):
         r.a[r.f_row[k]] += values[r.f_source[k]]
+    if r.by_pins:
+        r.ready = accelerate_by_pins(r, pins_view(r.lists), s, values)
+        return r.ready
     _scale(r)
     if r.by_blocks:
         r.ready = accelerate_by_blocks(r, blocks_view(r.lists), s, values)
@@ -42,6 +46,9 @@ def smallest_move(r, s, violations):
     factors of the last accelerations."""
     for k in range(r.n_u):
         r.a[k] = 0.0
+    if r.by_pins:
+        move_by_pins(r, pins_view(r.lists), violations)
+        return
     if r.by_blocks:
         move_by_blocks(r, blocks_view(r.lists), s, violations)
     else:

@@ -15,6 +15,7 @@ import numpy as np
 from ...compile.directional.direction import Direction, Numbers
 from ...compile.equations import Equations
 from ...compile.record import source_of
+from ...compile.written_values import writer
 from ...errors import SolverError
 from ..dynamics import Dynamics
 from ..failures import FAILURES
@@ -124,7 +125,7 @@ class Jumps:
             return np.asarray(-changes / rates)
         if not jumps:
             return None
-        name = self._dynamics.system.writer("event_function", before.fired[0])
+        name = writer(self._dynamics.system, "event_function", before.fired[0])
         raise SolverError(
             f"sensitivities: found that '{name}' only grazes its breakpoint at t = {left.t:.9g} s, where the motion is not "
             "differentiable by parameters; expected an event that is passed"
@@ -173,7 +174,7 @@ class Jumps:
 
     def _refuse_reactions(self, event: int, t: float) -> None:
         system = self._dynamics.system
-        name = system.writer("event_function", event)
+        name = writer(system, "event_function", event)
         group = next(group for group in system.groups if name in group.names)
         if "lam[" in (source_of(group.kind, "event_function") or ""):
             raise SolverError(

@@ -6,8 +6,9 @@ import numpy as np
 
 from ...errors import StiffmbsError
 from ...jobs.equilibrium import EquilibriumFound, equilibrium
-from ...jobs.modes import modes
-from ...jobs.run import Runnable, run
+from ...jobs.job import Runnable
+from ...jobs.linearised.modes import modes
+from ...jobs.run import run
 from ...results.solution import Solution
 from ..case import Outcome, Verdict, measured
 from ..random_statics import random_statics

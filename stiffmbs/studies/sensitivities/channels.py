@@ -9,7 +9,7 @@ import numpy as np
 from ...compile.directional.direction import Numbers
 from ...compile.reactions import reactions
 from ...compile.system import System
-from ...jobs.run import Job
+from ...jobs.job import Job
 from ...results.body_axes import in_own_axes
 from ...results.channels import counters
 from ...results.requests import requested

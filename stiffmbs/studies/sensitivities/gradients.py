@@ -8,8 +8,8 @@ import numpy as np
 
 from ...describe.files.written_scene import WrittenScene
 from ...describe.settings import RunSettings
+from ...jobs.job import Job, prepare
 from ...jobs.renumber import renumbered
-from ...jobs.run import Job, prepare
 from ..parameters import Sought
 from .parameters import Scenes
 from .sensitivities import DifferentiatedRun, differentiable

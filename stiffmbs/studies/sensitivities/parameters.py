@@ -13,7 +13,7 @@ from ...describe.files.written_scene import WrittenScene
 from ...describe.reading import made_scene
 from ...describe.scene import Scene
 from ...errors import InputError
-from ...jobs.run import data_of
+from ...jobs.job import data_of
 from ..case_solver import written_scene
 
 STEP = 1e-4

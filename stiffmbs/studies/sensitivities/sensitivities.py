@@ -11,7 +11,7 @@ import numpy as np
 
 from ...describe.settings import RunSettings
 from ...errors import InputError, SolverError
-from ...jobs.run import Job, Runnable, prepare
+from ...jobs.job import Job, Runnable, prepare
 from ...results.channels import channels_of
 from ...solve.bdf import integrated
 from ...solve.dynamics import OutputRows

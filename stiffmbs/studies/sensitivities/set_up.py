@@ -20,7 +20,7 @@ from ...compile.kind import sorted_out
 from ...compile.system import System
 from ...describe.scene import Scene
 from ...errors import InputError, SolverError
-from ...jobs.run import Job, start_of_job
+from ...jobs.job import Job, start_of_job
 from ...jobs.start_from import started_from
 from ...solve.dynamics import Dynamics
 from .parameters import Parameter

@@ -9,8 +9,8 @@ import numpy as np
 
 from ...describe.table import Table
 from ...errors import InputError
+from ...jobs.job import Runnable, data_of
 from ...jobs.quasi_static import quasi_static
-from ...jobs.run import Runnable, data_of
 from .characteristics import characteristics
 from .rig import INPUTS, SIDES, Axle, axle_of, design_height, on_rig
 

@@ -12,7 +12,7 @@ from ...describe.marker import GROUND
 from ...describe.model_data import ModelData
 from ...describe.spatial.forces.elastic import Elastic
 from ...errors import InputError
-from ...jobs.run import Runnable, data_of
+from ...jobs.job import Runnable, data_of
 from ...results.solution import Solution
 from .characteristics import direction
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import stiffmbs
 from stiffmbs import Body, Model
 from stiffmbs.compile.machine.routines import Routine
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.explicit import SCHEMES
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.stress.parallelogram import parallelogram, swing_error

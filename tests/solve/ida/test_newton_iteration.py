@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.error_control.error_test import ErrorControl
 

@@ -1,4 +1,4 @@
-"""Accelerations with u' eliminated, in space: by blocks of all sizes, in trees and loops, beside the LU of the whole block system."""
+"""Accelerations with u' eliminated: by blocks of all sizes and by planar pins, in trees and loops, beside the LU of the whole block system."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,8 @@ import pytest
 import stiffmbs
 from stiffmbs.bench.problems.chain_in_space import chain_in_space
 from stiffmbs.compile.machine.routines import Routine
-from stiffmbs.jobs.run import prepare
+from stiffmbs.jobs.job import prepare
+from stiffmbs.solve.native.tables.linear import ELIMINATED as ELIMINATED_TABLE
 from stiffmbs.stress.random_space import random_space_tree
 
 ELIMINATED = Routine("stiffmbs.solve.native.eliminated", "accelerate", "int64(float64, float64*, int64*)")
@@ -39,6 +40,35 @@ def test_trees_of_all_kinds_of_joints(seed):
 def test_loops(examples, name):
     dynamics = prepare(stiffmbs.load_scene(examples / f"{name}.yaml")).dynamics
     assert_equal(*both_ways(dynamics), 1e-10)
+
+
+def pins(dynamics):
+    return dynamics.eliminated.table[list(ELIMINATED_TABLE).index("by_pins")]
+
+
+@pytest.mark.parametrize("name", ["andrews", "bar_pendulum", "chain", "four_bars"])
+def test_planar_pins(examples, name):
+    """Three pins at one body and closed loops fill blocks that were empty, and change others."""
+    dynamics = prepare(stiffmbs.load_scene(examples / f"{name}.yaml")).dynamics
+    dynamics.state.u[:] = np.random.default_rng(1).normal(size=dynamics.system.n_u)
+    assert pins(dynamics)
+    assert_equal(*both_ways(dynamics), 1e-12)
+
+
+def test_pins_beside_other_joints_are_eliminated_entry_by_entry(examples):
+    dynamics = prepare(stiffmbs.load_scene(examples / "crank_slider.yaml")).dynamics
+    assert not pins(dynamics)
+    assert_equal(*both_ways(dynamics), 1e-11)
+
+
+def test_pins_leave_no_trace_of_what_is_not_finite(examples):
+    dynamics = prepare(stiffmbs.load_scene(examples / "chain.yaml")).dynamics
+    dynamics.state.u[:] = np.nan
+    found = np.empty(dynamics.system.n_u)
+    ELIMINATED.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
+    assert not np.isfinite(found).all()
+    dynamics.return_to_start()
+    assert_equal(*both_ways(dynamics), 1e-12)
 
 
 def test_slender_rods_in_a_chain_are_eliminated_at_all_poses():

@@ -6,6 +6,7 @@ from math import cos, sin
 
 from .access import call_kernel, compiled, floats, ints, shifted, state_view
 from .orientation import TURN_STRIDE, share_orientation
+from .sine_cosine import share_four
 from .tables import CALL
 
 POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH = range(6)
@@ -22,15 +23,21 @@ def evaluate(s, term_set, t):
 @compiled
 def share_turns(s, turned, count):
     """Compute what kernels share of the orientations of some bodies, given by their first coordinates."""
-    for k in range(count):
-        at = turned[k]
-        if s.spatial:
+    if s.spatial:
+        for k in range(count):
+            at = turned[k]
             share_orientation(shifted(s.q, at + 3), shifted(s.turn, TURN_STRIDE * at))
+        return
+    k = 0
+    while k < count:
+        if k + 4 <= count and share_four(s.q, shifted(turned, k), s.turn):
+            k += 4
             continue
-        angle = s.q[at + 2]
-        cosine, sine = cos(angle), sin(angle)  # both before a store, so that one call finds them
+        at = turned[k]
+        cosine, sine = cos(s.q[at + 2]), sin(s.q[at + 2])  # both before a store, so that one call finds them
         s.turn[at] = cosine
         s.turn[at + 1] = sine
+        k += 1
 
 
 @compiled

@@ -8,7 +8,7 @@ it gives up and the pivots are sought anew, so that the fixed order is only ever
 
 from __future__ import annotations
 
-from math import sqrt
+from math import log, sqrt
 
 from .access import compiled, factors_view
 from .coupled_inertia import spread_inertia
@@ -19,6 +19,9 @@ KEEP_DIAGONAL = 0.1
 """A diagonal pivot is taken when it is at least this part of the largest in its column (less fill)."""
 TOO_SMALL = 1e-3
 """A pivot of an earlier order is refused when it is less than this part of its column."""
+
+HUGE_LOG = 1e6
+"""Minus the logarithm that stands for that of zero."""
 
 DONE, SINGULAR, FULL = 0, 1, 2
 """FULL: there is no memory for more entries."""
@@ -265,3 +268,16 @@ def solve(f, b):
             f.x[f.u_row[p]] -= f.u[p] * value
     for k in range(n):
         b[f.order[k]] = f.scale[f.order[k]] * f.x[k]
+
+
+@compiled
+def log_determinant(f):
+    """log |det| of the matrix, before it was scaled."""
+    total = 0.0
+    product = 1.0
+    for k in range(f.n):
+        product *= abs(f.u[f.u_start[k + 1] - 1]) / (f.scale[k] * f.scale[k])
+        if not 1e-100 < product < 1e100:
+            total += log(product) if product > 0.0 else -HUGE_LOG
+            product = 1.0
+    return total + log(product)

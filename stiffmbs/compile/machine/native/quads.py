@@ -36,8 +36,39 @@ def spread(code: Code, number: Operand) -> Value:
 
 
 @builtin
+def quad_of(code: Code, *numbers: Operand) -> Value:
+    """Four floats side by side."""
+    found = Value("quad", "poison")
+    for k, number in enumerate(numbers):
+        one = code.converted(number, "float")
+        found = code.put_value("quad", f"insertelement {found.typed}, {one.typed}, i32 {k}")
+    return found
+
+
+@builtin
+def item_of(code: Code, value: Operand, index: Operand) -> Value:
+    """One of four floats; the index is a literal."""
+    return code.put_value("float", f"extractelement {_quad(value).typed}, i32 {_literal(index)}")
+
+
+@builtin
+def nearest_whole(code: Code, value: Operand) -> Value:
+    """The whole numbers next to four floats."""
+    code.unit.declare("declare <4 x double> @llvm.rint.v4f64(<4 x double>)")
+    return code.put_value("quad", f"call <4 x double> @llvm.rint.v4f64({_quad(value).typed})")
+
+
+@builtin
+def product_of(code: Code, a: Operand, b: Operand) -> Value:
+    """a * b."""
+    return code.put_value("quad", f"fmul {_quad(a).typed}, {_quad(b).text}")
+
+
+@builtin
 def plus_product(code: Code, total: Operand, a: Operand, b: Operand) -> Value:
-    """total + a * b, rounded once."""
+    """total + a * b of quads, or of floats, rounded once."""
+    if isinstance(total, Value) and total.kind == "float":
+        return _plus_product_of_floats(code, total, *(code.converted(factor, "float") for factor in (a, b)))
     return _plus_product(code, _quad(total), _quad(a), _quad(b))
 
 
@@ -241,8 +272,11 @@ def _plus_product(code: Code, total: Value, a: Value, b: Value) -> Value:
     return code.put_value("quad", f"call <4 x double> @llvm.fma.v4f64({a.typed}, {b.typed}, {total.typed})")
 
 
+def _plus_product_of_floats(code: Code, total: Value, a: Value, b: Value) -> Value:
+    code.unit.declare("declare double @llvm.fma.f64(double, double, double)")
+    return code.put_value("float", f"call double @llvm.fma.f64({a.typed}, {b.typed}, {total.typed})")
+
+
 def _minus_product(code: Code, total: Value, a: Value, b: Value) -> Value:
     """total - a * b of floats, rounded once."""
-    code.unit.declare("declare double @llvm.fma.f64(double, double, double)")
-    minus = code.put_value("float", f"fneg {a.typed}")
-    return code.put_value("float", f"call double @llvm.fma.f64({minus.typed}, {b.typed}, {total.typed})")
+    return _plus_product_of_floats(code, total, code.put_value("float", f"fneg {a.typed}"), b)

@@ -7,9 +7,10 @@ from typing import Any
 from pydantic import BaseModel
 
 from ....errors import InputError
-from ...element import Element, Joint, JointName
+from ...element import Element, Joint
 from ...fields import Described
 from ...formula.formula import Formula
+from ...joint_name import JointName
 from ...marker import Marker
 from ...states.amount import Amount
 from ...states.linear_system import PID

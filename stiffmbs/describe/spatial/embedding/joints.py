@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 from ....errors import InputError
-from ...element import JointName
 from ...initial_pose import initial_element
+from ...joint_name import JointName
 from ...joints.relation import Relation
 from ..branches import FARTHEST
 from .angles import TURN, Angles

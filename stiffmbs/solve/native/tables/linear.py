@@ -61,11 +61,11 @@ depends on multipliers; then the coordinates that are algebraic states, sizes of
 bodies whose orientation output terms ask for beside those that accelerations do, by their first coordinates."""
 
 ELIMINATED = Layout({
-    "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "lists": INTS,
+    "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "by_pins": INT, "lists": INTS,
     "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
     "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
 })  # fmt: skip
-"""J M^-1 J^T (`stiffmbs.solve.linear.eliminated`): whether no joint closes a loop, whether it is factored by blocks, and the table of
+"""J M^-1 J^T (`stiffmbs.solve.linear.eliminated`): whether no joint closes a loop, whether it is factored by blocks or by pins, and the table of
 these or of the entries; whether there are factors, what their pivots keep, and have kept at the most; forces, M^-1/2, accelerations."""
 
 ENTRY_ELIMINATION = Layout({
@@ -76,6 +76,17 @@ ENTRY_ELIMINATION = Layout({
     "j_scale": FLOATS, "j": FLOATS, "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "b": FLOATS,
 })  # fmt: skip
 """The matrix and its factors by flat lists (`stiffmbs.solve.linear.matrix_entries`)."""
+
+PIN_ELIMINATION = Layout({
+    "n": INT, "n_beside": INT, "pin": INDICES, "inverse": FLOATS, "w": FLOATS, "product": INDICES, "mass": FLOATS,
+    "start": INDICES, "later": INDICES, "update": INDICES,
+    "block": FLOATS, "diagonal": FLOATS, "beside": FLOATS, "scaled": FLOATS, "x": FLOATS,
+})  # fmt: skip
+"""The same where all joints are planar pins (`stiffmbs.solve.linear.pins`), in the order of their elimination.  Rows of `pin`: where two
+entries of J begin for the first body and both equations, and for the second; two sources of gamma; the first velocities of both bodies;
+the first equation.  `inverse` holds the inverse masses of both bodies.  Blocks beside the diagonal stand pin after pin from `start` on, each
+with the later pin that it belongs to; rows of `product` tell which blocks of J M^-1 each begins with, `mass` what lies between these;
+`update` tells the block that two blocks of a pin change."""
 
 BLOCK_ELIMINATION = Layout({
     "n_gamma": INT, "gamma_source": INDICES, "gamma_place": INDICES,

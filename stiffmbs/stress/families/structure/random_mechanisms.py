@@ -12,7 +12,8 @@ from ....describe.body import Body
 from ....describe.marker import Marker
 from ....describe.model import JOINTS, Model
 from ....errors import StiffmbsError
-from ....jobs.run import examined, run
+from ....jobs.job import examined
+from ....jobs.run import run
 from ...case import Case, Verdict, measured
 from ...exact_rank import Guide, Pin, rank
 from ...random_tree import random_tree

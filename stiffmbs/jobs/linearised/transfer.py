@@ -8,20 +8,20 @@ from typing import Unpack
 
 import numpy as np
 
-from ..describe.model_data import ModelData
-from ..describe.requests.order import reading
-from ..describe.requests.output import Term
-from ..describe.settings import RunSettings, Settings, takes_settings
-from ..errors import InputError, SolverError
-from ..linear_analysis.state_space import StateMatrix, state_matrix
-from ..linear_analysis.tangent_space import Linearised, linearised
-from ..linear_analysis.transfer import Input, Transfer, effect
-from ..results.channels import channels_of
-from ..solve.dynamics import Dynamics
+from ...describe.model_data import ModelData
+from ...describe.requests.order import reading
+from ...describe.requests.output import Term
+from ...describe.settings import RunSettings, Settings, takes_settings
+from ...errors import InputError, SolverError
+from ...linear_analysis.state_space import StateMatrix, state_matrix
+from ...linear_analysis.tangent_space import Linearised, linearised
+from ...linear_analysis.transfer import Input, Transfer, effect
+from ...results.channels import channels_of
+from ...solve.dynamics import Dynamics
+from ..job import Runnable, prepare
+from ..start_from import StartFrom
 from .at_state import AtState, at_state
 from .inputs import Parameterised, force_on
-from .run import Runnable, prepare
-from .start_from import StartFrom
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of places and angles."""
@@ -63,14 +63,14 @@ def transfer(
     outputs : sequence of str
         Channels and requests.
     settings, at, start_from, **changes
-        As for `stiffmbs.jobs.modes.modes`.
+        As for `stiffmbs.jobs.linearised.modes.modes`.
 
     Raises
     ------
     InputError
         When an input or output is unknown, or an output needs the rate of an input that moves a constraint.
     SolverError, AssemblyError
-        As for `stiffmbs.jobs.modes.modes`.
+        As for `stiffmbs.jobs.linearised.modes.modes`.
     """
     found = at_state(model, settings, at, start_from, **changes)
     system = found.dynamics.system

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
-from ..errors import SolverError
-from ..solve.algebraic_states import failure
-from ..solve.dynamics import Dynamics
-from ..structure.redundancy import Redundancy
-from .run import Runnable, prepare
-from .start_from import StartFrom
+from ...describe.model_data import ModelData
+from ...describe.settings import RunSettings
+from ...errors import SolverError
+from ...solve.algebraic_states import failure
+from ...solve.dynamics import Dynamics
+from ...structure.redundancy import Redundancy
+from ..job import Runnable, prepare
+from ..start_from import StartFrom
 
 
 @dataclass(frozen=True)

@@ -9,16 +9,16 @@ from typing import Any, Unpack
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..describe.settings import RunSettings, Settings, takes_settings
-from ..errors import InputError
-from ..linear_analysis.modes import Mode, natural_modes
-from ..linear_analysis.state_space import StateMatrix, state_matrix
-from ..linear_analysis.tangent_space import linearised
-from ..results.solution import Solution
+from ...describe.settings import RunSettings, Settings, takes_settings
+from ...errors import InputError
+from ...linear_analysis.modes import Mode, natural_modes
+from ...linear_analysis.state_space import StateMatrix, state_matrix
+from ...linear_analysis.tangent_space import linearised
+from ...results.solution import Solution
+from ..job import Runnable
+from ..start_from import StartFrom
 from .at_state import AtState, at_state
 from .mode_shapes import mode_shape
-from .run import Runnable
-from .start_from import StartFrom
 
 AT_REST = 1e-6
 """Acceleration relative to that of gravity (to 1 m/s^2 without), below which a state counts as an equilibrium."""

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..describe.requests.order import units
-from ..errors import SolverError
-from ..linear_analysis.modes import Mode, Motion
-from ..results.channels import channels_of, turns_of
-from ..results.energy_balance import energy_balance
-from ..results.solution import Solution
-from ..solve.algebraic_states import failure
-from ..solve.trajectory import History, Outcome
+from ...describe.requests.order import units
+from ...errors import SolverError
+from ...linear_analysis.modes import Mode, Motion
+from ...results.channels import channels_of, turns_of
+from ...results.energy_balance import energy_balance
+from ...results.solution import Solution
+from ...solve.algebraic_states import failure
+from ...solve.trajectory import History, Outcome
 from .at_state import AtState
 
 UNHURRIED = 1.0

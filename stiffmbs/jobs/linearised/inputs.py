@@ -6,15 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ..compile.bodies import BODY_KINDS
-from ..describe.building.model_builder import ModelBuilder
-from ..describe.element import Force
-from ..describe.model_data import ModelData
-from ..describe.parts.names import Names
-from ..describe.states.amount import Amount
-from ..describe.table import Table
-from ..errors import InputError
-from .load_scene import load_scene
+from ...compile.bodies import BODY_KINDS
+from ...describe.building.model_builder import ModelBuilder
+from ...describe.element import Force
+from ...describe.model_data import ModelData
+from ...describe.parts.names import Names
+from ...describe.states.amount import Amount
+from ...describe.table import Table
+from ...errors import InputError
+from ..load_scene import load_scene
 
 Parameterised = Callable[[float], ModelBuilder[Any, Any, Any] | ModelData]
 """The model for a value of an input, which is zero at the state."""
@@ -70,10 +70,10 @@ def _applied(dimensions: int, at: dict[str, str | None], loads: list[float]) -> 
     """The applied force or torque with some components, of which one differs from zero at most."""
     force, torque = tuple(loads[:dimensions]), tuple(loads[dimensions:])
     if dimensions == 2:
-        from ..describe.forces.applied import AppliedForce, AppliedTorque
+        from ...describe.forces.applied import AppliedForce, AppliedTorque
 
         return AppliedTorque(i=at, torque=torque[0]) if any(torque) else AppliedForce(i=at, force=force)  # type: ignore[arg-type]
-    from ..describe.spatial.forces import applied as in_space
+    from ...describe.spatial.forces import applied as in_space
 
     if any(torque):
         return in_space.AppliedTorque(i=at, torque=torque)  # type: ignore[arg-type]

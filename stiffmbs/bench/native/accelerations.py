@@ -1,0 +1,13 @@
+"""Accelerations by elimination in a loop of compiled code, without calls from Python between them."""
+
+from __future__ import annotations
+
+from stiffmbs.solve.native.eliminated import accelerate
+
+
+def accelerate_often(count, t, acceleration, eliminated):
+    """`accelerate`, so many times; how many could be done."""
+    done = 0
+    for _ in range(count):
+        done += accelerate(t, acceleration, eliminated)
+    return done

@@ -1,0 +1,68 @@
+"""What an element refers to in its equations: components, such as roads, and joints."""
+
+from __future__ import annotations
+
+from functools import cached_property, partial
+from typing import Any
+
+import sympy as sp
+
+from .element import SymbolicElement
+
+
+class SymbolicComponent:
+    """A component with symbols for its numbers; its equations are called as its methods."""
+
+    def __init__(self, component: Any, fields: dict[str, object]) -> None:
+        self._component = component
+        self.__dict__.update(fields)
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(self._component, name)
+        return partial(found, self) if callable(found) else found
+
+
+class ReferredJoint(SymbolicElement):
+    """A joint that an element refers to: its fields, its multipliers, and the coordinate that is meant.
+
+    Attributes
+    ----------
+    kind : str
+    lam : list of Symbol
+        Multipliers of its equations.
+    """
+
+    def __init__(
+        self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
+    ) -> None:
+        super().__init__(of.frames, fields, of.derivatives, of.states)
+        self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
+        count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
+        self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
+        self.angles, self.breakpoints = of.angles, of.breakpoints
+
+    @cached_property
+    def velocity_level(self) -> list[sp.Expr]:
+        """Its constraints on velocities, in the order of the multipliers."""
+        position = [self.rate(self.read(equation)) for equation in self._joint.position(self)]
+        return [*position, *map(self.read, self._joint.velocity(self))]
+
+    @property
+    def point(self) -> Any:
+        """About which its torque is reported."""
+        return self._joint.point(self)
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """The names of its coordinates."""
+        return tuple(self._joint.coordinates)
+
+    @cached_property
+    def loads(self) -> Any:
+        """What presses its surfaces."""
+        return self._joint.loads(self)
+
+    @cached_property
+    def coordinate(self) -> Any:
+        """None where none is named and there is a choice; only one that is used is counted, if it is an angle."""
+        return None if self._coordinate is None else getattr(self._joint, self._coordinate)(self)

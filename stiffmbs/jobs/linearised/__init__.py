@@ -1,0 +1,1 @@
+"""Models linearised about a state: natural modes, mode shapes, transfer functions."""
