@@ -32,6 +32,8 @@ QUICK = r"\$ stiffmbs (run|check|equilibrium|modes|response) "
 PLOT = ".. plot::\n"
 OPTION = r"(?m)^ +:[a-z-]+:.*\n"
 NUMBER = r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?"
+LONG = ("around_a_state", "kinematics_and_compliance", "studies", "tyres_and_roads")
+"""Pages whose scenes take seconds to compile."""
 FRAME = "[\u2500-\u257f]+"
 """Lines of tables, as long as their numbers."""
 SHOWN = 2e-3
@@ -107,7 +109,12 @@ def workplace(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in PAGES if TESTED & {kind for kind, *_ in blocks(page)}], ids=lambda page: page.stem
+    "page",
+    [
+        pytest.param(page, marks=pytest.mark.long if page.stem in LONG else (), id=page.stem)
+        for page in PAGES
+        if TESTED & {kind for kind, *_ in blocks(page)}
+    ],
 )
 def test_what_a_page_shows_is_true(page, workplace):
     """A block of text right behind one of code is its output."""

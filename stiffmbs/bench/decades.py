@@ -14,8 +14,8 @@ from .contestant import Contestant, Failed
 from .sweep import AT_TARGET, FEWEST, WINDOW, at_target_rows, on_line
 from .turns import ONCE, Timed, seconds_of, take_turns
 
-TOLERANCES = tuple(float(f"{10.0**exponent:.2g}") for exponent in np.linspace(-2, -13, 34))
-TARGETS = tuple(10.0**-k for k in range(3, 10))
+TOLERANCES = tuple(float(f"{10.0**exponent:.2g}") for exponent in np.linspace(-1, -13, 37))
+TARGETS = tuple(10.0**-k for k in range(2, 10))
 """Errors at which times are compared."""
 SET_UP = "set-up"
 ROUNDS = 5

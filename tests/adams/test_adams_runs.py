@@ -55,7 +55,7 @@ MARKER/13, PART=1, QP=1,0,0
         ("GCON/1, FUNCTION=DX(21,1)+DY(21,1)", 1),
         ("GCON/1, FUNCTION=VX(21)-0.5*WZ(21)", 1),
         ("MOTION/1, I=21, J=1, X, FUNC=TIME", 1),
-        ("MOTION/1, I=21, J=1, B2, FUNC=TIME", 1),
+        pytest.param("MOTION/1, I=21, J=1, B2, FUNC=TIME", 1, marks=pytest.mark.long),
     ],
 )
 def test_constraints_take_as_many_freedoms_as_in_adams(statement, equations):

@@ -8,6 +8,9 @@ from stiffmbs.bench.peers import peers
 from stiffmbs.bench.peers.mounted.mounted import turned
 from stiffmbs.bench.problems.axle_on_bushings import BENCHMARKS
 
+STEP, RTOL = 5e-4, 1e-9
+COMPILED = "compiled"
+"""Of peers whose equations a C compiler takes seconds for: the others have the same ones."""
 PROBLEMS = {benchmark.name: benchmark for benchmark in BENCHMARKS}
 
 
@@ -23,8 +26,12 @@ def test_all_solve_the_same_problem(name):
     problem = PROBLEMS[name]
     reference = problem.reference()
     assert np.ptp(reference, axis=0).max() > 0.01
-    for contestant in (*problem.contestants(), *peers(problem.in_space())):
-        assert error_of(contestant.at(1e-9)(), reference) < 1e-5, contestant.solver
+    for own in problem.contestants():
+        assert error_of(own.at(RTOL)(), reference) < 1e-5, own.solver
+    for peer in peers(problem.in_space()):
+        if COMPILED not in peer.solver:
+            setting = max((step for step in peer.settings if step <= STEP), default=RTOL)
+            assert error_of(peer.at(setting)(), reference) < 1e-4, peer.solver
 
 
 def test_euler_parameters_turn_vectors():

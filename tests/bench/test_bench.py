@@ -55,7 +55,8 @@ def test_starts_by_hand_are_consistent(name):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.long if name == "andrews" else ()) for name in PROBLEMS]
+    "name",
+    [pytest.param(name, marks=pytest.mark.long if name in ("andrews", "trees_in_space") else ()) for name in PROBLEMS],
 )
 def test_contestants_agree_with_the_reference(name):
     problem = PROBLEMS[name]
@@ -110,7 +111,9 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-12, atol=1e-12, err_msg=name)
 
 
-LONG_LOOKS = ("elements_in_space", "chain_scaling", "stiffness", "half_car_study", "bushing_fit", "car")
+LONG_LOOKS = (
+    "elements_in_space", "chain_scaling", "stiffness", "stepping", "half_car_gradient", "half_car_study", "bushing_fit", "car",
+)  # fmt: skip
 BEYOND_THE_SOLVER = {"bushing_fit": 0.1}  # noise of the measured curves
 WITHOUT_YARDSTICK = (
     "linear_algebra",

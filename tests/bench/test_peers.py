@@ -35,7 +35,7 @@ NUMPY = Maths(np.sin, np.cos, np.sqrt, min, max)
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.long if name == "half_car" else ()) for name in PROBLEMS]
+    "name", [pytest.param(name, marks=pytest.mark.long if name in ("andrews", "half_car") else ()) for name in PROBLEMS]
 )
 def test_all_tools_solve_the_same_problem(name):
     problem = PROBLEMS[name]

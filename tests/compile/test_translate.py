@@ -2,12 +2,14 @@
 
 import math
 import random
+import re
 
 import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs.compile.machine.compiler import compiled_source
+from stiffmbs.compile.machine.translate.unit import Entry, assembly
 from stiffmbs.compile.machine.translate.values import Untranslatable
 from stiffmbs.compile.record import source_of
 from stiffmbs.compile.state import State
@@ -96,6 +98,15 @@ def test_pointers_are_read_and_written():
     signature = "void(int64, float64*, float64*, int64*)"
     compiled_source(source, "f", signature).call(5, *(a.ctypes.data for a in (p, q, r)))
     assert [p.tolist(), q.tolist(), r.tolist()] == expected
+
+
+def test_memory_of_floats_and_of_integers_is_told_apart():
+    """What is stored as one of them leaves the others as they are: each access says of which kind it is."""
+    function = in_python(source := "def f(n, p, r):\n    for k in range(n):\n        p[r[k]] += 0.5*r[0]")
+    text = assembly([Entry(function, "f", ["int64", "float64*", "int64*"], "void")], source)
+    accesses = re.findall(r"(?:= load|store) (double|i64)\b.*?(!tbaa !\d)?\n", text)
+    assert len(accesses) > 6
+    assert len(set(accesses)) == len({tag for _, tag in accesses}) == 2
 
 
 def random_expression(draw, depth):

@@ -165,7 +165,10 @@ run: {duration: 2 s, rtol: 1e-8}
 """
 
 
-@pytest.mark.parametrize("relaxation", ["", ", relaxation: [0.3, 0.5]"], ids=["steady", "lagging"])
+@pytest.mark.parametrize(
+    "relaxation",
+    [pytest.param("", marks=pytest.mark.long, id="steady"), pytest.param(", relaxation: [0.3, 0.5]", id="lagging")],
+)
 def test_a_wheel_spins_as_its_tyre_asks(relaxation):
     """A load of 4 kN deflects by 20 mm; 28 N m of rolling resistance take Fx = -28/0.33 N, and so the slip Fx/80 kN; the rest is drag."""
     resistance = 28 / 0.33
@@ -179,7 +182,7 @@ def test_a_wheel_spins_as_its_tyre_asks(relaxation):
     assert run["tyre.load"] == pytest.approx(np.full(len(run.time), 4000.0), abs=1e-3)
 
 
-def test_a_speed_that_no_force_tells_is_refused():
+def test_a_speed_that_no_force_tells_is_refused(few_moves):
     scene = stiffmbs.read_scene(SLED.replace("40 N - 2 N s/m*vx(sled)", "40 N"))
     with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is left in sled\.fx"):
         stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0), speed="found"))

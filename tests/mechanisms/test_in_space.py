@@ -80,7 +80,7 @@ DURATIONS = {
     "half_car": 0.3, "stick_slip": 0.8, "bouncing_ball": 0.6, "cam_follower": 0.05, "dead_centres": 0.3,
     "elastic_bearing": 0.01, "front_axle": 0.6,
 }  # fmt: skip
-LONG = ("half_car", "stick_slip")
+LONG = ("half_car", "half_car_at_rest", "stick_slip")
 STIFF = ("elastic_bearing", "half_car", "cam_follower", "stick_slip")
 WITHOUT_POTENTIAL = ("andrews",)
 """A constant torque has a potential in the plane, and none in space."""

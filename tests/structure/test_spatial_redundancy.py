@@ -249,7 +249,7 @@ def test_two_drives_that_agree():
 
 
 @pytest.mark.parametrize(
-    "second", ["6*t", "5*t - t^2", "5*t + 0.1", "5*t + 0.2*step(t, 2.5, 0, 2.6, 1)"],
+    "second", ["6*t", pytest.param("5*t - t^2", marks=pytest.mark.long), "5*t + 0.1", "5*t + 0.2*step(t, 2.5, 0, 2.6, 1)"],
     ids=["speed", "acceleration", "position", "after turns"],
 )  # fmt: skip
 def test_two_drives_that_disagree_are_an_error_that_names_both(second):

@@ -123,7 +123,7 @@ run: {duration: 1.5, output: 10 ms, rtol: 1e-8}
 """
 
 
-@pytest.mark.parametrize("filtered", ["", "filter_radius: 300 mm"])
+@pytest.mark.parametrize("filtered", ["", pytest.param("filter_radius: 300 mm", marks=pytest.mark.long)])
 def test_a_mass_slides_along_a_curved_road(tmp_path, filtered):
     """Two integrators with nothing in common find the same motion, one of them with all derivatives of the road."""
     written(tmp_path / "road.crg")

@@ -15,8 +15,8 @@ from .mounted.mounted import Shaken
 from .trees.tree import Tree
 
 IN_THE_PLANE = ("scipy", "casadi", "exudyn", "chapter")
-TREES_IN_SPACE = ("exudyn", "mujoco", "pinocchio")
-ON_BUSHINGS = ("casadi",)
+TREES_IN_SPACE = ("exudyn", "mujoco", "pinocchio", "casadi")
+ON_BUSHINGS = ("casadi", "exudyn")
 PACKAGES = ("exudyn", "casadi", "mujoco", "pinocchio")
 """Of the extra ``peers``, as they are imported: what this package itself does not need; Pinocchio is ``pin`` on PyPI."""
 

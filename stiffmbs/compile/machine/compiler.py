@@ -23,6 +23,8 @@ _ONE_AT_A_TIME = RLock()
 """Threads may need the same routine at once: one compiles it, the others find it."""
 GEOMETRY = f"{__package__}.geometry"
 """The modules that sources of solids in contact call."""
+SERIES = "rotation_vector("
+"""A call in generated sources whose loop over a few terms is a polynomial once it is unrolled (bushings: a quarter less time)."""
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
@@ -81,8 +83,9 @@ def _compiled_source(source: str, name: str, signature: str, of: Description) ->
         exec(compile(source, f"<{name}>", "exec"), names)  # the text is made by this package from equations
         return names
 
-    entry = store.name_of(store.KERNEL, source, _language(), _called(GEOMETRY in source), signature)
-    return _loaded(entry, _Source(((name, signature),), namespace, of.words, source))[name]
+    unrolled = SERIES in source
+    entry = store.name_of(store.KERNEL, source, _language(), _called(GEOMETRY in source), signature, repr(unrolled))
+    return _loaded(entry, _Source(((name, signature),), namespace, of.words, source, unrolled))[name]
 
 
 @cache

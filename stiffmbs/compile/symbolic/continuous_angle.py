@@ -7,9 +7,12 @@ own error, far below half a turn, has no part in the angle.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import sympy as sp
+
+from .nonsmooth import Inside, Less
 
 POLE = sp.Float(1e-4)
 """Sine squared plus cosine squared below which an angle has no direction to speak of (an axis within 0.6 deg of the one that
@@ -33,11 +36,12 @@ def counter(k: int) -> sp.Symbol:
     return sp.Symbol(f"counted{k}", real=True)
 
 
-def angle_rate(angle: ContinuousAngle, e: Any) -> sp.Expr:
-    """The rate of a counter: that of its angle, (c s' - s c')/(s^2 + c^2), bounded where s and c both vanish.
+def away_from_pole(angle: ContinuousAngle, e: Any) -> Callable[[sp.Expr], sp.Expr]:
+    """What makes the rate of a counter, and its derivatives, of those of its angle: they are bounded where s and c both vanish.
 
-    The eighth power leaves the rate as it is outside of the pole: half a turn too much or too little, gathered over any number
-    of turns, would put the angle in a wrong one.
+    Outside of the pole the rate stays as it is: half a turn too much or too little, gathered over any number of turns, would
+    put the angle in a wrong one.  Derivatives are those of the angle's rate, times the same: within the pole they tell less,
+    where nothing but the turn follows from a counter.
 
     Parameters
     ----------
@@ -45,5 +49,5 @@ def angle_rate(angle: ContinuousAngle, e: Any) -> sp.Expr:
     e : SymbolicElement
     """
     sine, cosine, _ = angle.args
-    squares = e.named(sine**2 + cosine**2)
-    return (cosine * e.rate(sine) - sine * e.rate(cosine)) * squares**7 / (squares**8 + POLE**8)
+    part = e.named(Less(sp.Integer(1), (sine**2 + cosine**2) / POLE))
+    return lambda x: Inside(part, sp.Integer(0), sp.Integer(2), x * part)

@@ -19,7 +19,7 @@ from ...describe.requests.angle_counter import AngleCounter
 from ...describe.states.equation import Reported, StateEquation
 from ...errors import InputError
 from ..kind import Kind
-from .continuous_angle import angle_rate
+from .continuous_angle import away_from_pole
 from .element import SymbolicElement
 from .losses import power_of_force, power_of_joint
 from .stated import Stated, stated_by_force, stated_by_joint
@@ -244,17 +244,14 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
     first = e.n_coordinates
-    angles, rates = sp.Matrix(e.angles), sp.Matrix([angle_rate(angle, e) for angle in e.angles])
-    terms = {
-        "continuous_angle": angles,
-        "angle_rate": rates,
-        "Z": e.by_velocities(rates),
-        "Z_q": e.by_coordinates(rates),
+    rates, bounded = sp.Matrix([e.rate(angle) for angle in e.angles]), [away_from_pole(angle, e) for angle in e.angles]
+    of_rates = {"angle_rate": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
+    entries = {
+        name: [replace(entry, expression=bounded[entry.row](entry.expression)) for entry in _entries(matrix)]
+        for name, matrix in of_rates.items()
     }
-    return {
-        name: [Entry(entry.expression, first + entry.row, entry.column) for entry in _entries(matrix)]
-        for name, matrix in terms.items()
-    }
+    entries["continuous_angle"] = _entries(sp.Matrix(e.angles))
+    return {name: [replace(entry, row=first + entry.row) for entry in found] for name, found in entries.items()}
 
 
 def multipliers(name: str, count: int) -> sp.Matrix:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -17,7 +16,7 @@ from ..events.divergence import refuse_beyond_sense
 from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
-from ..initial import InitialValues, rates_of
+from ..initial import InitialValues
 from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED, UNSTABLE
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
@@ -74,7 +73,6 @@ class AdaptiveRun:
         features = dynamics.input_features(grid.start, grid.end)
         self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
         work.step_bound.follow(features)
-        self._tolerances = settings.rtol, work.atol
         self._stable_step = StableStep(scheme, dynamics)
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
@@ -122,7 +120,6 @@ class AdaptiveRun:
         """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
         work, advance, status = self.work, ADVANCE.call, PAUSED
         most = min(leaving.first, work.capacity) if leaving else work.capacity
-        work.h = first_step(self._scheme, self._dynamics, self._start, work.t, self._grid.end, self._tolerances)
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
@@ -209,41 +206,6 @@ class AdaptiveRun:
         return {
             "scheme": self._scheme.name,
             **counted,
-            "breakpoints": int(np.sum(self._breakpoints < self.work.t)),
+            "breakpoints": sum(t < self.work.t for t in self._breakpoints.tolist()),
             "events": self._events,
         }
-
-
-def first_step(
-    scheme: Scheme,
-    dynamics: Dynamics,
-    start: InitialValues,
-    t: float,
-    end: float,
-    tolerances: tuple[float, np.ndarray],
-) -> float:
-    """A first step whose error will be small (Hairer, Norsett, Wanner I, ch. II.4, "starting step size"), s.
-
-    The tolerances are rtol, and atol by coordinate and velocity.
-    """
-    rtol, atol = tolerances
-    y = np.concatenate([start.q, start.u])
-    rate = np.concatenate([rates_of(dynamics, t, start), start.acceleration])
-    weights = 1.0 / (atol + rtol * np.abs(y))
-    count = max(len(y), 1)
-
-    def size(vector: np.ndarray) -> float:
-        ratios = vector * weights
-        return math.sqrt(ratios.dot(ratios) / count)
-
-    of_state, of_rate = size(y), size(rate)
-    h = 0.01 * of_state / of_rate if min(of_state, of_rate) > 1e-5 and math.isfinite(of_rate) else 1e-6
-    q, u = dynamics.system.of_body.moved(start.q, h * start.u), start.u + h * start.acceleration
-    dynamics.state.q[:], dynamics.state.u[:] = q, u
-    status, acceleration = dynamics.accelerate(t + h)
-    change = size(np.concatenate([dynamics.position_rates(q, u), acceleration]) - rate) / h
-    largest = max(of_rate, change)
-    if status < 0 or not math.isfinite(largest):
-        return h
-    longer = (0.01 / largest) ** (1 / scheme.order) if largest > 1e-15 else max(1e-6, 1e-3 * h)
-    return min(100 * h, longer, end - t)

@@ -1,28 +1,23 @@
-"""The memory of one Runge-Kutta integration, laid out for compiled code."""
+"""One Runge-Kutta integration: what compiled code is told, and what it has come to."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from ...compile.machine.layout import address, packed
+from ...compile.machine.layout import address, addresses
 from ...describe.settings import RunSettings
-from ..dynamics import POSITION_TOLERANCE, Dynamics
+from ..dynamics import Dynamics
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog, LongSteps
 from ..events.step_bound import StepBound
-from ..initial import InitialValues, rates_of
-from ..native.tables.steps import EXPLICIT
+from ..initial import InitialValues
 from ..trajectory import Grid, Rows
-from .routines import END_AT_EVENT
+from .memory import StepMemory
 from .scheme import Scheme
 
 SHORTEST_PART = 1e-12
 """Shorter steps than this part of the run would never come to its end."""
-MOST_STEPS, MOST_VALUES = 1024, 300_000
-"""Of one call of compiled code: steps, and numbers in the rows that it stores, so that it returns soon."""
 
 
 class Integration:
@@ -35,6 +30,10 @@ class Integration:
     step_times : list of ndarray
         Ends of the steps of each call.
     step_bound : StepBound
+    q, u : ndarrays
+        Positions and velocities reached.
+    at : int
+        The address of the table for compiled code.
     atol : ndarray, shape (n_q + n_u,)
         Absolute tolerances.
     """
@@ -42,46 +41,31 @@ class Integration:
     def __init__(
         self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
     ) -> None:
-        self._n_q = len(start.q)
-        n = self._n_q + len(start.u)
-        self.capacity = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
+        n_q, n_times = len(start.q), 0 if grid.times is None else len(grid.times)
+        self._memory = memory = dynamics.kept(
+            f"steps of {scheme.name}", n_times, lambda: StepMemory(scheme, dynamics, n_times)
+        )
+        self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been taken over
-        self._dynamics = dynamics
-        self._scheme, self._eliminated = scheme, dynamics.eliminated
-        self._end = scheme.stages
-        self.step_bound = StepBound()
-        self.atol = atol = absolute_tolerances(dynamics.system, settings)
-        times = np.empty(0) if grid.times is None else np.ascontiguousarray(grid.times, dtype=float)
-        n_event_functions = dynamics.system.n_event_functions
-        self._watch = EventSearch(dynamics.state)
-        self._long_steps = dynamics.kept("long_steps", n, lambda: LongStepLog(dynamics.system, n))
+        self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state)
+        self._long_steps = dynamics.kept(
+            "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
+        )
         self._long_steps.forget()
-        self._arrays: dict[str, Any] = {
-            "dynamics": dynamics.table, "eliminated": self._eliminated.table, "eliminates": self._eliminated.serves,
-            "pivots_tell": self._eliminated.pivots_tell,
-            "scheme": scheme.table, "n": n, "n_q": self._n_q,
-            "project": settings.projection, "tolerance": POSITION_TOLERANCE,
-            "rtol": settings.rtol, "atol": atol,
-            "longest": settings.max_step or np.inf, "stable": np.inf, "step_bound": self.step_bound.table,
-            "shortest": SHORTEST_PART * (grid.end - grid.start),
-            "t": grid.start, "t_before": grid.start, "h": settings.step,
-            "n_event_functions": n_event_functions, "end_at_event": END_AT_EVENT.address if self._watch.n else 0, "signs": np.zeros(n_event_functions),
-            "watch": self._watch.table,
-            "y": np.zeros(n), "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": np.zeros((scheme.extended, n)), "difference": np.zeros(n), "weight": np.zeros(n),
-            "polynomial": np.zeros((3 + len(scheme.dense), n)),
-            "n_times": len(times), "times": times, "long_steps": self._long_steps.table,
-            "capacity": self.capacity, "row_t": np.empty(self.capacity), "row_y": np.empty((self.capacity, n)),
-            "ends": np.empty(self.capacity),
-        }  # fmt: skip
-        self._table = packed(EXPLICIT, self._arrays)
-        self._cells = self._table.view(EXPLICIT.cells)[0]
+        memory.renew(*addresses(self._watch.table, self.step_bound.table, self._long_steps.table))
+        self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
+        self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
+        memory.atol[:] = self.atol
+        if grid.times is not None:
+            memory.times[:] = grid.times
+        self._cells = cells = memory.cells
+        cells["project"], cells["rtol"] = settings.projection, settings.rtol
+        cells["longest"], cells["stable"] = settings.max_step or np.inf, np.inf
+        cells["shortest"] = SHORTEST_PART * (grid.end - grid.start)
+        cells["t"] = cells["t_before"] = grid.start
+        cells["h"] = settings.step
         self.begin(start)
-
-    @property
-    def at(self) -> int:
-        """The address of the table for compiled code."""
-        return address(self._table)
 
     @property
     def t(self) -> float:
@@ -119,29 +103,16 @@ class Integration:
     def eliminates(self, value: bool) -> None:
         self._cells["eliminates"] = value
 
-    @property
-    def q(self) -> np.ndarray:
-        """Positions reached."""
-        return self._arrays["y"][: self._n_q]
-
-    @property
-    def u(self) -> np.ndarray:
-        """Velocities reached."""
-        return self._arrays["y"][self._n_q :]
-
     def begin(self, start: InitialValues) -> int:
         """Go on from consistent values at the time reached; the first event_function of the event that was met there, or -1."""
+        memory, cells = self._memory, self._cells
         self.q[:], self.u[:] = start.q, start.u
-        rates = rates_of(self._dynamics, self.t, start)
-        self._arrays["k"][self._end] = np.concatenate([rates, start.acceleration])
-        self._cells["last_error"], self._cells["at_event"] = 0.0, 0
-        state, signs = self._dynamics.state, self._arrays["signs"]
-        state.q[:], state.u[:] = start.q, start.u
-        state.evaluate("event_function", self.t)
-        signs[:] = state.values["event_function"][: len(signs)]
-        met = np.flatnonzero(self._watch.found[: len(signs)])
+        memory.end_rates[self._n_q :] = start.acceleration
+        memory.lam[:] = start.lam
+        cells["started"], cells["last_error"], cells["at_event"] = 0, 0.0, 0
+        met = self._watch.found[: self._watch.n_event_functions].tolist()
         self._watch.begin()
-        return int(met[0]) if len(met) else -1
+        return met.index(1) if 1 in met else -1
 
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
@@ -155,8 +126,9 @@ class Integration:
     def collect(self, rows: Rows) -> None:
         """Take over the rows and ends of steps that the last call stored, and leave their memory to the next."""
         count, before = self.count("rows"), self._collected
-        y = self._arrays["row_y"][:count]
-        rows.extend(self._arrays["row_t"][:count], y[:, : self._n_q], y[:, self._n_q :])
+        memory = self._memory
+        y = memory.row_y[:count]
+        rows.extend(memory.row_t[:count], y[:, : self._n_q], y[:, self._n_q :])
         self._cells["rows"] = 0
         self._collected = self.count("steps")
-        self.step_times.append(self._arrays["ends"][np.arange(before, self._collected) % self.capacity])
+        self.step_times.append(memory.ends[np.arange(before, self._collected) % self.capacity])

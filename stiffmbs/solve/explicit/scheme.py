@@ -37,7 +37,7 @@ class Scheme:
         Differences to embedded schemes, none for a scheme of fixed step.  With two, the estimate is
         h |e_1|^2 / sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
     dense : tuple of Row
-        The coefficients behind the third of the interpolant (`stiffmbs.solve.native.interpolant`).
+        The coefficients behind the third of the interpolant (`stiffmbs.solve.native.explicit.interpolant`).
     exponent, memory : float
         Of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory) last_error^memory.
     stability : float
@@ -74,7 +74,7 @@ class Scheme:
     def _arrays(self) -> dict[str, Any]:
         """What the table points to."""
         return {
-            "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
+            "order": self.order, "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
             "n_dense": len(self.dense), "error_needs_end": self.error_needs_end,
             "c": np.array(self.c, dtype=float), "a": self.matrix(self.a),
             "errors": self.matrix(self.errors), "dense": self.matrix(self.dense),

@@ -12,7 +12,7 @@ from stiffmbs.solve.native.dynamics import (
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.solve.native.stages import add_rates_behind
+from stiffmbs.solve.native.explicit.stages import add_rates_behind
 from stiffmbs.solve.native.statuses import NOT_FINITE
 from stiffmbs.solve.native.tables.views import dynamics_view
 

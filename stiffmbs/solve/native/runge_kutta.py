@@ -5,18 +5,19 @@ from __future__ import annotations
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
-from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import call_int
-from stiffmbs.solve.native.error_estimate import trusted_error
 from stiffmbs.solve.native.event_search.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
+from stiffmbs.solve.native.explicit.attempt import arrive, attempt
+from stiffmbs.solve.native.explicit.error_estimate import trusted_error
+from stiffmbs.solve.native.explicit.interpolant import interpolated, prepare, store_rows, store_step
+from stiffmbs.solve.native.explicit.stages import copied
+from stiffmbs.solve.native.explicit.start import first_step, start_steps
+from stiffmbs.solve.native.explicit.uncertain_end import MOST_MOVED, SHORTER, uncertain_end
 from stiffmbs.solve.native.fastest_rate import fastest_rate
-from stiffmbs.solve.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.native.long_steps import is_to_be_kept, long_steps_view, next_row
-from stiffmbs.solve.native.stages import copied
 from stiffmbs.solve.native.statuses import AT_END, AT_EVENT, NOT_FINITE, PAUSED, STEP_TOO_SMALL, STIFF, UNSTABLE
 from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 from stiffmbs.solve.native.tables.views import dynamics_view, explicit_view, scheme_view
-from stiffmbs.solve.native.uncertain_end import MOST_MOVED, SHORTER, uncertain_end
 
 __all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]
 
@@ -169,6 +170,9 @@ def advance(end, steps, held, own_steps, explicit):
     c = scheme_view(x.scheme)
     m = dynamics_view(x.dynamics)
     s = state_view(m.state)
+    if not x.started:
+        start_steps(x, c, s, m)
+        x.h = first_step(x, c, s, m, end)
     held += x.stiff_steps
     for _ in range(steps):
         if x.stiff_steps >= held or (own_steps and x.rows >= x.capacity):
@@ -210,6 +214,8 @@ def fixed_steps(start, h, steps, explicit):
     c = scheme_view(x.scheme)
     m = dynamics_view(x.dynamics)
     s = state_view(m.state)
+    if not x.started:
+        start_steps(x, c, s, m)
     for step in range(steps):
         x.t = start + step * h
         _depart(x, c)

@@ -86,7 +86,9 @@ SFORCE/1, ROTATION, I=21, J=1, FUNCTION=-0.05*WZ(21,1,1)"""
     return text, mechanism, own
 
 
-@pytest.mark.parametrize("middle", ["", ", MASS=0, CM=20", ", CM=20, IP=0,0,0"])
+@pytest.mark.parametrize(
+    "middle", ["", *(pytest.param(each, marks=pytest.mark.long) for each in (", MASS=0, CM=20", ", CM=20, IP=0,0,0"))]
+)
 def test_a_link_without_mass_hands_everything_on(tmp_path, middle):
     text, mechanism, own = chain(middle, "IP=0.002,0.001,0.002")
     none = Part(0, np.zeros((3, 3)), (0.2, 0, 0))

@@ -395,10 +395,10 @@ def test_everything_is_freed(chain):
             ida.begin(0.0, chain.y, chain.yp)
             ida.advance(np.empty(0), 1e-6, np.empty((0, ida.y.size)))
 
-    some(50)
+    some(20)
     before = memory()
-    some(150)
-    assert memory() - before < 4e6  # one instance of 120 unknowns holds 0.1 to 0.2 MB
+    some(60)
+    assert memory() - before < 3e6  # one instance of 120 unknowns holds 0.1 to 0.2 MB
 
 
 def test_closing_twice_and_failing_at_the_start_are_harmless(pendulum):

@@ -20,12 +20,12 @@ def module() -> Any:
     return exudyn
 
 
-def recorded(mbs: Any, node: int) -> int:
-    """A sensor that keeps the coordinates of a node in memory."""
+def recorded(mbs: Any, node: int, kind: Any = None) -> int:
+    """A sensor that keeps something of a node in memory: its coordinates unless given."""
     exu = module()
     from exudyn import itemInterface as items
 
-    kind = exu.OutputVariableType.Coordinates
+    kind = kind or exu.OutputVariableType.Coordinates
     return int(
         mbs.AddSensor(items.SensorNode(nodeNumber=node, storeInternal=True, writeToFile=False, outputVariableType=kind))
     )

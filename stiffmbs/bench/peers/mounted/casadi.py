@@ -1,16 +1,15 @@
-"""CasADi: CVODES on places, Euler parameters and velocities, its equations on CasADi's virtual machine.
-
-Compiled by gcc -O2, each tolerance anew, they take minutes.
-"""
+"""CasADi: CVODES and IDAS on places, Euler parameters and velocities; also with compiled equations where there is a C compiler."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 
 from ...contestant import Contestant, Failed, Solve
+from ..compiled import compiled, compiler
 from .mounted import GROUND, Mounted, Shaken, Shown
 
 MOST_STEPS = 10**7
@@ -19,8 +18,18 @@ PER_BODY = 13
 
 
 def contestants(given: Shaken) -> Iterator[Contestant]:
-    """CVODES; what is compared is made of its states in the time."""
-    yield Contestant("CasADi CVODES", True, lambda rtol: integration(given.mounted, given.shown, rtol))
+    """What is compared is made of their states in the time."""
+    m = given.mounted
+    ways = [("", cache(partial(equations, m)))]
+    if compiler():
+        ways.append((", compiled", cache(lambda: compiled(equations(m)))))
+    for plugin in ("cvodes", "idas"):
+        for end, way in ways:
+            yield Contestant(f"CasADi {plugin.upper()}{end}", True, partial(_solved, given, plugin, way))
+
+
+def _solved(given: Shaken, plugin: str, way: Callable[[], dict[str, Any]], rtol: float) -> Solve:
+    return integration(way(), plugin, given.mounted, given.shown, rtol)
 
 
 def equations(m: Mounted) -> dict[str, Any]:
@@ -70,12 +79,12 @@ def _rotation(e: Any) -> Any:
     return ca.SX.eye(3) + 2 * e[0] * ca.skew(e[1:]) + 2 * ca.skew(e[1:]) @ ca.skew(e[1:])
 
 
-def integration(m: Mounted, shown: Shown, rtol: float) -> Solve:
+def integration(of: dict[str, Any], plugin: str, m: Mounted, shown: Shown, rtol: float) -> Solve:
     """Integrate over all output times."""
     import casadi as ca
 
     options: dict[str, Any] = {"reltol": rtol, "abstol": rtol, "max_num_steps": MOST_STEPS, "newton_scheme": "direct"}
-    solver = ca.integrator("mounted", "cvodes", equations(m), m.times[0], m.times[1:].tolist(), options)
+    solver = ca.integrator("mounted", plugin, of, m.times[0], m.times[1:].tolist(), options)
     start = np.concatenate([np.r_[solid.centre, 1.0, np.zeros(9)] for solid in m.solids])
 
     def solve() -> np.ndarray:

@@ -18,7 +18,7 @@ def scene_of(tree: Tree) -> ModelData:
         With one or three hinges between two links that have a mass.
     """
     model = spatial.Model("tree", gravity=_listed(tree.gravity))
-    omega, velocity = _at_start(tree)
+    omega, velocity = tree.motion_at_start()
     carrier = {GROUND: GROUND}
     for k, link in enumerate(tree.links):
         if not link.mass:
@@ -39,18 +39,6 @@ def scene_of(tree: Tree) -> ModelData:
             model.add(f"damper{k}", spatial.TorsionSpring(i=i, j=j, stiffness=0, damping=link.damping))
         carrier[k] = k
     return model.data()
-
-
-def _at_start(tree: Tree) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Angular velocities of all links, and the velocities of their hinges."""
-    omega: list[np.ndarray] = []
-    velocity: list[np.ndarray] = []
-    for k, link in enumerate(tree.links):
-        at_rest = link.parent == GROUND
-        before = np.zeros(3) if at_rest else omega[link.parent]
-        omega.append(before + link.rate * link.axis)
-        velocity.append(np.zeros(3) if at_rest else velocity[link.parent] + np.cross(before, tree.from_parent(k)))
-    return omega, velocity
 
 
 def _marker(tree: Tree, body: int, k: int, turned: bool) -> spatial.Marker:

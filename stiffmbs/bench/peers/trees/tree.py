@@ -73,6 +73,17 @@ class Tree:
         before = np.zeros(3) if link.parent == GROUND else self.links[link.parent].hinge
         return np.asarray(link.hinge - before)
 
+    def motion_at_start(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Angular velocities of all links, rad/s, and the velocities of their hinges, m/s, at the start in ground axes."""
+        omega: list[np.ndarray] = []
+        velocity: list[np.ndarray] = []
+        for k, link in enumerate(self.links):
+            at_rest = link.parent == GROUND
+            before = np.zeros(3) if at_rest else omega[link.parent]
+            omega.append(before + link.rate * link.axis)
+            velocity.append(np.zeros(3) if at_rest else velocity[link.parent] + np.cross(before, self.from_parent(k)))
+        return omega, velocity
+
     def places(self, angles: np.ndarray) -> np.ndarray:
         """Centres of mass of all links that have a mass, rows of (x1 y1 z1 x2 ...), from rows of hinge angles."""
         turned: list[np.ndarray] = []

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from .values import ITEMS, LLVM_TYPES, Operand, Untranslatable, Value
+from .values import ITEMS, LLVM_TYPES, NUMBERS, Operand, Untranslatable, Value
 
 Lines = list[Any]
 """Instructions, and lists of instructions that are filled in later."""
@@ -115,11 +115,12 @@ class Code:
 
     def load(self, variable: Value) -> Value:
         """The value of a variable."""
-        return self.put_value(variable.kind, f"load {LLVM_TYPES[variable.kind]}, ptr {variable.text}")
+        tag = tag_of(variable.kind)
+        return self.put_value(variable.kind, f"load {LLVM_TYPES[variable.kind]}, ptr {variable.text}{tag}")
 
     def store(self, variable: Value, value: Value) -> None:
         """Set a variable."""
-        self.put(f"store {self.converted(value, variable.kind).typed}, ptr {variable.text}")
+        self.put(f"store {self.converted(value, variable.kind).typed}, ptr {variable.text}{tag_of(variable.kind)}")
 
     def item(self, pointer: Operand, index: Operand) -> Value:
         """The place of an item: its kind, and its address."""
@@ -165,6 +166,19 @@ class Code:
         if isinstance(value, Value) and value.kind == "bool":
             return value
         return self.put_value("bool", f"icmp ne {self.integer(value).typed}, 0")
+
+
+def tag_of(kind: str) -> str:
+    """What tells LLVM that memory holds numbers of one kind: a store of another kind doesn't change it (type-based alias analysis)."""
+    return f", !tbaa !{NUMBERS.index(kind)}" if kind in NUMBERS else ""
+
+
+def tags() -> list[str]:
+    """The definitions of all tags, at the end of a module."""
+    root = 2 * len(NUMBERS)
+    accesses = [f"!{k} = !{{!{len(NUMBERS) + k}, !{len(NUMBERS) + k}, i64 0}}" for k in range(len(NUMBERS))]
+    types = [f'!{len(NUMBERS) + k} = !{{!"{kind}", !{root}, i64 0}}' for k, kind in enumerate(NUMBERS)]
+    return [*accesses, *types, f'!{root} = !{{!"numbers"}}']
 
 
 def constant(number: bool | int | float) -> Value:

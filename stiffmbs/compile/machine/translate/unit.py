@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .code import Code
+from .code import Code, tags
 from .expressions import Expressions
 from .statements import Statements, parameters
 from .values import LLVM_TYPES, Operand, Record, Untranslatable, Value, Wider
@@ -74,7 +74,7 @@ class Unit:
 
     def text(self) -> str:
         """The module."""
-        return "\n".join([*sorted(self._declared), *self._texts])
+        return "\n".join([*sorted(self._declared), *self._texts, *tags()])
 
     def declare(self, declaration: str) -> None:
         """Note a function that is found elsewhere."""

@@ -20,6 +20,8 @@ LLVM_TYPES = {
 """The kinds of values: numbers, truth values, C's int, pointers to int64, int32 and float64, four floats side by side."""
 ITEMS = {"ints": "int", "indices": "int32", "floats": "float"}
 """What a pointer points to."""
+NUMBERS = ("float", "int", "int32")
+"""Kinds of numbers in memory: what is written as one of them is never read as another."""
 POINTERS_TO = {item: pointer for pointer, item in ITEMS.items()}
 
 

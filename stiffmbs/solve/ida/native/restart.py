@@ -18,10 +18,10 @@ from stiffmbs.solve.native.calls import call_int, int32
 from stiffmbs.solve.native.dynamics import to_accelerations, to_position_constraints, to_velocity_constraints
 from stiffmbs.solve.native.error_norm import error_norm_view
 from stiffmbs.solve.native.event_search.bounds import event_search_view
+from stiffmbs.solve.native.explicit.stages import add_rates_behind, copied
 from stiffmbs.solve.native.ida_loop import stepped
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import iteration_view
-from stiffmbs.solve.native.stages import add_rates_behind, copied
 from stiffmbs.solve.native.statuses import OK, STOP_RETURN
 from stiffmbs.solve.native.tables.steps import MOST_STEPS, RESTART
 from stiffmbs.solve.native.tables.views import dynamics_view

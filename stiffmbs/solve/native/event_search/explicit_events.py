@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
-from stiffmbs.solve.native.attempt import arrive, attempt
 from stiffmbs.solve.native.calls import int32
 from stiffmbs.solve.native.dynamics import to_accelerations
-from stiffmbs.solve.native.error_estimate import UNTRUSTED, trusted_error
 from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
     event_search_view,
@@ -18,8 +16,10 @@ from stiffmbs.solve.native.event_search.bounds import (
 )
 from stiffmbs.solve.native.event_search.nearby import note_zones
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
-from stiffmbs.solve.native.interpolant import interpolated, prepare
-from stiffmbs.solve.native.stages import copied, load_state, weighted
+from stiffmbs.solve.native.explicit.attempt import arrive, attempt
+from stiffmbs.solve.native.explicit.error_estimate import UNTRUSTED, trusted_error
+from stiffmbs.solve.native.explicit.interpolant import interpolated, prepare
+from stiffmbs.solve.native.explicit.stages import copied, load_state, weighted
 from stiffmbs.solve.native.tables.views import dynamics_view, explicit_view, scheme_view
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15

@@ -12,7 +12,7 @@ IDA = Layout({
 note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
 
 SCHEME = Layout({
-    "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
+    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
     "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 })  # fmt: skip
@@ -29,11 +29,11 @@ states, of `width` numbers, at the nodes.  Cells: times the usual step beyond wh
 is the mean; rows there is room for (0 where none is kept), rows kept, the usual step."""
 
 EXPLICIT = Layout({
-    "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT,
+    "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
     "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
-    "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
+    "started": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
     "long_steps": INTS,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
@@ -41,7 +41,8 @@ EXPLICIT = Layout({
 })  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
 event functions' values there, the stages k, one over the tolerance of each number in the last step tried, the counters, the
-output times (none: every step), and memory for the rows and ends of steps that one call stores."""
+output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
+`started` is 0: the state, its accelerations in the last stage, and `lam` are consistent values then."""
 
 NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.solve.native.stages import add_stages, copied, take_stage
+from stiffmbs.solve.native.explicit.stages import add_stages, copied, take_stage
 from stiffmbs.solve.native.statuses import NOT_FINITE_WITHIN
 
 ASTRAY = 100.0

@@ -7,7 +7,7 @@ from math import sqrt
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.solve.native.event_search.bounds import event_search_view, noted, zone
-from stiffmbs.solve.native.stages import add_stages, load_state
+from stiffmbs.solve.native.explicit.stages import add_stages, load_state
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 UNTRUSTED = 1e3

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.solve.native.explicit.stages import copied, keep_algebraic, load_state, rates, take_stage, weighted
 from stiffmbs.solve.native.projection import back_to_constraints
-from stiffmbs.solve.native.stages import copied, keep_algebraic, load_state, rates, take_stage, weighted
 from stiffmbs.solve.native.statuses import NOT_FINITE
 
 

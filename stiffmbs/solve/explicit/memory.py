@@ -1,0 +1,70 @@
+"""The memory of explicit integrations, laid out for compiled code: one run of a job after the other works on it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.machine.layout import packed
+from ..dynamics import POSITION_TOLERANCE, Dynamics
+from ..native.tables.steps import EXPLICIT
+from .routines import END_AT_EVENT
+from .scheme import Scheme
+
+MOST_STEPS, MOST_VALUES = 1024, 300_000
+"""Of one call of compiled code: steps, and numbers in the rows that it stores, so that it returns soon."""
+WATCH, STEP_BOUND, LONG_STEPS = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "long_steps"))
+"""Columns of the table for what each run sets up by itself."""
+
+
+class StepMemory:
+    """Arrays of explicit steps by one scheme with so many output times, and their table.
+
+    Parameters
+    ----------
+    scheme : Scheme
+    dynamics : Dynamics
+    n_times : int
+        Output times; 0 for rows after each step.
+
+    Attributes
+    ----------
+    capacity : int
+        Most steps, and most rows, of one call.
+    y, end_rates, lam : ndarrays, shapes (n_q + n_u,), (n_q + n_u,), (n_c,)
+        The state reached, its rates, and multipliers at a start.
+    atol, times : ndarrays, shapes (n_q + n_u,), (n_times,)
+    row_t, row_y, ends : ndarrays, shapes (capacity,), (capacity, n_q + n_u), (capacity,)
+    table : ndarray of int
+        Addresses and cells (`stiffmbs.solve.native.tables.steps.EXPLICIT`).
+    cells : record
+        The table's cells by name.
+    """
+
+    def __init__(self, scheme: Scheme, dynamics: Dynamics, n_times: int) -> None:
+        system, eliminated = dynamics.system, dynamics.eliminated
+        n, events = system.n_q + system.n_u, system.n_event_functions
+        self.capacity = capacity = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
+        self.y, self.lam, self.atol, self.times = np.zeros(n), np.zeros(system.n_c), np.zeros(n), np.zeros(n_times)
+        self.row_t, self.row_y, self.ends = np.empty(capacity), np.empty((capacity, n)), np.empty(capacity)
+        stages = np.zeros((scheme.extended, n))
+        self.end_rates = stages[scheme.stages]
+        searched = system.n_values("event_function") > 0
+        nothing = np.zeros(1, dtype=np.int64)
+        self._arrays = {
+            "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
+            "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
+            "tolerance": POSITION_TOLERANCE, "atol": self.atol,
+            "n_event_functions": events, "end_at_event": END_AT_EVENT.address if searched else 0, "signs": np.zeros(events),
+            "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
+            "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
+            "n_times": n_times, "times": self.times,
+            "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
+            "watch": nothing, "step_bound": nothing, "long_steps": nothing,
+        }  # fmt: skip
+        self.table = packed(EXPLICIT, self._arrays)
+        self.cells, self._new = self.table.view(EXPLICIT.cells)[0], self.table.copy()
+
+    def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
+        """Begin a run: cells as they are when new, and the addresses of tables that the run has set up."""
+        self.table[:] = self._new
+        self.table[[WATCH, STEP_BOUND, LONG_STEPS]] = watch, step_bound, long_steps

@@ -1,0 +1,1 @@
+"""Parts of explicit Runge-Kutta steps: their start, stages, error, end and interpolant."""

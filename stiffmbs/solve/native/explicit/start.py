@@ -1,0 +1,69 @@
+"""The start of explicit steps from consistent values: rates and event functions there, and the length of the first step."""
+
+from __future__ import annotations
+
+from math import isfinite, sqrt
+
+from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
+from stiffmbs.compile.machine.native.orientation import add_rates
+from stiffmbs.solve.native.explicit.stages import add_rates_behind, copied, load_state, rates
+
+NO_RATE, SHORT, LONGER_AT_REST, LONGEST_FACTOR = 1e-15, 1e-6, 1e-3, 100.0
+"""Rates below which nothing bounds the step, the length tried where rates tell nothing of one, s, the part of a tried length that is
+taken then at the least, and how many times longer than the tried length a step may be."""
+SMALL = 1e-5
+"""Sizes, in tolerances, below which states and rates tell nothing of a length."""
+PART = 0.01
+"""Of the state that the first explicit Euler step changes, and what the highest order term may come to, in tolerances."""
+
+
+@compiled
+def start_steps(x, c, s, m):
+    """The rates q' at the state y in the last stage, beside the accelerations there, and the values of event functions."""
+    load_state(s, x.y)
+    copied(s.lam, x.lam, s.n_c)
+    k = shifted(x.k, c.stages * x.n)
+    for i in range(s.n_q):
+        k[i] = 0.0
+    add_rates(s, s.u, 1.0, k)
+    if m.n_behind > 0:
+        evaluate(s, ACCELERATION, x.t)
+        add_rates_behind(s, m, 1.0, k)
+    if x.n_event_functions > 0:
+        copied(x.signs, evaluate(s, SWITCH, x.t), x.n_event_functions)
+    x.started = 1
+
+
+@compiled
+def _size(x, values):
+    """The root mean square of numbers like those of a state, in tolerances."""
+    total = 0.0
+    for i in range(x.n):
+        ratio = values[i] * x.weight[i]
+        total += ratio * ratio
+    return sqrt(total / max(x.n, 1))
+
+
+@compiled
+def first_step(x, c, s, m, end):
+    """A first step whose error will be small, s (Hairer, Norsett, Wanner I, ch. II.4, "starting step size")."""
+    rate = shifted(x.k, c.stages * x.n)
+    for i in range(x.n):
+        x.weight[i] = 1.0 / (x.atol[i] + x.rtol * abs(x.y[i]))
+    of_state = _size(x, x.y)
+    of_rate = _size(x, rate)
+    h = PART * of_state / of_rate if min(of_state, of_rate) > SMALL and isfinite(of_rate) else SHORT
+    for i in range(x.n):
+        x.y_stage[i] = x.y[i] + h * rate[i]
+    load_state(s, x.y_stage)
+    if rates(x, s, m, 1, x.t + h) < 0:
+        return h
+    later = shifted(x.k, x.n)
+    for i in range(x.n):
+        x.difference[i] = later[i] - rate[i]
+    largest = max(of_rate, _size(x, x.difference) / h)
+    if not isfinite(largest):
+        return h
+    longer = (PART / largest) ** (1.0 / c.order) if largest > NO_RATE else max(SHORT, LONGER_AT_REST * h)
+    return min(min(LONGEST_FACTOR * h, longer), end - x.t)
