@@ -110,12 +110,23 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-12, atol=1e-12, err_msg=name)
 
 
-LONG_LOOKS = ("elements_in_space", "chain_scaling", "stiffness", "half_car_study", "bushing_fit", "car")
+LONG_LOOKS = (
+    "elements_in_space",
+    "chain_scaling",
+    "stiffness",
+    "half_car_study",
+    "bushing_fit",
+    "car",
+    "car_choice",
+    "car_events",
+)
 BEYOND_THE_SOLVER = {"bushing_fit": 0.1}  # noise of the measured curves
 WITHOUT_YARDSTICK = (
     "linear_algebra",
     "bushing_fit",
     "car",
+    "car_choice",
+    "car_events",
     "chain_in_space",
     "elements_in_space",
     "trees_in_space",
