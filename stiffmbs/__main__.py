@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 from .interrupts import QuickEnd, collect_from_now_on
@@ -10,6 +11,8 @@ from .interrupts import QuickEnd, collect_from_now_on
 def start() -> None:
     """The command ``stiffmbs``; also where there is too little memory to load it."""
     end = QuickEnd.of_the_command()
+    # pydantic would look for plugins among all installed packages: 10 to 20 ms, and none is of use here
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         from .commands.main import main
     except (MemoryError, ImportError, OSError) as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import sys
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -19,6 +20,14 @@ def machine() -> dict[str, Any]:
         "python": platform.python_version(),
         **{package: found for package in PACKAGES if (found := _version(package))},
     }
+
+
+def largest_memory() -> float:
+    """The most memory that this process has had so far, MB."""
+    import resource  # which Windows does not have
+
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most / (2**20 if sys.platform == "darwin" else 2**10)
 
 
 def _processor() -> str:

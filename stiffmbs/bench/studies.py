@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -16,6 +15,7 @@ from ..solve.missing_rows import reported
 from ..studies.case_solver import CaseSolver
 from ..studies.sweep import Study, study_of
 from .benchmark import Row
+from .machine import largest_memory
 
 WAYS = ("1 thread", "2 threads", "2 processes")
 
@@ -54,7 +54,7 @@ class StudyRuns:
     def _rows(self, varied: Mapping[str, Any], rounds: int) -> list[Row]:
         study = study_of(self.scene(), {}, None, 0, [self.output], varied)
         expected = study.solve()[self.output].values
-        before = _memory()
+        before = largest_memory()
         off, bare, evaluated, alone = 0.0, [], [], []
         clock: dict[str, list[float]] = {name: [] for name in WAYS}
         with ProcessPoolExecutor(2, get_context("spawn")) as processes:
@@ -83,16 +83,8 @@ class StudyRuns:
                 Row("study", f"{way}, by the clock; {gains[way]:.2f} times as fast as one", off, spent, False)
                 for way, spent in best.items()
             ),
-            Row("memory", f"{_memory() - before:.0f} MB more after {(2 * rounds) * len(study.cases)} cases", 0.0, sum(alone), False),
+            Row("memory", f"{largest_memory() - before:.0f} MB more after {(2 * rounds) * len(study.cases)} cases", 0.0, sum(alone), False),
         ]  # fmt: skip
-
-
-def _memory() -> float:
-    """The most memory that this process has had so far, MB."""
-    import resource  # which Windows does not have
-
-    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return most / (2**20 if sys.platform == "darwin" else 2**10)
 
 
 def _bare(study: Study) -> tuple[float, float]:

@@ -257,15 +257,15 @@ class System:
         return np.arange(self.of_body.linear, self.of_body.n_q * len(self.bodies) if flat else 0, self.of_body.n_q)
 
     @cached_property
-    def _terms(self) -> dict[tuple[str, str], Term]:
-        """Those asked for so far."""
+    def known_terms(self) -> dict[tuple[str, str], Term]:
+        """Those asked for so far.  A set-up asks for them again and again, a run for few; those of a car take 0.8 MB."""
         return {}
 
     def term(self, term_set: str, name: str) -> Term:
         """The entries of a term in a set, those of the ground left out."""
-        if (term_set, name) not in self._terms:
-            self._terms[term_set, name] = self._term(term_set, name)
-        return self._terms[term_set, name]
+        if (term_set, name) not in self.known_terms:
+            self.known_terms[term_set, name] = self._term(term_set, name)
+        return self.known_terms[term_set, name]
 
     def _term(self, term_set: str, name: str) -> Term:
         k = TERM_SETS[term_set].index(name)

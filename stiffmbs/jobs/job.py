@@ -124,6 +124,7 @@ def prepare(
     with told_faults(dynamics.system):
         start = _start(found.data, dynamics, found.grid.start, found.start_from)
         subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+    dynamics.system.known_terms.clear()
     return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
 
 

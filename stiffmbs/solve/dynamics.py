@@ -155,6 +155,7 @@ class Dynamics:
         key = (settings, self.coordinates)
         if name not in self._kept or self._kept[name][0] != key:
             self._kept[name] = (key, make())
+            self.system.known_terms.clear()
         return cast(T, self._kept[name][1])
 
     def forget_pivots(self) -> None:

@@ -39,6 +39,7 @@ def dataset(points, sort="OPEN", first=None):
     return BEAD.format(start=", ".join(map(repr, map(float, start))), sort=sort, m=len(points), values=values)
 
 
+@pytest.mark.long
 def test_a_bead_slides_along_an_open_wire():
     points = np.column_stack([X, 0 * X, Z])
     found = stiffmbs.run(read_adams(dataset(points, first=points[2])), duration=0.5, points=26, rtol=1e-10)

@@ -392,12 +392,13 @@ END
     np.testing.assert_allclose(solution["PART_3.x"], exact[0], atol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "function",
     [
         "DM(20,11)-2-0.1*SIN(5*TIME)",
-        pytest.param("DM(20,11)-2.0+0*TIME", marks=pytest.mark.long),
-        pytest.param("DM(20,11)**2-4", marks=pytest.mark.long),
+        "DM(20,11)-2.0+0*TIME",
+        "DM(20,11)**2-4",
     ],
 )
 def test_a_general_constraint_acts_on_its_marker(function):

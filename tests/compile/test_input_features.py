@@ -9,6 +9,7 @@ from scipy.integrate import quad
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 import stiffmbs
+from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
@@ -35,6 +36,20 @@ def scene(force, **tables):
         "forces": {"f": {"type": "force", "i": "b", "force": [force, 0]}},
     }
     return stiffmbs.read_scene(json.dumps(found | ({"tables": tables} if tables else {})))
+
+
+def test_features_of_an_input_are_those_of_what_it_says():
+    """They are sought once for scenes that say the same, and anew for another number, span or table under the same name."""
+
+    def found(force, end=10.0, **tables):
+        return input_features(compile_model(scene(force, **tables)), 0.0, end)
+
+    assert found("step(t, 3, 0, 4, 1)") is found("step(t, 3, 0, 4, 1)")
+    assert found("max(t - 3, 0)").breakpoints == pytest.approx([3])
+    assert found("max(t - 5, 0)").breakpoints == pytest.approx([5])
+    assert not len(found("max(t - 5, 0)", end=4.0).breakpoints)
+    for middle in (3.0, 5.0):
+        assert middle in found("law(t)", law={"table": [[0, 0], [middle, 1], [10, 0]], "lines": True}).breakpoints
 
 
 def driven(position):

@@ -178,7 +178,13 @@ def test_counters_have_the_rates_of_their_angles(state):
     assert np.any(turning)
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS.values(), ids=FORMULATIONS.keys())
+@pytest.mark.parametrize(
+    "formulation",
+    [
+        pytest.param(formulation, marks=pytest.mark.long if name == "index1" else (), id=name)  # by kernels of its own
+        for name, formulation in FORMULATIONS.items()
+    ],
+)
 def test_iteration_matrix_of_every_formulation(state, formulation):
     """dr/dy + cj dr/dy' of the whole residual, slot by slot."""
     from stiffmbs.solve.ida.sundae import Callbacks

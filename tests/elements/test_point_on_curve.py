@@ -44,7 +44,13 @@ ECCENTRIC = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("curve", "accuracy"), ECCENTRIC.values(), ids=ECCENTRIC.keys())
+@pytest.mark.parametrize(
+    ("curve", "accuracy"),
+    [
+        pytest.param(*case, marks=pytest.mark.long if name == "table" else (), id=name)
+        for name, case in ECCENTRIC.items()
+    ],
+)
 def test_follower_on_an_eccentric_cam_through_several_turns(curve, accuracy):
     """A round cam on an eccentric shaft is a crank of E with a rod of R: the follower's way and the cam's push."""
     mass = 0.5

@@ -165,6 +165,7 @@ def test_a_torque_about_an_axis_of_the_body_spins_it_up():
     np.testing.assert_allclose(solution["motor.tz"], 2 * solution.time, atol=1e-8)
 
 
+@pytest.mark.long
 def test_a_force_by_formula_is_the_spring_damper():
     law = {"stiffness": 20, "damping": 2, "free_length": 0.5}
     springs = {

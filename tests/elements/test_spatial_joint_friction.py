@@ -80,7 +80,9 @@ def test_a_body_stays_where_friction_holds_it():
     assert along_axis(run(model, 0.5))[-1] == pytest.approx(1e-3 * np.arctanh(3 / 5), rel=1e-6)
 
 
-@pytest.mark.parametrize("joint", ["revolute", "cylindrical", "prismatic", "spherical"])
+@pytest.mark.parametrize(
+    "joint", ["revolute", pytest.param("cylindrical", marks=pytest.mark.long), "prismatic", "spherical"]
+)
 def test_derivatives_by_position_velocity_and_reaction(joint):
     rng = np.random.default_rng(5)
     model = three_bodies_in_space(rng)

@@ -143,6 +143,7 @@ def test_a_top_that_spins_too_slowly_falls():
     assert not all(mode.is_stable for mode in found.modes)
 
 
+@pytest.mark.long
 def test_a_free_beam_has_six_rigid_modes_and_bends_as_euler_says():
     """20 pieces of a free-free beam: bending within 1 % of (4.73004/L)^2 sqrt(EI/(rho A))."""
     count, length, side = 20, 1.0, 0.02

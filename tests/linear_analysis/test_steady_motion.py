@@ -77,7 +77,7 @@ def test_a_car_on_a_circle_rolls_outwards():
     assert speed == pytest.approx(rate * outwards, rel=1e-12)
 
 
-@pytest.mark.parametrize("rate", [0.5, 1.0])
+@pytest.mark.parametrize("rate", [0.5, pytest.param(1.0, marks=pytest.mark.long)])
 def test_a_disc_rolls_on_a_circle(rate):
     """Its lean and spin follow from rolling; it falls over by statics and stays up by its spin, as a run from there does."""
     text = (EXAMPLES / "rolling_disc.yaml").read_text().replace("position: [0, 0, R", "position: [0, -2, R")

@@ -39,6 +39,7 @@ def test_symmetric_top_against_its_reduced_equation(start):
         np.testing.assert_allclose(found, expected, atol=1e-10)
 
 
+@pytest.mark.long
 def test_symmetric_top_against_three_hinges():
     """A gimbal of massless rings in minimal coordinates."""
     t = np.linspace(0, 2, 21)
@@ -53,7 +54,14 @@ def test_symmetric_top_against_three_hinges():
     np.testing.assert_allclose(energies(links, q, u), energies(links, q, u)[0], rtol=1e-11)
 
 
-@pytest.mark.parametrize("omega", [(0.05, 4.0, 0.02), (0.02, -4.0, 0.3), (1.0, 0.5, -3.0), (-3.0, 0.2, 0.1)])
+@pytest.mark.parametrize(
+    "omega",
+    [
+        (0.05, 4.0, 0.02),
+        (1.0, 0.5, -3.0),
+        *(pytest.param(o, marks=pytest.mark.long) for o in ((0.02, -4.0, 0.3), (-3.0, 0.2, 0.1))),
+    ],
+)
 def test_free_body_against_euler_equations(omega):
     J = np.array([0.1, 0.2, 0.3])
 

@@ -123,10 +123,17 @@ run: {duration: 1.5, output: 10 ms, rtol: 1e-8}
 """
 
 
-@pytest.mark.parametrize("filtered", ["", pytest.param("filter_radius: 300 mm", marks=pytest.mark.long)])
-def test_a_mass_slides_along_a_curved_road(tmp_path, filtered):
+@pytest.mark.parametrize(
+    ("bend", "filtered"),
+    [
+        (0.0, ""),
+        pytest.param(BEND, "", marks=pytest.mark.long),
+        pytest.param(BEND, "filter_radius: 300 mm", marks=pytest.mark.long),
+    ],
+)
+def test_a_mass_slides_along_a_road(tmp_path, bend, filtered):
     """Two integrators with nothing in common find the same motion, one of them with all derivatives of the road."""
-    written(tmp_path / "road.crg")
+    written(tmp_path / "road.crg", bend=bend)
     (tmp_path / "scene.yaml").write_text(SCENE.replace("FILTER", filtered or "friction: 1"))
     found = [run(load_scene(tmp_path / "scene.yaml", [("run.solver", s)])) for s in ("bdf", "projected")]
     assert all(each.success for each in found)

@@ -87,7 +87,7 @@ def test_lengths_of_the_magic_formula():
     "tyre",
     [
         FialaTyre(i="wheel", **FIALA, relaxation=LENGTHS),
-        MagicFormulaTyre(i="wheel", properties={"coefficients": SMALL}),
+        pytest.param(MagicFormulaTyre(i="wheel", properties={"coefficients": SMALL}), marks=pytest.mark.long),
     ],
     ids=["fiala", "magic formula"],
 )

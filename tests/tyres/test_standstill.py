@@ -71,7 +71,9 @@ def standing(tyre, camber=0.0, gravity=(0, 0, -9.81)):
     return model
 
 
-@pytest.mark.parametrize("name", TYRES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long if name == "lagging magic" else ()) for name in TYRES]
+)
 def test_sideways_motion_beside_a_standstill(name):
     """Without lengths a damper 2 C/slow, with lengths a spring C/sigma with 0.02 s of damping; slow is 1 m/s."""
     _, stiffness, _, length = stiffnesses(name)
@@ -112,7 +114,8 @@ def test_a_cambered_wheel_that_rolls_has_its_thrust():
     assert found["lateral"] < -100
 
 
-@pytest.mark.parametrize("name", ["lagging fiala", pytest.param("lagging magic", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["lagging fiala", "lagging magic"])
 def test_a_blocked_wheel_is_in_equilibrium_on_a_slope_and_does_not_creep(name):
     model = standing(TYRES[name], camber=0.03, gravity=(1.5, 0.4, -9.7))
     model.add("blocked", Drive(joint="pin", velocity="0"))

@@ -7,15 +7,15 @@ that no feature hides between samples.  A step may not be longer than a few of t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from ..system import System
 from .breakpoints import breakpoint_times
-from .of_time import inputs_of
+from .of_time import Input, inputs_of
 from .pieces import Bounds, InputPieces
 
 PIECES_OF_A_STEP = 7.0
@@ -95,6 +95,8 @@ class InputFeatures:
 
 INSTANTS = 8
 """Instants that show a narrow feature."""
+REMEMBERED = 16
+"""Scenes whose features are kept."""
 NO_FEATURES = InputFeatures()
 """Of a system without formulas and tables of time."""
 
@@ -107,7 +109,22 @@ def input_features(system: System, start: float, end: float) -> InputFeatures:
     InputError
         When an input has too many breakpoints.
     """
-    inputs = inputs_of(system)
+    inputs = tuple(inputs_of(system))
+    return _features(_Inputs(tuple((given.text, given.says) for given in inputs), inputs), start, end)
+
+
+@dataclass(frozen=True)
+class _Inputs:
+    """Inputs, which are equal where they say the same."""
+
+    say: tuple[Hashable, ...]
+    each: tuple[Input, ...] = field(compare=False)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _features(given: _Inputs, start: float, end: float) -> InputFeatures:
+    """Runs with other numbers elsewhere, and reruns, have the same inputs."""
+    inputs = given.each
     breakpoints = breakpoint_times(inputs, start, end)
     pieces = [InputPieces(each, np.concatenate([[start], breakpoints, [end]])) for each in inputs]
     bounds = [each.bounds() for each in pieces]

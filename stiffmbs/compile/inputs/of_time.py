@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, get_args
 
 import numpy as np
@@ -46,6 +47,12 @@ class Input:
     text: str
     values: Mapping[str, float]
     tables: Mapping[str, TableRanges]
+
+    @cached_property
+    def says(self) -> tuple[Hashable, ...]:
+        """What it says: inputs that say the same are the same.  A table is told by its object, which lives as long as the input."""
+        tables = tuple((name, id(ranges.table)) for name, ranges in sorted(self.tables.items()))
+        return _written(self.tree), tuple(sorted(self.values.items())), tables
 
     def at(self, t: np.ndarray, part: ast.expr | None = None) -> np.ndarray:
         """The values of the expression, or of a part of it, at many instants, shape (n,)."""
@@ -127,7 +134,7 @@ def _number(value: Any) -> Any:
 
 def inputs_of(system: System) -> list[Input]:
     """The inputs over time of all elements, each expression once."""
-    found: dict[tuple[object, ...], Input] = {}
+    found: dict[Hashable, Input] = {}
     known: dict[int, TableRanges] = {}
 
     def ranges_of(table: Table) -> TableRanges:
@@ -136,15 +143,20 @@ def inputs_of(system: System) -> list[Input]:
     for group in system.groups:
         for element in group.elements if group.has_inputs else ():
             for written, text, values, tables in _expressions(element):
-                tree = _WithoutRoots().visit(copy.deepcopy(written))
-                key = (
-                    ast.dump(tree),
-                    tuple(sorted(values.items())),
-                    tuple((n, id(t)) for n, t in sorted(tables.items())),
-                )
-                if key not in found:
-                    found[key] = Input(tree, text, values, {name: ranges_of(table) for name, table in tables.items()})
+                ranges = {name: ranges_of(table) for name, table in tables.items()}
+                given = Input(_without_roots(written), text, values, ranges)
+                found.setdefault(given.says, given)
     return list(found.values())
+
+
+def _without_roots(tree: ast.expr) -> ast.expr:
+    """The expression with roots of squares as absolute values; itself where it has no roots."""
+    has_roots = any(
+        (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "sqrt")
+        or isinstance(node, ast.Pow)
+        for node in ast.walk(tree)
+    )
+    return _WithoutRoots().visit(copy.deepcopy(tree)) if has_roots else tree
 
 
 class _WithoutRoots(ast.NodeTransformer):

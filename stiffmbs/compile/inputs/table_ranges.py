@@ -22,6 +22,7 @@ class TableRanges:
 
     Attributes
     ----------
+    table : Table
     breakpoints : ndarray
         Arguments at which it has breakpoints, those of one period if it is periodic.
     period : float
@@ -29,6 +30,7 @@ class TableRanges:
     """
 
     def __init__(self, table: Table) -> None:
+        self.table = table
         self._values = curve(table)
         _, self._x, self._pieces = parts_of(table)
         self._smooth = 1 if table.lines else 2 if table.akima else 3

@@ -45,9 +45,14 @@ class Libraries:
 
     def __getattr__(self, name: str) -> Any:
         function = self._found(name)
-        function.restype, function.argtypes = declared(self.index)[name]
+        function.restype, function.argtypes = self._declared[name]
         object.__setattr__(self, name, function)
         return function
+
+    @cached_property
+    def _declared(self) -> dict[str, tuple[Any, list[Any]]]:
+        """What the headers say of all functions."""
+        return declared(self.index)
 
     def _found(self, name: str) -> Any:
         if name.startswith("__"):
@@ -59,9 +64,16 @@ class Libraries:
 
     def address(self, name: str) -> int:
         """A function's address, for compiled code."""
-        address = ctypes.cast(self._found(name), ctypes.c_void_p).value
-        assert address is not None
-        return address
+        if name not in self._addresses:
+            address = ctypes.cast(self._found(name), ctypes.c_void_p).value
+            assert address is not None
+            self._addresses[name] = address
+        return self._addresses[name]
+
+    @cached_property
+    def _addresses(self) -> dict[str, int]:
+        """Those asked for so far."""
+        return {}
 
     @cached_property
     def _with_threads(self) -> ctypes.PyDLL | None:

@@ -8,9 +8,6 @@ import numpy as np
 
 from .elimination_order import EliminationOrder
 
-FILL_MARGIN = 2
-"""Times the fill without pivoting that the factors are given at first, for pivots that leave the diagonal."""
-
 
 def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:
     """What the layout `stiffmbs.compile.machine.native.tables.FACTORS` asks for.
@@ -25,9 +22,9 @@ def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: Elimination
         Of the columns, and how much is filled.
     """
     return {
-        "n": n, "expected_entries": FILL_MARGIN * order.fill + n,
-        "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64),
-        "a_row": rows.astype(np.int64), "a": np.zeros(len(rows)), "factored": np.zeros(len(rows)), "scale": np.ones(n), "order": order.unknowns,
+        "n": n, "expected_entries": order.fill + n,
+        "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64, copy=False),
+        "a_row": np.ascontiguousarray(rows, dtype=np.int64), "a": np.zeros(len(rows)), "factored": np.zeros(len(rows)), "scale": np.ones(n), "order": order.unknowns,
         "l_start": _ints(n + 1), "u_start": _ints(n + 1), "pivot": _ints(n), "stack": _ints(4 * n),
         **{name: np.zeros(n) for name in ("work", "b", "previous", "x")},
     }  # fmt: skip

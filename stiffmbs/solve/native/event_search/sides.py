@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, state
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.dynamics import to_accelerations
-from stiffmbs.solve.native.stages import copied
+from stiffmbs.solve.native.explicit.stages import copied
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 
