@@ -32,7 +32,7 @@ QUICK = r"\$ stiffmbs (run|check|equilibrium|modes|response) "
 PLOT = ".. plot::\n"
 OPTION = r"(?m)^ +:[a-z-]+:.*\n"
 NUMBER = r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?"
-LONG = ("around_a_state", "kinematics_and_compliance", "studies", "tyres_and_roads")
+LONG = ("around_a_state", "compare", "kinematics_and_compliance", "studies", "tyres_and_roads")
 """Pages whose scenes take seconds to compile."""
 FRAME = "[\u2500-\u257f]+"
 """Lines of tables, as long as their numbers."""

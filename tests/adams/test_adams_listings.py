@@ -126,6 +126,7 @@ def test_the_listing_of_the_torsion_spring_is_of_other_numbers():
     np.testing.assert_allclose(200 * angle + 10 * rate[:, 1], torque[:, 1], atol=2e-3)
 
 
+@pytest.mark.long
 def test_the_spring_between_points_has_no_listing_but_keeps_its_balance():
     """TransSpring_Case01: 100 N/m, 2 m, 1 N s/m on 1 kg, in the plane y, z: against its two coordinates."""
     from scipy.integrate import solve_ivp

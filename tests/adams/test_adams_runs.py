@@ -358,6 +358,7 @@ def test_the_joint_holds_before_assembly_moves_parts():
     assert any("assembly changed PART_2.x by -0.001 m" in note for note in solution.notes)
 
 
+@pytest.mark.long
 def test_a_motion_and_a_force_by_splines_in_millimetres():
     """A slider led by a cubic spline of time; a second one pushed by Akima's curve of the distance between both."""
     from scipy.interpolate import Akima1DInterpolator, CubicSpline

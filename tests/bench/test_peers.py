@@ -187,6 +187,7 @@ def test_exact_velocities_and_reactions_of_the_cart_pendulum():
     np.testing.assert_allclose(exact.lam[500, 0], -107.1068184413, atol=1e-8)
 
 
+@pytest.mark.long
 def test_stiffness_is_measured_at_both_ends():
     rows = OverStiffness((1e4, 1e5)).glanced()
     assert [(row.solver, row.setting) for row in rows] == [

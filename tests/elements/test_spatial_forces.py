@@ -231,6 +231,7 @@ def test_a_bushing_swings_about_one_axis_by_its_linear_law_past_half_a_turn(axis
     np.testing.assert_allclose(solution["energy.potential"], stiffness[k] * swing**2 / 2, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_wheel_in_a_bushing_without_stiffness_about_its_axis_spins_on():
     """Ten turns; the axle swings by the linear equations of a gyroscope, damped by its angular velocity across z."""
     spin, k, c = 30.0, 8.0, 0.4

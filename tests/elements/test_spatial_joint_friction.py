@@ -59,6 +59,7 @@ def test_a_guide_is_pressed_by_force_moment_and_torsion():
     np.testing.assert_allclose(along_axis(solution), 3 - 0.1 * pressure / 2 * solution.time, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_sleeve_rubs_against_the_velocity_of_its_surface():
     """The direction of sliding (v, R w) stays where mass and I/R^2 are as large as each other; the friction is mu N."""
     R = np.sqrt(0.06 / 2)
@@ -81,7 +82,8 @@ def test_a_body_stays_where_friction_holds_it():
 
 
 @pytest.mark.parametrize(
-    "joint", ["revolute", pytest.param("cylindrical", marks=pytest.mark.long), "prismatic", "spherical"]
+    "joint",
+    ["revolute", *(pytest.param(each, marks=pytest.mark.long) for each in ("cylindrical", "prismatic")), "spherical"],
 )
 def test_derivatives_by_position_velocity_and_reaction(joint):
     rng = np.random.default_rng(5)

@@ -94,7 +94,7 @@ def runs():
             path, {} if kinematic else BDF, id=f"{path.stem}-{'kinematic' if kinematic else 'bdf'}", marks=long
         )
         if not kinematic and path.stem not in STIFF:
-            yield pytest.param(path, DOP853, id=f"{path.stem}-dop853")
+            yield pytest.param(path, DOP853, id=f"{path.stem}-dop853", marks=long)
 
 
 @pytest.mark.parametrize(("path", "settings"), list(runs()))

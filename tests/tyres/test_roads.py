@@ -53,6 +53,7 @@ def test_on_a_slope_the_load_is_along_the_normal():
     )
 
 
+@pytest.mark.long
 def test_a_table_over_x_and_tables_for_two_tracks():
     assert load_at(TableRoad(profile=PROFILE), 1.0, deflection=0.03) == pytest.approx(K * 0.05, rel=0.02)
     raised = Table(table=[(0, 0.01), (3, 0.01)])

@@ -137,6 +137,7 @@ class ScaledTable(TableRoad):
         return r.scale * r.profile(x)
 
 
+@pytest.mark.long
 def test_a_filtered_road_of_the_users_own_keeps_its_other_fields():
     sizes = {"start": 0.1, "length": 0.001, "rise": 0.05, "filter_radius": RADIUS}
     plain, shifted = (

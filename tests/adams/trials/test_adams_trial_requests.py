@@ -239,6 +239,7 @@ REQUEST/4, DISPLACEMENT, I=9
 """
 
 
+@pytest.mark.long
 def test_what_floats_is_where_i_is_and_what_cannot_be_asked_is_left_out(tmp_path):
     """The reaction at a floating marker is the force turned round; a marker that is left out is ground."""
     solution = played(tmp_path, "", 0.2, head=ODD)
