@@ -53,9 +53,12 @@ def test_on_a_slope_the_load_is_along_the_normal():
     )
 
 
-@pytest.mark.long
-def test_a_table_over_x_and_tables_for_two_tracks():
+def test_a_table_over_x():
     assert load_at(TableRoad(profile=PROFILE), 1.0, deflection=0.03) == pytest.approx(K * 0.05, rel=0.02)
+
+
+@pytest.mark.long
+def test_tables_for_two_tracks():
     raised = Table(table=[(0, 0.01), (3, 0.01)])
     road = TableRoad(left=raised, right=Table(table=[(0, 0), (3, 0)]), track=1.6)
     for y, height in ((0.8, 0.01), (1.2, 0.01), (-0.8, 0.0), (-2.0, 0.0)):
