@@ -205,15 +205,13 @@ class _Shared:
         assert self._implicit is not None
         effort = self._effort()
         taken, way = effort.steps - self._before.steps, reached.t - self._pace.t
-        if self._is_breakpoint(reached.t):
-            return True
-        if self._short:
+        if self._short and not self._is_breakpoint(reached.t):
             self._short = False
             self._implicit.engine.pause_after(FAIR_TRIAL)
             if not self._promises(effort, taken):
                 self._trial = cost.START + effort.cost - self._before.cost
                 return False
-        if taken < FAIR_TRIAL:
+        if taken < FAIR_TRIAL or self._is_breakpoint(reached.t):
             return True
         spent, explicit = effort.cost - self._before.cost, way * self._explicit_cost
         self._pace, self._before = _Pace(reached.t), effort

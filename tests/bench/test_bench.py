@@ -113,6 +113,7 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
 
 LONG_LOOKS = (
     "elements_in_space", "chain_scaling", "stiffness", "stepping", "half_car_gradient", "half_car_study", "bushing_fit", "car",
+    "car_choice", "car_events",
     "car_jobs",
 )  # fmt: skip
 BEYOND_THE_SOLVER = {"bushing_fit": 0.1}  # noise of the measured curves
@@ -120,6 +121,8 @@ WITHOUT_YARDSTICK = (
     "linear_algebra",
     "bushing_fit",
     "car",
+    "car_choice",
+    "car_events",
     "car_jobs",
     "chain_in_space",
     "elements_in_space",

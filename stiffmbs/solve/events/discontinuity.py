@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
+from ...compile.machine.layout import address, addresses
+from ...compile.machine.routines import together
 from ..dynamics import Dynamics
+
+SWITCHES, SIDE = together(
+    "stiffmbs.solve.native.event_search.sides",
+    switches="void(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
+    side="int64(float64, float64, float64, float64*, float64*, float64*, float64*, float64*, int64, float64*, float64*, float64*, int64*)",
+)
 
 LARGER_MOVE, SMALLER_MOVE = 1e-6, 1e-9
 """Sizes of moves, relative to the state and at least of 1 m, rad, m/s, rad/s, that take the state to both sides."""
@@ -29,6 +36,69 @@ class _Side:
     rates: np.ndarray
 
 
+class _Beside:
+    """States beside the one that is looked at.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+        Its state becomes the one that was looked at last.
+    t : float
+        s.
+    q, u : ndarrays, shapes (n_q,), (n_u,)
+    """
+
+    def __init__(self, dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        dynamics.state.load("event_function")
+        self._dynamics, self.t, self.q, self.u = dynamics, t, q, u
+        self._direction = dynamics.kept("direction beside a state", None, lambda: _direction(len(q), len(u)))
+        self._count = dynamics.system.n_event_functions
+        self._there = np.empty(len(q))
+        self._kept = np.ascontiguousarray(q, dtype=float), np.ascontiguousarray(u, dtype=float)
+        self._at = addresses(*self._kept, *self._direction)
+        self._table = dynamics.table.ctypes.data
+
+    def values(self, size: float) -> np.ndarray:
+        """The event functions after a move of a size."""
+        found = np.empty(self._count)
+        SWITCHES.short_call(self.t, size, *self._at, self._count, address(found), self._table)
+        return found
+
+    def side(self, size: float) -> _Side:
+        """All that is to be seen after a move of a size."""
+        values, rates, acceleration = np.empty(self._count), np.full(self._count, np.nan), np.full(len(self.u), np.nan)
+        SIDE.short_call(
+            self.t, size, RATE_INTERVAL, *self._at, address(self._there), self._count,
+            *addresses(values, acceleration, rates), self._table,
+        )  # fmt: skip
+        return _Side(values, acceleration, rates)  # without accelerations no number: compares as no jump
+
+    def sides(self, size: float) -> tuple[_Side, _Side]:
+        """Those of a move and of the opposite one."""
+        return self.side(size), self.side(-size)
+
+    def crossed(self, reach: float = SMALLER_MOVE) -> np.ndarray:
+        """The event functions that differ in sign between the two sides of a move."""
+        return np.flatnonzero(self.values(reach) * self.values(-reach) < 0.0)
+
+    def at_zero(self, reach: float, event_function: int) -> _Beside:
+        """From where an event function changes its sign, by a move between -reach and reach."""
+        low, high = -reach, reach
+        above = self.values(high)[event_function] > 0.0
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            if (self.values(middle)[event_function] > 0.0) == above:
+                high = middle
+            else:
+                low = middle
+        size = 0.5 * (low + high)
+        q, u = (
+            x + size * np.maximum(1.0, np.abs(x)) * part
+            for x, part in zip((self.q, self.u), self._direction, strict=True)
+        )
+        return _Beside(self._dynamics, self.t, q, u)
+
+
 def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """The event functions about zero across which accelerations jump.
 
@@ -43,12 +113,13 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
     ndarray of int
     """
     with dynamics.state.unchanged():
-        crossed = _crossed(dynamics, t, q, u)
+        beside = _Beside(dynamics, t, q, u)
+        crossed = beside.crossed()
         if not len(crossed):
             return crossed
         far, near = (
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (_sides(dynamics, t, q, u, size) for size in (LARGER_MOVE, SMALLER_MOVE))
+            for a, b in (beside.sides(size) for size in (LARGER_MOVE, SMALLER_MOVE))
         )
     return crossed if near > max(JUMPS * far, LEAST_JUMP) else crossed[:0]
 
@@ -65,19 +136,18 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
         Size of the move, as `LARGER_MOVE`, within which a jump is looked for.
     """
     with dynamics.state.unchanged():
-        back = _crossed(dynamics, t, q, u, reach)
-        for way in _ahead_first(dynamics, t, q, u, reach, back) if len(back) else ():
-            back = back[_returns(_side(dynamics, t, *_moved(q, u, way * reach)), back)]
+        beside = _Beside(dynamics, t, q, u)
+        back = beside.crossed(reach)
+        for way in _ahead_first(beside, reach, back) if len(back) else ():
+            back = back[_returns(beside.side(way * reach), back)]
             if not len(back):
                 return back
-        return np.array([k for k in back if _slides(dynamics, t, q, u, reach, k)], dtype=int)
+        return np.array([k for k in back if _slides(beside, reach, k)], dtype=int)
 
 
-def _ahead_first(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float, crossed: np.ndarray
-) -> tuple[float, float]:
+def _ahead_first(beside: _Beside, reach: float, crossed: np.ndarray) -> tuple[float, float]:
     """Both ways of a move, first to the side that the state is on: a motion that goes through the zero leaves it there."""
-    here, there = (_values(dynamics, t, *_moved(q, u, way * reach))[crossed[0]] for way in (0.0, 1.0))
+    here, there = (beside.values(way * reach)[crossed[0]] for way in (0.0, 1.0))
     return (1.0, -1.0) if here * there > 0.0 else (-1.0, 1.0)
 
 
@@ -87,17 +157,17 @@ def _returns(side: _Side, event_functions: np.ndarray) -> np.ndarray:
     return returns
 
 
-def _driven_back(sides: list[_Side], event_functions: np.ndarray) -> np.ndarray:
+def _driven_back(sides: tuple[_Side, _Side], event_functions: np.ndarray) -> np.ndarray:
     """Whether the motion returns from both sides to the zero of each event function."""
     return np.logical_and(*(_returns(side, event_functions) for side in sides))
 
 
-def _slides(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float, event_function: int) -> bool:
+def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
     """Whether the rates on both sides of an event function's zero differ as much however near the sides are to it."""
-    q, u = _moved(q, u, _zero_within(dynamics, t, q, u, reach, event_function))
+    at_zero = beside.at_zero(reach, event_function)
     change = []
     for size in (LARGER_MOVE, SMALLER_MOVE):
-        sides = _sides(dynamics, t, q, u, size)
+        sides = at_zero.sides(size)
         if not _driven_back(sides, np.array([event_function]))[0]:
             return False
         change.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
@@ -105,58 +175,8 @@ def _slides(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
     return bool(near > max(JUMPS * far, LEAST_JUMP))
 
 
-def _zero_within(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float, event_function: int
-) -> float:
-    """The size of the move, between -reach and reach, at which an event function changes its sign."""
-    low, high = -reach, reach
-    above = _values(dynamics, t, *_moved(q, u, high))[event_function] > 0.0
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if (_values(dynamics, t, *_moved(q, u, middle))[event_function] > 0.0) == above:
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
-
-
-def _crossed(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = SMALLER_MOVE) -> np.ndarray:
-    """The event functions that differ in sign between the two sides of a move."""
-    one, other = (_values(dynamics, t, *_moved(q, u, way * reach)) for way in (1.0, -1.0))
-    return np.flatnonzero(one * other < 0.0)
-
-
-def _sides(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, size: float) -> list[_Side]:
-    return [_side(dynamics, t, *_moved(q, u, way * size)) for way in (1.0, -1.0)]
-
-
-def _moved(q: np.ndarray, u: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
-    parts = _direction(len(q), len(u))
-    moved = [x + size * np.maximum(1.0, np.abs(x)) * part for x, part in zip((q, u), parts, strict=True)]
-    return moved[0], moved[1]
-
-
-@cache
 def _direction(n_q: int, n_u: int) -> tuple[np.ndarray, np.ndarray]:
     """A direction of moves that every coordinate and velocity takes part in."""
     rng = np.random.default_rng(1)
     first, second = (rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) for n in (n_q, n_u))
     return first, second
-
-
-def _side(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> _Side:
-    values = _values(dynamics, t, q, u)
-    status, acceleration = dynamics.accelerate(t)
-    if status < 0:
-        acceleration = np.full(len(u), np.nan)  # compares as no jump
-    moved = dynamics.system.of_body.moved(q, RATE_INTERVAL * u)
-    ahead = _values(dynamics, t + RATE_INTERVAL, moved, u + RATE_INTERVAL * acceleration)
-    return _Side(values, acceleration, (ahead - values) / RATE_INTERVAL)
-
-
-def _values(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """The event functions at a state, which the dynamics' own becomes."""
-    state = dynamics.state
-    state.q[:], state.u[:] = q, u
-    state.evaluate("event_function", t)
-    return state.values["event_function"][: dynamics.system.n_event_functions].copy()

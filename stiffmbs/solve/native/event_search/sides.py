@@ -1,0 +1,51 @@
+"""Event functions beside a state, accelerations there, and the rates that these give the event functions."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
+from stiffmbs.solve.native.dynamics import to_accelerations
+from stiffmbs.solve.native.explicit.stages import copied
+from stiffmbs.solve.native.tables.views import dynamics_view
+
+
+@compiled
+def _take(s, size, q, u, along_q, along_u):
+    """The state moved along a direction, each number by a part of its own size, at least of 1."""
+    for k in range(s.n_q):
+        s.q[k] = q[k] + size * max(1.0, abs(q[k])) * along_q[k]
+    for k in range(s.n_u):
+        s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
+
+
+def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
+    """The first `count` event functions at a moved state, in `values`."""
+    s = state_view(dynamics_view(dynamics).state)
+    _take(s, size, q, u, along_q, along_u)
+    copied(values, evaluate(s, SWITCH, t), count)
+
+
+def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):
+    """The same, with accelerations and with rates over an interval of time; a negative status where there are no accelerations.
+
+    `there` is memory for coordinates.
+    """
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    _take(s, size, q, u, along_q, along_u)
+    copied(there, s.q, s.n_q)
+    copied(values, evaluate(s, SWITCH, t), count)
+    add_rates(s, s.u, interval, there)
+    status = to_accelerations(s, m, t)
+    if status < 0:
+        return status
+    copied(acceleration, factors_view(m.acceleration_factors).b, s.n_u)
+    copied(s.q, there, s.n_q)
+    take_unit_length(s)
+    for k in range(s.n_u):
+        s.u[k] += interval * acceleration[k]
+    ahead = evaluate(s, SWITCH, t + interval)
+    for k in range(count):
+        rates[k] = (ahead[k] - values[k]) / interval
+    return status
