@@ -25,6 +25,7 @@ OUTPUT: dict[str, Any] = {"duration": float(TIMES[-1]), "points": len(TIMES)}
 SOLVERS: dict[str, dict[str, Any]] = {
     "bdf": {"solver": "bdf"},
     "dop853": {"solver": "projected", "scheme": "dop853"},
+    "dopri5": {"solver": "projected", "scheme": "dopri5"},
     "auto": {"solver": "auto"},
 }
 
