@@ -49,7 +49,7 @@ def motion_notes(
     rtol : float
         Of the run.
     again : callable
-        The same run, reported at other instants, s.
+        The same run, up to the last of other instants, s, and reported at these.
     """
     return MotionNotes(
         tuple(senseless(dynamics, rows, on_constraints, seen)),

@@ -179,8 +179,9 @@ def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
 
 
 def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
-    """The run once more, reported at its start, at other instants, and at its end."""
-    again = replace(job, grid=replace(job.grid, times=np.union1d([job.grid.start, job.grid.end], times)))
+    """The run once more, up to the last of other instants, reported at its start and at these."""
+    grid = replace(job.grid, end=float(times[-1]), times=np.union1d(job.grid.start, times))
+    again = replace(job, grid=grid)
     return reported(job.dynamics, again.integrate(), job.on_constraints)[0]
 
 
