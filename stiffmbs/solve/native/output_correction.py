@@ -140,6 +140,8 @@ def _settled(b, s, e, t):
             return True
         before = size
         _look(b, s, e, t)
+        if _left(b, s, e) <= 1.0:
+            return True
     return False
 
 
