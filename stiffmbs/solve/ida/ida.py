@@ -22,13 +22,13 @@ from ..native.tables.steps import MOST_STEPS
 from .connection import MODULE, Connection
 from .matrices import Matrix
 from .session import Session
-from .starts import Starts
 from .statistics import Statistics
 from .status import Status, failure_sentence
 from .step_log import StepLog
 
 if TYPE_CHECKING:
     from ..initial import InitialValues
+    from .starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
@@ -238,7 +238,9 @@ class NativeIda:
         self._ida.begin(t)
         self._begun, self._flag = True, 0
 
-    def begin_by(self, starts: Starts, start: InitialValues, t: float, highest_order: int) -> tuple[Stiffness, float] | None:
+    def begin_by(
+        self, starts: Starts, start: InitialValues, t: float, highest_order: int
+    ) -> tuple[Stiffness, float] | None:
         """Start, or start again, by a compiled start; what that returns."""
         found = starts.begin(start, t, self._begun, highest_order)
         if found:
@@ -246,8 +248,14 @@ class NativeIda:
             self._begun, self._flag = True, 0
         return found
 
-    def starts(self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl) -> Starts:
-        """Compiled starts."""
+    def starts(
+        self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
+    ) -> Starts | None:
+        """Compiled starts; None where they do not serve."""
+        from .starts import Starts
+
+        if not Starts.serve(dynamics):
+            return None
         return Starts(dynamics, equations, self.connection, self._statistics, settings, control)
 
     def advance(

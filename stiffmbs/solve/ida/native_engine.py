@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,12 +21,12 @@ from ..trajectory import History
 from .engine import Reached
 from .ida import NativeIda
 from .matrices import Matrix, Sparse
-from .starts import Starts
 from .status import Status
 
 if TYPE_CHECKING:
     from ..initial import InitialValues
     from .restarts import Restarts
+    from .starts import Starts
 
 ROWS_OF_STEPS = 1000
 """Room for rows in one call that reports every step."""
@@ -66,9 +67,8 @@ class NativeEngine:
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
         self._rtol = settings.rtol
-        self._starts = (
-            self._ida.starts(dynamics, equations, settings, control) if Starts.serve(dynamics) else None
-        )
+        self._make_starts = partial(self._ida.starts, dynamics, equations, settings, control)
+        self._started = False
         self._order = StabilityLimitDetection(equations, settings)
         self.forget()
 
@@ -97,7 +97,8 @@ class NativeEngine:
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
         """Start, or start anew, at consistent values, by one compiled call."""
-        if self._starts is None:
+        if not self._started or self._starts is None:  # one start alone does not pay for making these ready
+            self._started = True
             return False
         self._ida.filter_always(self._order.held)
         found = self._ida.begin_by(self._starts, start, t, self._order.order)
@@ -183,6 +184,11 @@ class NativeEngine:
         if self._starts is None or not Restarts.serve(dynamics.system, self._ida.connection):
             return None
         return Restarts(self._starts, (q, u))
+
+    @cached_property
+    def _starts(self) -> Starts | None:
+        """Compiled starts; None where they do not serve."""
+        return self._make_starts()
 
     def at(self, t: float) -> np.ndarray:
         """All unknowns at a time within the last step."""

@@ -73,7 +73,9 @@ class Starts:
         """Whether a compiled start does all that one needs: rates of algebraic states follow from more than the state."""
         return not len(dynamics.system.algebraic_coordinates)
 
-    def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> tuple[Stiffness, float] | None:
+    def begin(
+        self, start: InitialValues, t: float, counted: bool, highest_order: int
+    ) -> tuple[Stiffness, float] | None:
         """Start at consistent values.
 
         Parameters
