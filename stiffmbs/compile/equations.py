@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from .coordinates import FIXED, Coordinates, all_independent
+from .entry_order import ordered_entries
 from .formulation import Formulation
 from .machine.layout import packed
 from .machine.native.tables import EQUATIONS
@@ -219,16 +220,20 @@ class Equations:
         """
         slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int32)
         n_slots = len(self.pattern[0]) if slots is None else int(slots.max()) + 1
-        sets = list(TERM_SETS)
+        sets, entries = list(TERM_SETS), ordered_entries(slot, self._cj, n_slots)
+        lists = {
+            "m_bare": entries.bare.astype(np.int32), "m_slot": slot[entries.order], "m_source": self._source[entries.order],
+            "m_constant": self._constant[entries.order], "m_cj": self._cj[entries.order],
+        }  # fmt: skip
         values = {
             "n": self.n, "residual_set": sets.index(self.formulation.residual_set),
             "matrix_set": sets.index(self.formulation.matrix_set),
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
-            "n_slots": n_slots, "integrated": self.formulation.integrated, "n_entries": len(slot), "m_slot": slot, "m_source": self._source,
-            "m_constant": self._constant, "m_cj": self._cj,
+            "integrated": self.formulation.integrated, "n_slots": n_slots, "n_cleared": entries.n_cleared, "n_bare": len(entries.bare),
+            "n_first": entries.n_first, "n_constant": entries.n_constant, "n_entries": len(slot), **lists,
             "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
             "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,
         }  # fmt: skip
-        return packed(EQUATIONS, values), [slot]
+        return packed(EQUATIONS, values), [*lists.values()]
