@@ -18,7 +18,7 @@ from ..compile.kind import Compilable
 from ..describe.element import Element
 from ..describe.formula.formula import Formula
 from ..describe.joint_name import JointName
-from ..describe.marker import GROUND, MarkerReference
+from ..describe.marker import MarkerReference
 from ..describe.states.name import StateName
 from ..describe.states.state import StateValue
 
@@ -111,11 +111,13 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
     """
     if model.dimensions == 2:
         return None
-    found: dict[str, list[_Demand]] = {body: [] for body in model.bodies}
+    found: dict[str, list[_Demand]] = {name: [] for name, body in model.bodies.items() if any(_symmetric_about(body))}
+    if not found:
+        return None
     for _, element in model.elements():
         for marker, what, bears in _demands(element, model):
             body, placed = model.carried(marker)
-            if body != GROUND:
+            if body in found:
                 found[body].append(_Demand(what, placed, bears))
     size = model.size()
     axes = {body: _axis(model.bodies[body], found[body], turns.get(body, np.zeros(3)), size) for body in found}
@@ -179,13 +181,20 @@ def _seen_in_measure(name: str) -> str:
 
 def _axis(body: Any, demands: Sequence[_Demand], turns: np.ndarray, size: float) -> str:
     """The principal axis that a body spins about; none for most bodies."""
-    moments = body.principal_moments()
-    for k, axis in enumerate(AXES):
-        one, other = (moments[n] for n in range(3) if n != k)
-        alike = abs(one - other) <= ALIKE * max(one, other)
-        if alike and all(demand.met(k, size) for demand in demands) and _is_spun(demands, turns, k):
+    for k, (axis, symmetric) in enumerate(zip(AXES, _symmetric_about(body), strict=True)):
+        if symmetric and all(demand.met(k, size) for demand in demands) and _is_spun(demands, turns, k):
             return axis
     return ""
+
+
+def _symmetric_about(body: Any) -> tuple[bool, bool, bool]:
+    """About which principal axes the moments across are equal."""
+    x, y, z = body.principal_moments()
+    return _alike(y, z), _alike(z, x), _alike(x, y)
+
+
+def _alike(one: float, other: float) -> bool:
+    return bool(abs(one - other) <= ALIKE * max(one, other))
 
 
 def _is_spun(demands: Sequence[_Demand], turns: np.ndarray, axis: int) -> bool:

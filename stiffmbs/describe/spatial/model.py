@@ -15,8 +15,7 @@ from ..given import Numbers
 from ..kinds import Kinds, any_of
 from ..marker import GROUND, MarkerReference
 from ..model_data import ModelData
-from ..parts.names import Names
-from ..requests.angle_counter import AngleCounter
+from ..requests.angle_counter import AngleCounter, counter_of
 from ..requests.names import OF_SPACE
 from ..requests.output import CONTINUOUS_ANGLES
 from ..requests.output_field import SpatialRequest
@@ -60,8 +59,7 @@ class SpatialData(ModelData):
             term for output in self.outputs().values() for term in output.terms if term.function in CONTINUOUS_ANGLES
         )
         for term in dict.fromkeys(angles):
-            names = Names(frozenset(self.bodies))
-            yield str(term), AngleCounter.model_validate({"angle": str(term)}, context={"names": names})
+            yield str(term), counter_of(str(term), frozenset(self.bodies))
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """The bodies' weights and the gyroscopic torques of their turning."""

@@ -1,0 +1,18 @@
+"""How far angles over whole turns are from the counters of their turns."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import shifted, state_view
+from stiffmbs.compile.machine.native.evaluate import POSITION, evaluate
+
+
+def apart_from_counters(count, n_q, t, q, n_counters, source, row, apart, state):
+    """Into `apart`, for `count` rows of coordinates: the distance of each angle, a value of the positions, from its counter."""
+    s = state_view(state)
+    for k in range(count):
+        pose = shifted(q, k * n_q)
+        for i in range(n_q):
+            s.q[i] = pose[i]
+        values = evaluate(s, POSITION, t[k])
+        for i in range(n_counters):
+            apart[k * n_counters + i] = abs(values[source[i]] - pose[row[i]])
