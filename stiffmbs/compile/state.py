@@ -30,6 +30,8 @@ class State:
     ----------
     q, u, a, lam, mu : ndarrays
         Shapes (n_q,), (n_u,), (n_u,), (n_c,), (n_c,): what the kernels see.
+    relaxations : ndarray, shape (2 * n_c,)
+        Of each constraint row, mu's and then lam's, that term sets loaded later begin with; `relax` sets them.
     values : dict of str to ndarray
         For each loaded term set the values that its kernels write, then the system's constants.
     table : ndarray of int
@@ -50,7 +52,7 @@ class State:
         self._turned: dict[str, np.ndarray] = {}
         self._n_calls, self._calls_at, self._values_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(3))
         self._n_turned, self._turned_at = (np.zeros(len(SETS), dtype=np.int64) for _ in range(2))
-        self._relaxations = np.zeros(2 * system.n_c)
+        self.relaxations = np.zeros(2 * system.n_c)
         self._followed = np.ascontiguousarray(system.followed)
         self._left_open = np.where(system.active, 0.0, LEFT_OPEN * min(1.0, system.size))
         self._evaluated = np.zeros(1, dtype=np.int64)
@@ -111,17 +113,17 @@ class State:
         self._turned_at[k] = self._turned[term_set].ctypes.data
         self._calls[term_set] = np.array(calls, dtype=np.int64).reshape(-1, len(CALL))
         empty = np.zeros(system.n_values(term_set))
-        self.values[term_set] = np.concatenate([empty, system.mass, self._relaxations, [1.0]])
+        self.values[term_set] = np.concatenate([empty, system.mass, self.relaxations, [1.0]])
         self._n_calls[k] = len(calls)
         self._calls_at[k] = self._calls[term_set].ctypes.data
         self._values_at[k] = self.values[term_set].ctypes.data
 
     def relax(self, mu: np.ndarray, lam: np.ndarray) -> None:
         """Set the relaxation of each constraint row, used by the formulations that have one."""
-        self._relaxations[: len(mu)], self._relaxations[len(mu) :] = mu, lam
+        self.relaxations[: len(mu)], self.relaxations[len(mu) :] = mu, lam
         for term_set, values in self.values.items():
             first = self.system.constants(term_set)["E_mu"]
-            values[first : first + len(self._relaxations)] = self._relaxations
+            values[first : first + len(self.relaxations)] = self.relaxations
 
     @contextmanager
     def unchanged(self) -> Iterator[None]:

@@ -93,9 +93,10 @@ class Element(Described):
         fields = vars(self)  # getattr asks pydantic for each
         for name in type(self).__pydantic_fields__:
             value = fields[name]
-            for item in value if isinstance(value, tuple) else (value,):
-                if isinstance(item, part):
-                    yield name, item
+            if isinstance(value, tuple):
+                yield from ((name, item) for item in value if isinstance(item, part))
+            elif isinstance(value, part):
+                yield name, value
 
     def markers(self) -> Iterator[tuple[str, MarkerReference]]:
         """The element's markers by field name, the first body's first; those in its formulas after its own."""

@@ -46,14 +46,14 @@ def singular_passage_sentence(
     dips = deepest_dips(rows.log_determinant)
     if not dips:
         return
-    usual = PosesOnTheWay(dynamics.system, rows.t, rows.q).usual
-    if not usual:
+    poses = PosesOnTheWay(dynamics.system, rows.t, rows.q)
+    if not poses.usual:
         return
     first, *others = [np.linspace(rows.t[k - 1], rows.t[k + 1], INSTANTS) for k in sorted(dips)]
-    found = _nearest(dynamics, again(first), [first], usual)
+    found = _nearest(poses, again(first), [first])
     if others and _magnified(found[0]) * LAST_DIGITS < DECIDED:
         dense = again(np.unique(np.concatenate(others)))
-        found = min(found, _nearest(dynamics, dense, others, usual), key=lambda each: each[0])
+        found = min(found, _nearest(poses, dense, others), key=lambda each: each[0])
     d, pose = found
     if pose is not None:
         yield from _sentence(pose, d, rtol)
@@ -82,12 +82,10 @@ def _least(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
     return at - slope * slope / (4 * bend)
 
 
-def _nearest(
-    dynamics: Dynamics, dense: OutputRows, stretches: list[np.ndarray], usual: float
-) -> tuple[float, SingularPose | None]:
+def _nearest(poses: PosesOnTheWay, dense: OutputRows, stretches: list[np.ndarray]) -> tuple[float, SingularPose | None]:
     """The least distance from a singular pose within some stretches, and the pose."""
-    poses = PosesOnTheWay(dynamics.system, dense.t, dense.q, usual)
-    return min((_nearest_within(poses, dense, stretch) for stretch in stretches), key=lambda found: found[0])
+    within = poses.at(dense.t, dense.q)
+    return min((_nearest_within(within, dense, stretch) for stretch in stretches), key=lambda found: found[0])
 
 
 def _nearest_within(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray) -> tuple[float, SingularPose | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -58,27 +59,36 @@ class PosesOnTheWay:
         Without redundant equations.
     t : ndarray, shape (n,)
     q : ndarray, shape (n, n_q)
-    usual : float, optional
-        That value where it is known of a longer way.
     """
 
-    def __init__(self, system: System, t: np.ndarray, q: np.ndarray, usual: float | None = None) -> None:
-        self._system, self._t, self._q, self._given = system, t, q, usual
+    def __init__(self, system: System, t: np.ndarray, q: np.ndarray) -> None:
+        self._system, self._t, self._q = system, t, q
         self._state = State(system)
         self._state.q[:] = q[0]
         self._state.evaluate("motion", float(t[0]))
         self._loops = loops(system, self._state)
         rows = np.concatenate([loop.rows for loop in self._loops]) if self._loops else np.empty(0, dtype=int)
         self._rows = np.sort(rows[system.active[rows]])
+        self._scale = system.per_velocity(1.0, system.size)
         self._known: dict[int, float] = {}
+
+    def at(self, t: np.ndarray, q: np.ndarray) -> PosesOnTheWay:
+        """Other poses of the same motion, compared with what is usual on the whole way."""
+        others = copy(self)
+        others.usual = self.usual
+        others._t, others._q, others._known = t, q, {}
+        return others
 
     @cached_property
     def usual(self) -> float:
         """The largest measure at a few poses on the way; 0 without loops."""
-        if self._given is not None or not self._loops:
-            return self._given or 0.0
+        if not self._loops:
+            return 0.0
         looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), USUAL_POSES)).astype(int)
-        return max(self._least(int(k))[0] for k in looked_at)
+        if len(self._rows) > FEW_ROWS:
+            return max(self._least(int(k))[0] for k in looked_at)
+        values = np.linalg.svd(np.array([self._scaled(int(k)) for k in looked_at]), compute_uv=False)
+        return float(np.sqrt(values[:, -1].max() ** 2 + FLOOR))
 
     @property
     def products(self) -> float:
@@ -126,12 +136,16 @@ class PosesOnTheWay:
 
     def _least(self, k: int) -> tuple[float, np.ndarray]:
         """The smallest singular value of the scaled J, and the weight of each equation in its vector."""
+        return _smallest(self._scaled(k))
+
+    def _scaled(self, k: int) -> np.ndarray:
+        """The J of pose k with rows of unit length, and arms in units of the size."""
         self._state.q[:] = self._q[k]
         self._state.evaluate("motion", float(self._t[k]))
         J = self._state.matrix("motion", "J")[self._rows]
-        J /= self._system.per_velocity(1.0, self._system.size)
+        J /= self._scale
         J /= np.linalg.norm(J, axis=1, keepdims=True)
-        return _smallest(J)
+        return J
 
 
 def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:

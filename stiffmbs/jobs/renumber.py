@@ -109,9 +109,11 @@ def _same_structure(before: ModelData, after: ModelData) -> bool:
 
 
 def _same(before: object, after: object) -> bool:
+    if before is after:
+        return True
     if isinstance(before, dict) and isinstance(after, dict):
         return list(before) == list(after) and all(_same(before[name], after[name]) for name in before)
-    return before is after or bool(before == after)
+    return bool(before == after)
 
 
 def _same_states(before: ModelData, after: ModelData) -> bool:

@@ -131,7 +131,7 @@ def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
 def _native(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine]:
     """The native driver, where SUNDIALS' libraries are as it needs them."""
     equations, matrix = chosen(_natural(dynamics, settings))
-    return equations, NativeEngine(equations, dynamics.state, matrix, settings, control)
+    return equations, NativeEngine(equations, dynamics, matrix, settings, control)
 
 
 def _through_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
@@ -266,6 +266,12 @@ class Integrator:
             yield Reached(times, np.tile(state, (len(times), 1)), t, state)
 
     def _begin(self, start: InitialValues, t: float) -> None:
+        self.engine.leave_out(self._masked.steps)
+        if not self.engine.begin_at(start, t):
+            self._begin_step_by_step(start, t)
+
+    def _begin_step_by_step(self, start: InitialValues, t: float) -> None:
+        """A start that does not need the compiled one: for algebraic states, infinite stiffness, and scikit-sundae's callbacks."""
         equations, at = self.equations, self.equations.at
         state, coordinates = self.dynamics.state, equations.coordinates
         rates = rates_of(self.dynamics, t, start)
@@ -284,7 +290,6 @@ class Integrator:
         relax(self.dynamics, self.settings, t)
         stiffness = stiffness_at(self.dynamics, t)
         newton = self.control.newton or newton_tolerance(stiffness, self.settings)
-        self.engine.leave_out(self._masked.steps)
         self.engine.begin(t, y, yp, newton, stiffness)
 
     def statistics(self) -> dict[str, int | float | str]:

@@ -36,7 +36,7 @@ def with_pivots(job: Job) -> Job:
     dynamics, control = job.dynamics, CHOSEN[job.dynamics.system.of_body.dimensions]
     equations = Equations(FORMULATIONS[job.settings.formulation](job.settings), dynamics.system, dynamics.coordinates)
     matrix = PairedColumns(equations.n, *equations.pattern, elimination_order(equations))
-    engine = NativeEngine(equations, dynamics.state, matrix, job.settings, control)
+    engine = NativeEngine(equations, dynamics, matrix, job.settings, control)
     dynamics.kept("bdf", (job.settings, control), lambda: (equations, engine))
     return job
 

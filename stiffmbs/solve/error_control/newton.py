@@ -65,10 +65,15 @@ def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:
     """That of the state at hand."""
     state = dynamics.state
     state.evaluate("tangent", t)
-    of_positions, of_velocities = dynamics.kept("row sums", None, lambda: _row_sums(dynamics.system))
+    of_positions, of_velocities = row_sums_of(dynamics)
     with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
         values = state.values["tangent"]
         return Stiffness(of_positions.largest(values), of_velocities.largest(values))
+
+
+def row_sums_of(dynamics: Dynamics) -> tuple[RowSums, RowSums]:
+    """Those of the derivatives of forces by positions and by velocities."""
+    return dynamics.kept("row sums", None, lambda: _row_sums(dynamics.system))
 
 
 def _row_sums(system: System) -> tuple[RowSums, RowSums]:

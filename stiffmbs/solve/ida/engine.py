@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ...compile.inputs.features import InputFeatures
 from ..error_control.newton import Stiffness
 from ..trajectory import History
+
+if TYPE_CHECKING:
+    from ..initial import InitialValues
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,9 @@ class Engine(Protocol):
         Newton's iteration may leave a part of the tolerance; states within its long steps are
         brought back to the equations.
         """
+
+    def begin_at(self, start: InitialValues, t: float) -> bool:
+        """The same by one call that finds all of that; False, with nothing started, where it does not serve."""
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,10 @@ from ...compile.inputs.features import InputFeatures
 from ...compile.machine.layout import address
 from ...compile.machine.routines import Routine
 from ...compile.state import State
+from ...describe.settings import RunSettings
+from ..dynamics import Dynamics
+from ..error_control.error_test import ErrorControl
+from ..error_control.newton import Stiffness
 from ..events.long_steps import LongStepLog
 from ..native.statuses import ROOT_RETURN, STOP_RETURN
 from ..native.tables.steps import MOST_STEPS
@@ -21,6 +25,10 @@ from .session import Session
 from .statistics import Statistics
 from .status import Status, failure_sentence
 from .step_log import StepLog
+
+if TYPE_CHECKING:
+    from ..initial import InitialValues
+    from .starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
@@ -230,6 +238,26 @@ class NativeIda:
         self._ida.begin(t)
         self._begun, self._flag = True, 0
 
+    def begin_by(
+        self, starts: Starts, start: InitialValues, t: float, highest_order: int
+    ) -> tuple[Stiffness, float] | None:
+        """Start, or start again, by a compiled start; what that returns."""
+        found = starts.begin(start, t, self._begun, highest_order)
+        if found:
+            self.history.begin(t)
+            self._begun, self._flag = True, 0
+        return found
+
+    def starts(
+        self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
+    ) -> Starts | None:
+        """Compiled starts; None where they do not serve."""
+        from .starts import Starts
+
+        if not Starts.serve(dynamics):
+            return None
+        return Starts(dynamics, equations, self.connection, self._statistics, settings, control)
+
     def advance(
         self, times: np.ndarray, stop: float, y_out: np.ndarray, yp_out: np.ndarray | None = None
     ) -> tuple[int, Status]:
@@ -312,9 +340,9 @@ class NativeIda:
         """
         return self._ida.answer("IDAGetDky", t, derivative)
 
-    def counted(self, name: str) -> int:
-        """One counter since the first beginning (`stiffmbs.solve.ida.statistics.COUNTERS`)."""
-        return self._statistics.of(name)
+    def counted(self) -> dict[str, int]:
+        """The counters since the first beginning (`stiffmbs.solve.ida.statistics.COUNTERS`)."""
+        return self._statistics.total()
 
     def statistics(self) -> dict[str, int]:
         """Counters since the first beginning, and the order of the last step."""

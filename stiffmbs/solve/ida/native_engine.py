@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.state import State
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
@@ -24,7 +24,9 @@ from .matrices import Matrix, Sparse
 from .status import Status
 
 if TYPE_CHECKING:
+    from ..initial import InitialValues
     from .restarts import Restarts
+    from .starts import Starts
 
 ROWS_OF_STEPS = 1000
 """Room for rows in one call that reports every step."""
@@ -42,8 +44,8 @@ class NativeEngine:
     ----------
     equations : Equations
         In the order of the matrix.
-    state : State
-        The working memory of residual and Jacobian.
+    dynamics : Dynamics
+        Its state is the working memory of residual and Jacobian.
     matrix : Matrix
     settings : RunSettings
     control : ErrorControl
@@ -54,17 +56,19 @@ class NativeEngine:
     """
 
     def __init__(
-        self, equations: Equations, state: State, matrix: Matrix, settings: RunSettings, control: ErrorControl
+        self, equations: Equations, dynamics: Dynamics, matrix: Matrix, settings: RunSettings, control: ErrorControl
     ) -> None:
         tolerances, reported = control.tolerances(equations, settings), equations.independent
         self._ida = NativeIda(
-            equations, state, matrix, *tolerances, max_step=settings.max_step,
+            equations, dynamics.state, matrix, *tolerances, max_step=settings.max_step,
             suppressed=control.untested(equations), reported=reported, growth=control.growth,
             predicted_residual=control.predicted_residual,
             renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
-        self._rtol, self._settings, self._control = settings.rtol, settings, control
+        self._rtol = settings.rtol
+        self._make_starts = partial(self._ida.starts, dynamics, equations, settings, control)
+        self._started = False
         self._order = StabilityLimitDetection(equations, settings)
         self.forget()
 
@@ -87,12 +91,29 @@ class NativeEngine:
         """Start, or start anew, at consistent values."""
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
+        self._ida.filter_always(self._order.held)
+        self._follow_stiffness(t)
+        self._ida.begin(t, y, yp, highest_order=self._order.order)
+
+    def begin_at(self, start: InitialValues, t: float) -> bool:
+        """Start, or start anew, at consistent values, by one compiled call."""
+        if not self._started or self._starts is None:  # one start alone does not pay for making these ready
+            self._started = True
+            return False
+        self._ida.filter_always(self._order.held)
+        found = self._ida.begin_by(self._starts, start, t, self._order.order)
+        if found:
+            self._stiffness, self._newton = found
+            self._follow_stiffness(t)
+        return found is not None
+
+    def _follow_stiffness(self, t: float) -> None:
+        """Correct states within long steps, and look at vibrations, by the stiffness at a start."""
+        stiffness = self._stiffness
         self._ida.correct_outputs(
             stiffness.long_step, max(stiffness.allowed_residual, NUMBERS_END / self._rtol), self._rtol
         )
-        self._ida.filter_always(self._order.held)
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
-        self._ida.begin(t, y, yp, highest_order=self._order.order)
 
     def _adapt(self, stop: float) -> None:
         """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
@@ -105,7 +126,7 @@ class NativeEngine:
 
     def _ease_newton(self) -> None:
         """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""
-        counted = {name: self._ida.counted(name) for name in self._counted}
+        counted = self._ida.counted()
         steps = counted["steps"] - self._counted["steps"]
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
         self._counted = counted
@@ -160,10 +181,14 @@ class NativeEngine:
         """Compiled starts of this integrator from the state in q and u; None where they do not serve."""
         from .restarts import Restarts
 
-        connection = self._ida.connection
-        if not Restarts.serve(dynamics.system, connection):
+        if self._starts is None or not Restarts.serve(dynamics.system, self._ida.connection):
             return None
-        return Restarts(dynamics, (q, u), self._equations, connection, self._settings, self._control)
+        return Restarts(self._starts, (q, u))
+
+    @cached_property
+    def _starts(self) -> Starts | None:
+        """Compiled starts; None where they do not serve."""
+        return self._make_starts()
 
     def at(self, t: float) -> np.ndarray:
         """All unknowns at a time within the last step."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from ..error_control.newton import Stiffness
 from ..native.tables.steps import IDA
 from ..trajectory import History
 from .engine import Reached
+
+if TYPE_CHECKING:
+    from ..initial import InitialValues
 
 _MODULE = "stiffmbs.solve.native.ida_callbacks"
 RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
@@ -191,6 +194,10 @@ class SundaeEngine:
             self._before[name] += count
         self.callbacks.begin(t)
         self._last, self._near = self._ida.init_step(t, y, yp), t
+
+    def begin_at(self, start: InitialValues, t: float) -> bool:
+        """There is no such call of scikit-sundae."""
+        return False
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""

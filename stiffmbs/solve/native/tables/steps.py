@@ -71,19 +71,26 @@ MOST_STEPS, HISTORY_WIDTH = 2048, 3
 SAMPLES = 16
 """Rows of the samples: the time and what is reported."""
 
-RESTART = Layout({
-    "dynamics": INTS, "ida": INT, "error_norm": INTS, "q": FLOATS, "u": FLOATS, "rate": FLOATS, "leader": INTS,
+START = Layout({
+    "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "leader": INTS,
     "n_q": INT, "q_of": INTS, "q_at": INTS, "n_u": INT, "u_of": INTS, "u_at": INTS,
     "creep": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_creep": FLOAT_CELL,
-    "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "velocity_weight": FLOATS,
-    "at_residual": INT, "at_matrix": INT, "mass": FLOATS, "sums": FLOATS,
-    "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS,
+    "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "lightness": FLOATS, "velocity_creep": FLOAT_CELL,
+    "n_sets": INT, "at_relaxations": INTS, "sums": FLOATS,
+    "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "f_q_scale": FLOATS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS, "f_u_scale": FLOATS,
     "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
-    "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT,
+    "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "newton": FLOAT_CELL,
+    "n_counters": INT, "counter": INTS, "count": INTS, "counts": INTS,
+    "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
-"""What IDA is started anew with behind a jump of inputs (`stiffmbs.solve.ida.native.restart`): the state from one call to the next;
-independent coordinates and velocities, and where they stand among the unknowns; the entries that relaxations and the tolerance of
-Newton's iteration follow from; functions of SUNDIALS.  Cells are set once."""
+"""What IDA is started with at consistent values (`stiffmbs.solve.ida.native.start`): independent coordinates and velocities, and where
+they stand among the unknowns; the entries that relaxations and the tolerance of Newton's iteration follow from, and where relaxations
+stand in each term set; functions that read IDA's counters, room for one number, and the sums of what they gave; functions of SUNDIALS.
+Cells are set once, but for what a start leaves behind: bounds on the stiffness, and the part of the tolerance that Newton's
+iteration may leave."""
+
+RESTART = Layout({"start": INTS, "q": FLOATS, "u": FLOATS})
+"""What IDA is started anew with behind a jump of inputs (`stiffmbs.solve.ida.native.restart`): the state from one call to the next."""
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,

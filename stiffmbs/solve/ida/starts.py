@@ -1,0 +1,147 @@
+"""IDA started, or started anew, from consistent values by one compiled call."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...compile.equations import ABSENT, Equations
+from ...compile.machine.layout import packed
+from ...compile.machine.routines import Routine
+from ...compile.state import SETS
+from ...describe.settings import RunSettings
+from ..dynamics import Dynamics
+from ..error_control.error_test import ErrorControl
+from ..error_control.newton import LOOSEST, NUMBERS_END, SOFT, TIGHTEST, RowSums, Stiffness, row_sums_of
+from ..error_control.relaxation import creep_of_positions, creep_of_velocities, lightness
+from ..native.tables.steps import START
+from .connection import Connection
+from .statistics import Statistics
+
+if TYPE_CHECKING:
+    from ..initial import InitialValues
+
+_START = Routine("stiffmbs.solve.ida.native.start", "start", "int32(float64, int64, int64, int64*)")
+FUNCTIONS = {
+    "set_newton": "IDASetNonlinConvCoef", "start_anew": "IDAReInit", "set_first_step": "IDASetInitStep",
+    "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
+}  # fmt: skip
+
+
+class Starts:
+    """Compiled starts of one integrator.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    equations : Equations
+    connection : Connection
+        To IDA.
+    statistics : Statistics
+        Of IDA.
+    settings : RunSettings
+    control : ErrorControl
+
+    Attributes
+    ----------
+    table : ndarray of int
+        For compiled code (`stiffmbs.solve.native.tables.steps.START`).
+    """
+
+    def __init__(
+        self, dynamics: Dynamics, equations: Equations, connection: Connection, statistics: Statistics,
+        settings: RunSettings, control: ErrorControl,
+    ) -> None:  # fmt: skip
+        system, self._state = dynamics.system, dynamics.state
+        for term_set in ("motion", "tangent"):
+            self._state.load(term_set)
+        values: dict[str, Any] = {
+            "dynamics": dynamics.table, "ida": connection.table, "error_norm": connection.error_norm.table, "n_watched": connection.watch.n,
+            "rate": np.zeros(system.n_q), "sums": np.zeros(system.n_u),
+            **_places(equations), **_creeping(dynamics, settings), **_stiff(dynamics), **statistics.arrays,
+            "soft": SOFT, "loosest": control.newton or LOOSEST,
+            "tightest": control.newton or max(TIGHTEST, NUMBERS_END / settings.rtol), "growth": control.growth,
+            **{name: connection.address(function) for name, function in FUNCTIONS.items()},
+        }  # fmt: skip
+        self._kept = values, connection
+        self.table = packed(START, values)
+        self._cells, self._at = self.table.view(START.cells)[0], self.table.ctypes.data
+
+    @staticmethod
+    def serve(dynamics: Dynamics) -> bool:
+        """Whether a compiled start does all that one needs: rates of algebraic states follow from more than the state."""
+        return not len(dynamics.system.algebraic_coordinates)
+
+    def begin(
+        self, start: InitialValues, t: float, counted: bool, highest_order: int
+    ) -> tuple[Stiffness, float] | None:
+        """Start at consistent values.
+
+        Parameters
+        ----------
+        start : InitialValues
+        t : float
+            s.
+        counted : bool
+            Whether what IDA has counted belongs to this run.
+        highest_order : int
+
+        Returns
+        -------
+        tuple of Stiffness and float, or None
+            The stiffness there and the part of the tolerance that Newton's iteration may leave; None where that
+            is not finite, or IDA refuses: nothing is started then.
+        """
+        state = self._state
+        state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
+        if _START.short_call(t, counted, highest_order, self._at) < 0:
+            return None
+        cells = self._cells
+        return Stiffness(float(cells["of_positions"]), float(cells["of_velocities"])), float(cells["newton"])
+
+
+def _places(equations: Equations) -> dict[str, Any]:
+    """Which coordinates and velocities are unknowns, and where they stand."""
+    coordinates = equations.coordinates
+    found: dict[str, Any] = {"leader": _integers(coordinates.independent_of)}
+    for name, independent in (("q", coordinates.independent), ("u", coordinates.independent_u)):
+        numbers = np.flatnonzero(independent & (equations.at[name] != ABSENT))
+        found |= {
+            f"n_{name}": len(numbers),
+            f"{name}_of": numbers,
+            f"{name}_at": _integers(equations.at[name][numbers]),
+        }
+    return found
+
+
+def _creeping(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
+    """The entries that relaxations follow from, and where these stand among the values of each term set."""
+    system = dynamics.system
+    positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
+    return {
+        "creep": dynamics.state.relaxations,
+        "n_position_entries": len(positions.row), "position_source": _integers(positions.source), "position_row": _integers(positions.row),
+        "position_creep": creep_of_positions(settings),
+        "n_velocity_entries": len(velocities.row), "velocity_source": _integers(velocities.source), "velocity_row": _integers(velocities.row),
+        "velocity_creep": creep_of_velocities(settings, system),
+        "lightness": np.ascontiguousarray(lightness(dynamics)[velocities.column]) if system.n_c else np.empty(0),
+        "n_sets": len(SETS), "at_relaxations": _integers(np.array([system.constants(term_set)["E_mu"] for term_set in SETS])),
+    }  # fmt: skip
+
+
+def _stiff(dynamics: Dynamics) -> dict[str, Any]:
+    """The entries of the derivatives of forces."""
+
+    def of(name: str, sums: RowSums) -> dict[str, Any]:
+        return {
+            f"n_{name}": len(sums.row), f"{name}_source": _integers(sums.source), f"{name}_row": _integers(sums.row),
+            f"{name}_scale": np.ascontiguousarray(sums.scales),
+        }  # fmt: skip
+
+    of_positions, of_velocities = row_sums_of(dynamics)
+    return {**of("f_q", of_positions), **of("f_u", of_velocities)}
+
+
+def _integers(numbers: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(numbers, dtype=np.int64)
