@@ -36,8 +36,8 @@ EQUATIONS = Layout({
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
     "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
 })  # fmt: skip
-"""Residual and matrix of one formulation (`stiffmbs.compile.equations`), its entries in the order of
-`stiffmbs.compile.entry_order`."""
+"""Residual and matrix of one formulation (`stiffmbs.compile.equations`), with the entries of
+the matrix in the order of its `entry_lists`."""
 
 FACTORS = Layout({
     "n": INT, "expected_entries": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "factored": FLOATS, "scale": FLOATS,
