@@ -126,7 +126,7 @@ def _note_rate(b, t, rate):
 
 @compiled
 def _settled(b, s, e, t):
-    """Correct until what is left, by the rate at which corrections shrink, makes no force that counts."""
+    """Correct until what is left makes no force that counts, by the rate at which corrections shrink or by the balance of forces."""
     rate = _predicted(b, t)
     before = 0.0
     for k in range(MOST_CORRECTIONS):
@@ -140,6 +140,8 @@ def _settled(b, s, e, t):
             return True
         before = size
         _look(b, s, e, t)
+        if _left(b, s, e) <= 1.0:
+            return True
     return False
 
 
