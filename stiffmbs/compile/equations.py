@@ -14,6 +14,8 @@ from .system import System, Term
 from .terms import TERM_SETS
 
 ABSENT = -1
+FEW = 0.5
+"""Part of all slots below which those that entries begin do not matter: a dense matrix is cleared as a whole."""
 
 
 class Equations:
@@ -220,15 +222,40 @@ class Equations:
         slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int32)
         n_slots = len(self.pattern[0]) if slots is None else int(slots.max()) + 1
         sets = list(TERM_SETS)
+        lists = entry_lists(slot, self._source, self._constant, self._cj, n_slots)
         values = {
             "n": self.n, "residual_set": sets.index(self.formulation.residual_set),
             "matrix_set": sets.index(self.formulation.matrix_set),
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
-            "n_slots": n_slots, "integrated": self.formulation.integrated, "n_entries": len(slot), "m_slot": slot, "m_source": self._source,
-            "m_constant": self._constant, "m_cj": self._cj,
+            "integrated": self.formulation.integrated, "n_slots": n_slots, **lists,
             "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
             "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,
         }  # fmt: skip
-        return packed(EQUATIONS, values), [slot]
+        return packed(EQUATIONS, values), [part for part in lists.values() if isinstance(part, np.ndarray)]
+
+
+def entry_lists(
+    slot: np.ndarray, source: np.ndarray, constant: np.ndarray, cj: np.ndarray, n_slots: int
+) -> dict[str, np.ndarray | int]:
+    """Entries of a matrix as compiled code adds them up: those that slots begin with, others of slots that do not depend on cj, then the rest.
+
+    Slots that no entry begins are cleared: those that `m_bare` lists, or all (`n_cleared`).
+    """
+    late = np.zeros(n_slots, dtype=bool)
+    late[slot[cj != 0]] = True
+    begins = np.full(n_slots, -1)
+    begins[slot[::-1]] = np.arange(len(slot))[::-1]  # of equal indices the last assignment counts: the first entry
+    begun = (begins >= 0) & ~late
+    first = begins[begun] if np.count_nonzero(begun) >= FEW * n_slots else begins[:0]
+    bare = np.flatnonzero(~begun).astype(np.int32) if len(first) else slot[:0]
+    other = ~late[slot]
+    other[first] = False
+    parts = (first, np.flatnonzero(other), np.flatnonzero(late[slot]))
+    order = np.concatenate(parts)
+    return {
+        "n_cleared": 0 if len(first) else n_slots, "n_bare": len(bare), "m_bare": bare,
+        "n_first": len(first), "n_constant": len(first) + len(parts[1]), "n_entries": len(slot),
+        "m_slot": slot[order], "m_source": source[order], "m_constant": constant[order], "m_cj": cj[order],
+    }  # fmt: skip

@@ -25,14 +25,20 @@ MOST_TINY, TINY_STEP = 100, 2e-14
 
 @compiled
 def _finite(values, count):
-    even = 0.0
-    odd = 0.0  # two sums: each addition waits for the one before
-    for k in range(0, count - 1, 2):
-        even += 0.0 * values[k]
-        odd += 0.0 * values[k + 1]
-    if count % 2 == 1:
-        even += 0.0 * values[count - 1]
-    return even + odd == 0.0
+    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # each addition waits for the one before in its sum
+    whole = count - count % 8
+    for k in range(0, whole, 8):
+        a += 0.0 * values[k]
+        b += 0.0 * values[k + 1]
+        c += 0.0 * values[k + 2]
+        d += 0.0 * values[k + 3]
+        e += 0.0 * values[k + 4]
+        f += 0.0 * values[k + 5]
+        g += 0.0 * values[k + 6]
+        h += 0.0 * values[k + 7]
+    for k in range(whole, count):
+        a += 0.0 * values[k]
+    return ((a + b) + (c + d)) + ((e + f) + (g + h)) == 0.0
 
 
 def residual(t, yy, yp, rr, user_data):

@@ -124,9 +124,15 @@ def add_sizes(e, values, y, yp, size):
 @compiled
 def add_entries(e, values, cj, a):
     """The matrix: every value, times its constant and its part in cj, in its slot."""
-    for k in range(e.n_slots):
+    for k in range(e.n_cleared):
         a[k] = 0.0
-    for k in range(e.n_entries):
+    for k in range(e.n_bare):
+        a[e.m_bare[k]] = 0.0
+    for k in range(e.n_first):
+        a[e.m_slot[k]] = values[e.m_source[k]] * e.m_constant[k]
+    for k in range(e.n_first, e.n_constant):
+        a[e.m_slot[k]] += values[e.m_source[k]] * e.m_constant[k]
+    for k in range(e.n_constant, e.n_entries):
         a[e.m_slot[k]] += values[e.m_source[k]] * (e.m_constant[k] + e.m_cj[k] * cj)
 
 

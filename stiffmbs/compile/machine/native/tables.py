@@ -30,12 +30,14 @@ the address of how the elements' numbers change); the derivatives of the values.
 EQUATIONS = Layout({
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
     "r_row": INDICES, "r_source": INDICES, "r_operand": INDICES, "r_factor": FLOATS,
-    "n_slots": INT, "n_entries": INT, "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
+    "n_slots": INT, "n_cleared": INT, "n_bare": INT, "m_bare": INDICES, "n_first": INT, "n_constant": INT, "n_entries": INT,
+    "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
     "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
 })  # fmt: skip
-"""Residual and matrix of one formulation (`stiffmbs.compile.equations`)."""
+"""Residual and matrix of one formulation (`stiffmbs.compile.equations`), with the entries of
+the matrix in the order of its `entry_lists`."""
 
 FACTORS = Layout({
     "n": INT, "expected_entries": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "factored": FLOATS, "scale": FLOATS,
