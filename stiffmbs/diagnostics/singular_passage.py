@@ -50,12 +50,19 @@ def singular_passage_sentence(
     if not poses.usual:
         return
     first, *others = [np.linspace(rows.t[k - 1], rows.t[k + 1], INSTANTS) for k in sorted(dips)]
-    found = _nearest(poses, again(first), [first])
-    if others and _magnified(found[0]) * LAST_DIGITS < DECIDED:
+    dense = again(first)
+    found, reached, asked = _nearest(poses, dense, [first]), dense.t, first[-1]
+    if others and not _decided_by_chance(found[0]):
         dense = again(np.unique(np.concatenate(others)))
         found = min(found, _nearest(poses, dense, others), key=lambda each: each[0])
+        reached, asked = dense.t, others[-1][-1]
     d, pose = found
-    if pose is not None:
+    if not _decided_by_chance(d) and not (len(reached) and reached[-1] >= asked):
+        yield (
+            f"may pass a singular pose near t = {rows.t[min(dips)]:.6g} s or later, where more than one motion may follow: "
+            "a second run that looks at it was cut short"
+        )
+    elif pose is not None:
         yield from _sentence(pose, d, rtol)
 
 
@@ -108,11 +115,16 @@ def _magnified(d: float) -> float:
     return float(MAGNIFIED / max(d * d, np.finfo(float).tiny))
 
 
+def _decided_by_chance(d: float) -> bool:
+    """Whether the last digits of the geometry decide what follows a pose at a distance d."""
+    return _magnified(d) * LAST_DIGITS >= DECIDED
+
+
 def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
     magnified = _magnified(d)
     where = "; ".join(f"{body} at {place}" for body, place in zip(pose.bodies, pose.poses, strict=True))
     at = f"near t = {pose.t:.6g} s, where {listed(list(pose.joints))} nearly depend on each other"
-    if magnified * LAST_DIGITS >= DECIDED:
+    if _decided_by_chance(d):
         yield (
             f"passes a singular pose {at}: more than one motion may follow, and the motion depends on the last digits of the geometry "
             f"({where})"

@@ -182,7 +182,11 @@ def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
     """The run once more, up to the last of other instants, reported at its start and at these."""
     grid = replace(job.grid, end=float(times[-1]), times=np.union1d(job.grid.start, times))
     again = replace(job, grid=grid)
-    return reported(job.dynamics, again.integrate(), job.on_constraints)[0]
+    trajectory = up_to_a_fault(job.dynamics.system, again.integrate())
+    rows = reported(job.dynamics, trajectory, job.on_constraints)[0]
+    if job.dynamics.system.has_functions:
+        fault_of(job.dynamics.system)  # it has left out rows; the next run begins without it
+    return rows
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:

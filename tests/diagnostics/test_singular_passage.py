@@ -1,5 +1,7 @@
 """A slider on a turning guide, whose line passes the guide's hinge: the nearer it does, the less is known of what follows."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -60,3 +62,25 @@ def test_dips_are_seen_from_outputs_on_both_sides():
     assert deepest_dips(np.log(1 + 0.5 * np.cos(9 * t))) == []
     passed[20] = np.nan
     assert deepest_dips(passed)[-1] in (20, int(np.nanargmin(passed)))
+
+
+def test_a_look_that_is_cut_short_is_told():
+    """A law that fails in the second run alone, which looks at the passage."""
+    calls, last = itertools.count(), [10**9]
+
+    def nothing(x):
+        if next(calls) == last[0]:
+            raise KeyboardInterrupt
+        return 0.0 * x[0], 0.0, 0.0
+
+    model = four_bar(1.0 + 1e-9, 0.5)
+    model.add("law", stiffmbs.PythonForce(i="rocker", of=("rocker.x",), function=nothing))
+    assert any("singular pose" in note for note in stiffmbs.run(model, duration=0.5, points=101).notes)
+    total = next(calls)
+    told = []
+    for before_the_end in (100, 300, 600):
+        last[0] = next(calls) + total - before_the_end
+        solution = stiffmbs.run(model, duration=0.5, points=101)
+        assert solution.success
+        told += [note for note in solution.notes if "a singular pose near" in note]
+    assert len(told) == 3 and any("may pass" in note and "cut short" in note for note in told)
