@@ -38,10 +38,13 @@ class Stiffness:
         The largest row sum of M^-1/2 df/dq M^-1/2, 1/s^2.
     of_velocities : float
         The same of M^-1 df/du, 1/s.
+    of_forces : float
+        The same of df/dq, N/m.
     """
 
     of_positions: float
     of_velocities: float
+    of_forces: float
 
     @property
     def fastest(self) -> float:
@@ -65,20 +68,25 @@ def stiffness_at(dynamics: Dynamics, t: float) -> Stiffness:
     """That of the state at hand."""
     state = dynamics.state
     state.evaluate("tangent", t)
-    of_positions, of_velocities = row_sums_of(dynamics)
+    sums = row_sums_of(dynamics)
     with np.errstate(over="ignore"):  # of a body of next to no mass: infinite
         values = state.values["tangent"]
-        return Stiffness(of_positions.largest(values), of_velocities.largest(values))
+        return Stiffness(*(of_term.largest(values) for of_term in sums))
 
 
-def row_sums_of(dynamics: Dynamics) -> tuple[RowSums, RowSums]:
-    """Those of the derivatives of forces by positions and by velocities."""
+def row_sums_of(dynamics: Dynamics) -> tuple[RowSums, RowSums, RowSums]:
+    """Those of the derivatives of accelerations by positions and by velocities, and of forces by positions."""
     return dynamics.kept("row sums", None, lambda: _row_sums(dynamics.system))
 
 
-def _row_sums(system: System) -> tuple[RowSums, RowSums]:
+def _row_sums(system: System) -> tuple[RowSums, RowSums, RowSums]:
     f_q, f_u = system.term("tangent", "f_q"), system.term("tangent", "f_u")
-    return row_sums(f_q, system.mass, system.mass_by_coordinate), row_sums(f_u, system.mass, system.mass)
+    of_forces = RowSums(f_q.source, f_q.row, np.ones(len(f_q.row)), system.n_u)
+    return (
+        row_sums(f_q, system.mass, system.mass_by_coordinate),
+        row_sums(f_u, system.mass, system.mass),
+        of_forces,
+    )
 
 
 def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:

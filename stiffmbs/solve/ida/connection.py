@@ -187,11 +187,11 @@ class Connection:
         self.output_correction.begin()
         self.history.begin(t)
 
-    def correct_outputs(self, long_step: float, part: float, balanced: float) -> None:
+    def correct_outputs(self, long_step: float, part: float, balanced: float, stiffness: float) -> None:
         """Have states within long steps brought back to the equations, as `OutputCorrection.limit` has it."""
         if long_step < np.inf and not self.output_correction.ready:
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector)
-        self.output_correction.limit(long_step, part, balanced)
+        self.output_correction.limit(long_step, part, balanced, stiffness)
 
     def suppress(self, suppressed: np.ndarray) -> None:
         """Leave unknowns out of the error test."""

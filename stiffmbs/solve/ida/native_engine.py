@@ -111,7 +111,10 @@ class NativeEngine:
         """Correct states within long steps, and look at vibrations, by the stiffness at a start."""
         stiffness = self._stiffness
         self._ida.correct_outputs(
-            stiffness.long_step, max(stiffness.allowed_residual, NUMBERS_END / self._rtol), self._rtol
+            stiffness.long_step,
+            max(stiffness.allowed_residual, NUMBERS_END / self._rtol),
+            self._rtol,
+            stiffness.of_forces,
         )
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
 

@@ -56,6 +56,7 @@ class OutputCorrection:
         libraries.SUNLinSolInitialize(assembled.solver)
         vectors = {name: np.zeros(self._equations.n) for name in VECTORS}
         force_row, force_end = _rows_of_motion(self._equations)
+        joint_row = _rows_of_joints(self._equations)
         functions = {
             "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights",
             "clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
@@ -68,17 +69,21 @@ class OutputCorrection:
                 **{name: libraries.address(function) for name, function in functions.items()},
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "entries": assembled.values, "pattern": assembled.pattern,
-                "force_row": force_row, "force_end": force_end, **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
+                "force_row": force_row, "force_end": force_end, "n_joint_rows": len(joint_row), "joint_row": joint_row,
+                **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
             },
         )  # fmt: skip
-        self._assembled, self._vectors = assembled, {**vectors, "force_row": force_row, "force_end": force_end}
+        self._assembled = assembled
+        self._vectors = {**vectors, "force_row": force_row, "force_end": force_end, "joint_row": joint_row}
 
-    def limit(self, long_step: float, part: float, balanced: float) -> None:
+    def limit(self, long_step: float, part: float, balanced: float, stiffness: float) -> None:
         """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left.
 
-        States are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest.
+        States are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest, nor
+        would be if joints that are open were closed: by that opening times `stiffness`, N/m.
         """
         self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
+        self._cells["stiffness"] = stiffness
 
     def begin(self) -> None:
         """Look at the first state behind a start."""
@@ -97,3 +102,11 @@ def _rows_of_motion(equations: Equations) -> tuple[np.ndarray, np.ndarray]:
     straight = equations.system.per_velocity(1.0, 0.0) == 1.0
     kinds = [rows[of_kind & (rows != ABSENT)] for of_kind in (straight, ~straight)]
     return np.concatenate(kinds).astype(np.int64), np.cumsum([len(kind) for kind in kinds]).astype(np.int64)
+
+
+def _rows_of_joints(equations: Equations) -> np.ndarray:
+    """The rows that hold a position constraint by itself; none where constraints are those of accelerations."""
+    kinds = [line.rows for line in equations.formulation.residual if line.block == "C" and line.factor == 1]
+    rows = [equations.at[kind] for kind in kinds]
+    found = np.concatenate([np.empty(0), *rows])
+    return found[found != ABSENT].astype(np.int64)

@@ -27,6 +27,8 @@ FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "start_anew": "IDAReInit", "set_first_step": "IDASetInitStep",
     "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
 }  # fmt: skip
+OF_STIFFNESS = "of_positions", "of_velocities", "of_forces"
+"""Cells with what makes a `Stiffness`."""
 
 
 class Starts:
@@ -98,7 +100,7 @@ class Starts:
         if _START.short_call(t, counted, highest_order, self._at) < 0:
             return None
         cells = self._cells
-        return Stiffness(float(cells["of_positions"]), float(cells["of_velocities"])), float(cells["newton"])
+        return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
 
 
 def _places(equations: Equations) -> dict[str, Any]:
@@ -139,8 +141,8 @@ def _stiff(dynamics: Dynamics) -> dict[str, Any]:
             f"{name}_scale": np.ascontiguousarray(sums.scales),
         }  # fmt: skip
 
-    of_positions, of_velocities = row_sums_of(dynamics)
-    return {**of("f_q", of_positions), **of("f_u", of_velocities)}
+    of_positions, of_velocities, of_forces = row_sums_of(dynamics)
+    return {**of("f_q", of_positions), **of("f_u", of_velocities), "as_it_is": np.ascontiguousarray(of_forces.scales)}
 
 
 def _integers(numbers: np.ndarray) -> np.ndarray:

@@ -67,8 +67,20 @@ def _look(b, s, e, t):
 
 
 @compiled
+def _by_joints(b):
+    """A bound on the force that closing the joints would make, N."""
+    opening = 0.0
+    for k in range(b.n_joint_rows):
+        opening = max(opening, abs(b.defect[b.joint_row[k]]))
+    return b.stiffness * opening
+
+
+@compiled
 def _left(b, s, e):
-    """The largest part that the equations of motion leave of the forces in them, in units of what may be left."""
+    """The largest part that the equations of motion leave of the forces in them, in units of what may be left.
+
+    Reported states are moved onto the constraints, by the smallest move, which knows nothing of stiff forces.
+    """
     add_sizes(e, floats(s.values[e.residual_set]), b.y, b.yp, b.size)
     part = 0.0
     first = 0
@@ -82,6 +94,8 @@ def _left(b, s, e):
         if not left <= b.balanced * largest:
             return 2.0
         part = max(part, left / (b.balanced * largest) if largest > 0.0 else 0.0)
+        if kind == 0 and largest > 0.0:
+            part = max(part, _by_joints(b) / (b.balanced * largest))
     return part
 
 
