@@ -35,18 +35,19 @@ PAIRED_COLUMNS = Layout({
 BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
     "compile_pivots": INT_CELL, "setup_pivots": INT_CELL, "solve_pivots": INT_CELL,
-    "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL, "refined": INT_CELL,
+    "ready": INT_CELL, "panels": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL, "refined": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
-    "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS, "pivot": FLOATS, "tried": FLOATS,
-    "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
+    "order": INTS, "unit": FLOATS, "behind": FLOATS, "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS,
+    "pivot": FLOATS, "tried": FLOATS, "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
-"""The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
+"""The same by dense blocks (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
 of columns in pairs that takes over where those cannot be trusted, `compile_pivots` that of the C function that puts the addresses of
 its routines into the next two cells.  `ready` says whether the counts are of this run: whether the factors at
 hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, trials that were failed, and
-whether solutions are refined."""
+whether solutions are refined; `panels` is where the factors begin in `lu`.  `order` tells which rows a node's pivots were found in;
+`unit` and `behind` are the rows of a unit matrix and of ones above its diagonal."""
 
 DYNAMICS = Layout({
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
@@ -91,12 +92,17 @@ with the later pin that it belongs to; rows of `product` tell which blocks of J 
 BLOCK_ELIMINATION = Layout({
     "n_gamma": INT, "gamma_source": INDICES, "gamma_place": INDICES,
     "n_first": INT, "n_j": INT, "j_source": INDICES, "j_at": INDICES, "j_scale": FLOATS, "j": FLOATS,
+    "n_full": INT, "full": INDICES, "n_diagonals": INT, "straight": INDICES, "scale": FLOATS,
     "n_pairs": INT, "pair": INDICES, "n_singles": INT, "single": INDICES,
     "n_forming": INT, "forming": INDICES, "n_products": INT, "product": INDICES,
     "n_nodes": INT, "node": INDICES, "n_panels": INT, "blocks": FLOATS, "update": INDICES, "right": INDICES,
     "place": INTS, "pivot": FLOATS, "diagonal": FLOATS, "n_x": INT, "x": FLOATS, "y": FLOATS,
 })  # fmt: skip
-"""The same by dense blocks (`stiffmbs.solve.linear.joint_blocks`).  Velocities are taken by threes.  Rows of `pair`: a joint's place in x, its block of J for three velocities of a body, the
+"""The same by dense blocks (`stiffmbs.solve.linear.joint_blocks`).  Velocities are taken by threes.  Rows of `full`, where
+each has an entry of J in all rows of a joint: how many these are, start and stride of the joint's panel, place in x, block of J for
+the three, the first of them, and where the entries of each row begin among the values.  Rows of `straight`, where each has one entry, on
+a diagonal: place and step in the panel, place in x, place and step in J, first velocity, three sources.  All others are copied into J
+one by one.  Rows of `pair`: a joint's place in x, its block of J for three velocities of a body, the
 first of them, the block's width.  Where each has one entry of J at the most, rows of `single`: place in x, entry, velocity.  Rows of
 `forming`: a shape, where lines are added, their stride, and both factors with theirs; of `product`: where the product of two single
 entries is added, and both.  Rows of `node`: size, width, start and stride of the node's panel, start and width of what stands right
