@@ -8,8 +8,7 @@ import numpy as np
 
 from .coordinates import FIXED, Coordinates, all_independent
 from .formulation import Formulation
-from .machine.held_once import held_once
-from .machine.layout import packed
+from .machine.layout import held_once, packed
 from .machine.native.tables import EQUATIONS
 from .system import System, Term
 from .terms import TERM_SETS

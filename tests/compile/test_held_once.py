@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.compile.machine.held_once import held_once
+from stiffmbs.compile.machine.layout import held_once
 from stiffmbs.jobs.job import prepare
 
 SCENE = """

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.machine.held_once import held_once
+from ...compile.machine.layout import held_once
 from ...compile.system import System, Term
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics

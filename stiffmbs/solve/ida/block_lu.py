@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.held_once import held_once
-from ...compile.machine.layout import Layout
+from ...compile.machine.layout import Layout, held_once
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.block_updates import updates

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.held_once import held_once
+from ...compile.machine.layout import held_once
 from .elimination_order import EliminationOrder
 
 
