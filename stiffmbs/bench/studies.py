@@ -55,14 +55,12 @@ class StudyRuns:
         study = study_of(self.scene(), {}, None, 0, [self.output], varied)
         expected = study.solve()[self.output].values
         before = largest_memory()
-        off, bare, evaluated, alone = 0.0, [], [], []
+        off, alone = 0.0, []
+        by_case = [_by_case(study) for _ in range(rounds)]
         clock: dict[str, list[float]] = {name: [] for name in WAYS}
         with ProcessPoolExecutor(2, get_context("spawn")) as processes:
             study.solve(executor=processes)  # which start, and compile
             for _ in range(rounds):
-                integrating, evaluating = _bare(study)
-                bare.append(integrating)
-                evaluated.append(evaluating)
                 for way, spent in clock.items():
                     begun, used = time.perf_counter(), time.process_time()
                     found = study.solve(2 if way == "2 threads" else None, processes if way == "2 processes" else None)
@@ -70,9 +68,11 @@ class StudyRuns:
                     if way == "1 thread":
                         alone.append(time.process_time() - used)
                     off = max(off, float(np.max(np.abs(found[self.output].values - expected))))
-        integration, evaluation, whole = min(bare), min(evaluated), min(alone)
+        integration, evaluation, _ = np.min([spent.sum(axis=0) for spent in by_case], axis=0).tolist()
+        each = 1e3 * evaluation / len(study.cases)
+        rest = 1e3 * min(float(np.median(spent[:, 2])) for spent in by_case)
+        whole = min(alone)
         ratio = whole / integration
-        each, rest = (1e3 * spent / len(study.cases) for spent in (evaluation, whole - integration - evaluation))
         best = {way: min(spent) for way, spent in clock.items()}
         gains = {way: best["1 thread"] / spent for way, spent in best.items()}
         return [
@@ -87,15 +87,21 @@ class StudyRuns:
         ]  # fmt: skip
 
 
-def _bare(study: Study) -> tuple[float, float]:
-    """Processor's time of the integrations of all cases, and of their forces and accelerations at the output instants, s."""
-    solver, integrating, evaluating = CaseSolver(study.task), 0.0, 0.0
-    for values in study.cases:
-        job = solver.job(solver.scene(values))
+def _by_case(study: Study) -> np.ndarray:
+    """A row for each case, s of processor's time: its integration, its forces and accelerations at output instants, all else.
+
+    All else is the difference of two solutions of a case, one right after the other: of whole studies it is lost in the noise.
+    """
+    solver, rows = CaseSolver(study.task), []
+    for number, values in enumerate(study.cases):
         begun = time.process_time()
+        solver.row(number, values)
+        solved = time.process_time()
+        job = solver.job(solver.scene(values))
+        ready = time.process_time()
         found = job.integrate()
         integrated = time.process_time()
         reported(job.dynamics, found, job.on_constraints)
-        integrating += integrated - begun
-        evaluating += time.process_time() - integrated
-    return integrating, evaluating
+        alone = integrated - ready, time.process_time() - integrated
+        rows.append((*alone, solved - begun - sum(alone)))
+    return np.array(rows)

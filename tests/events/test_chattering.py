@@ -6,9 +6,11 @@ import pytest
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic, Revolute
 from stiffmbs.describe.model import FORCES
+from stiffmbs.jobs.run import prepare
 from stiffmbs.solve import bdf
 from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.events.chattering import TRUSTED_EVENTS, WINDOW, Chattering
+from stiffmbs.solve.events.discontinuity import sliding
 from stiffmbs.solve.trajectory import Outcome
 
 SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
@@ -157,3 +159,30 @@ def test_steps_too_short_to_arrive_end_the_run(solver, monkeypatch):
     solution = solve(block(rub, velocity=(1, 0)), solver, monkeypatch, duration=10.0)
     assert solution.outcome is Outcome.STOPPED
     assert solution.solver["steps"] < 100_000
+
+
+def looked_at(law, speed, acceleration=None):
+    """What slides in a block of such a speed at x = 0, and how often terms are evaluated to tell."""
+    job = prepare(block(law, velocity=(speed, 0)), presolve=False)
+    state, accelerations = job.dynamics.state, None
+    if acceleration is not None:
+        accelerations = np.zeros(len(job.start.u))
+        accelerations[0] = acceleration
+    before = state.evaluations
+    found = sliding(job.dynamics, 0.0, job.start.q, job.start.u, acceleration=accelerations)
+    return len(found), state.evaluations - before
+
+
+def test_a_jump_at_a_place_is_passed_whatever_the_accelerations():
+    assert looked_at("-20*sign(block.x)", 1.0) == (0, 4)
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_a_jump_that_drives_the_motion_back_is_found(known):
+    found, _ = looked_at("-2*sign(block.vx)", 1e-9, -2.0 if known else None)
+    assert found == 1
+
+
+def test_known_accelerations_that_drive_the_motion_away_need_no_look_at_the_sides():
+    assert looked_at("2*sign(block.vx)", 1e-9, 2.0) == (0, 6)
+    assert looked_at("2*sign(block.vx)", 1e-9)[1] > 6

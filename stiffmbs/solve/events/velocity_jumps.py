@@ -26,7 +26,7 @@ class VelocityJumps:
 
     def note(self, t: float, change: np.ndarray) -> None:
         """Note a change of velocities at a breakpoint; the dynamics' state is the one behind it."""
-        if not change.any():
+        if not (np.abs(change) > WORTH_TELLING).any():
             return
         k = int(np.argmax(np.abs(change)))
         if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self._dynamics.state.u)))):

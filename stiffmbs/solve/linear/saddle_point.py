@@ -87,9 +87,28 @@ def saddle_points(state: State, *formulations: Formulation) -> list[SaddlePoint]
         state.load(formulation.residual_set)
     systems = list(map(Equations, formulations, repeat(state.system)))
     tables = list(map(Equations.table, systems))
-    factors = [factors_of(each.n, *each.pattern, elimination_order(each)) for each in systems]
-    factors_tables = list(map(packed_with_memory, repeat(FACTORS), factors))
-    return list(map(SaddlePoint, systems, tables, factors_tables, factors))
+    found: list[SaddlePoint] = []
+    for each, table in zip(systems, tables, strict=True):
+        like = next((known for known in found if _same_matrix(known.equations, each)), None)
+        found.append(SaddlePoint(each, table, like.factors if like else _factors(each)))
+    return found
+
+
+def _factors(equations: Equations) -> tuple[np.ndarray, dict[str, Any]]:
+    """Memory of the factors, and their table."""
+    factors = factors_of(equations.n, *equations.pattern, elimination_order(equations))
+    return packed_with_memory(FACTORS, factors), factors
+
+
+def _same_matrix(one: Equations, other: Equations) -> bool:
+    """Whether the matrices are the same at every pose, as those of accelerations and of velocities are without friction."""
+    if one.formulation.unknowns != other.formulation.unknowns:
+        return False
+    return not any(
+        len(each.system.term(each.formulation.matrix_set, block.block).row)
+        for each, like in ((one, other), (other, one))
+        for block in set(each.formulation.matrix) - set(like.formulation.matrix)
+    )
 
 
 class SaddlePoint:
@@ -97,14 +116,18 @@ class SaddlePoint:
 
     Attributes
     ----------
+    equations : Equations
+    factors : tuple of ndarray of int and dict
+        The table of the factors, which block systems with the same matrix share, and their memory.
     equations_table, factors_table : ndarrays of int
         Addresses (`stiffmbs.compile.machine.layout`).
     """
 
     def __init__(
-        self, equations: Equations, table: tuple[np.ndarray, list[np.ndarray]], factors_table: np.ndarray, factors: dict[str, Any]
+        self, equations: Equations, table: tuple[np.ndarray, list[np.ndarray]], factors: tuple[np.ndarray, dict[str, Any]]
     ) -> None:  # fmt: skip
-        self.equations, self.factors_table, self._factors = equations, factors_table, factors
+        self.equations, self.factors = equations, factors
+        self.factors_table, _ = factors
         self.equations_table, self._slots = table
         self._cells = self.factors_table.view(FACTORS.cells)[0]
 

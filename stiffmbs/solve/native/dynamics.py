@@ -26,6 +26,8 @@ MOST_MOVES = 20
 """Newton's moves back to the constraints, from a state that was near them."""
 COORDINATE_ROUNDING = 9e-16
 """Part of the largest coordinate that no violation can be told below: four roundings."""
+ENTRY_ROUNDING = 4.4e-16
+"""Difference of two entries of block matrices, scaled to a diagonal of 1, that is none: two roundings of 1."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
 """Change of the multipliers, relative to the largest of them and of the applied forces, at which they are in balance with the friction that they press."""
@@ -75,13 +77,21 @@ def _largest_violation(s, violation):
 
 @compiled
 def _is_as_factored(f):
-    """Whether the matrix is the one whose factors are known, as of bodies without joints; else it is kept as that."""
-    for k in range(f.a_start[f.n]):
-        if f.a[k] != f.factored[k]:
-            for following in range(k, f.a_start[f.n]):
-                f.factored[following] = f.a[following]
-            return False
+    """Whether the matrix is the one whose factors are known, as of velocities at the same pose, or of bodies without joints.
+
+    Term sets round the same terms in different ways: entries may differ by what they lose in the scaled matrix anyway.
+    """
+    for column in range(f.n):
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            if f.a[p] != f.factored[p] and not _rounded_alike(f, p, column):
+                return False
     return True
+
+
+@compiled
+def _rounded_alike(f, p, column):
+    """Whether an entry is by rounding alone another one than that whose factors are known."""
+    return abs(f.a[p] - f.factored[p]) * f.scale[f.a_row[p]] * f.scale[column] <= ENTRY_ROUNDING
 
 
 @compiled
@@ -90,7 +100,9 @@ def _solved(s, equations, factors, values):
     e = equations_view(equations)
     matrix = factors_view(factors)
     add_entries(e, values, 0.0, matrix.a)
-    if not _is_as_factored(matrix) or not matrix.ready:
+    if not (matrix.ready and _is_as_factored(matrix)):
+        for k in range(matrix.a_start[matrix.n]):
+            matrix.factored[k] = matrix.a[k]
         outcome = factored(factors)
         if outcome == FULL:
             return NO_MEMORY
