@@ -55,7 +55,7 @@ def _lists(job):
     equations = first.equations
     return [
         *equations.pattern, equations._slot, equations._source, equations._constant, equations._cj, equations._r_row, equations._r_factor, *first._slots,
-        first._factors["a_row"], first._factors["a_start"],
+        *vars(job.dynamics.system.term("acceleration", "J")).values(),
     ]  # fmt: skip
 
 

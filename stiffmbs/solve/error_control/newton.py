@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.machine.layout import held_once
 from ...compile.system import System, Term
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
@@ -82,7 +81,7 @@ def row_sums_of(dynamics: Dynamics) -> tuple[RowSums, RowSums, RowSums]:
 
 def _row_sums(system: System) -> tuple[RowSums, RowSums, RowSums]:
     f_q, f_u = system.term("tangent", "f_q"), system.term("tangent", "f_u")
-    of_forces = RowSums(held_once(f_q.source), held_once(f_q.row), np.ones(len(f_q.row)), system.n_u)
+    of_forces = RowSums(f_q.source, f_q.row, np.ones(len(f_q.row)), system.n_u)
     return (
         row_sums(f_q, system.mass, system.mass_by_coordinate),
         row_sums(f_u, system.mass, system.mass),
@@ -127,4 +126,4 @@ def row_sums(term: Term, mass: np.ndarray, of_columns: np.ndarray) -> RowSums:
     """Those of a term, by the masses of its rows and its columns."""
     of_rows, of_term = mass[term.row], of_columns[term.column]
     scales = np.sqrt(of_rows) * np.sqrt(np.where(of_term > 0, of_term, of_rows))
-    return RowSums(held_once(term.source), held_once(term.row), scales, len(mass))
+    return RowSums(term.source, term.row, scales, len(mass))

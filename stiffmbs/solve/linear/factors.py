@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import held_once
 from .elimination_order import EliminationOrder
 
 
@@ -24,8 +23,8 @@ def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: Elimination
     """
     return {
         "n": n, "expected_entries": order.fill + n,
-        "a_start": held_once(np.searchsorted(columns, np.arange(n + 1)).astype(np.int64)),
-        "a_row": held_once(rows.astype(np.int64)), "a": np.zeros(len(rows)), "factored": np.zeros(len(rows)), "scale": np.ones(n), "order": order.unknowns,
+        "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64, copy=False),
+        "a_row": np.ascontiguousarray(rows, dtype=np.int64), "a": np.zeros(len(rows)), "factored": np.zeros(len(rows)), "scale": np.ones(n), "order": order.unknowns,
         "l_start": _ints(n + 1), "u_start": _ints(n + 1), "pivot": _ints(n), "stack": _ints(4 * n),
         **{name: np.zeros(n) for name in ("work", "b", "previous", "x")},
     }  # fmt: skip
