@@ -134,10 +134,13 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
     force = e.work_by_velocities(zip(lam, V, strict=True))
     turning = e.rate(V)
+    second = (
+        map(e.second_rate, C) if kind.dimensions == 3 else turning[: len(C), :]
+    )  # in the plane that has fewer products
     power = power_of_joint(e, V, lam)
     terms = {
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": e.by_coordinates(C), "V": V, "J": J, "V_q": e.by_coordinates(V),
-        "gamma": -turning,
+        "gamma": -sp.Matrix([*second, *turning[len(C) :, :]]),
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(stated, e, -force),

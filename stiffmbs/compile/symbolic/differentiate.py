@@ -115,6 +115,28 @@ class Derivatives:
             self._known[x, v] = self.named(self.partial(self.meanings[x], v))
         return self._known[x, v]
 
+    def along(self, x: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+        """The rate of x where some symbols have rates: each symbol's own by a name, so that the rate of a rate has few products."""
+        match x:
+            case sp.Symbol():
+                return rates[x] if x in rates else self._rate_of_symbol(x, rates)
+            case sp.Add():
+                return sp.Add(*(self.along(part, rates) for part in x.args))
+            case sp.Mul():
+                return sp.Add(
+                    *(sp.Mul(*x.args[:k], self.along(part, rates), *x.args[k + 1 :]) for k, part in enumerate(x.args))
+                )
+            case _:
+                return self._by_all(x, rates)
+
+    def _rate_of_symbol(self, x: sp.Symbol, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+        if x in self._chain or x not in self.meanings:
+            return self.named(self._by_all(x, rates))
+        return self.named(self.along(self.meanings[x], rates))
+
+    def _by_all(self, x: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+        return sp.Add(*(rate * self.partial(x, symbol) for symbol, rate in rates.items()))
+
     def _depends(self, x: sp.Expr, v: sp.Symbol) -> bool:
         """Whether v, or a symbol that stands for a function of v, occurs in x."""
         return any(v in self._of_one(symbol) for symbol in self._symbols_in(x))

@@ -131,6 +131,12 @@ class SymbolicElement:
         )
         return sp.Add(*moving, *own) + partial(x, self.t)
 
+    def second_rate(self, x: sp.Expr) -> sp.Expr:
+        """The second total time derivative at constant velocities, of what has been read."""
+        rates = {symbol: rate for frame in self.frames for symbol, rate in frame.motion}
+        rates |= dict(zip(self.states, self.state_rates, strict=False)) | {self.t: sp.Integer(1)}
+        return self.derivatives.along(self.derivatives.along(x, rates), rates)
+
     def named(self, x: Any) -> Any:
         """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
         if isinstance(x, sp.MatrixBase):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, combinations_with_replacement, product
 from typing import Any
@@ -16,6 +15,8 @@ from ...compile.system import System
 from ..native.tables.linear import BLOCK_ELIMINATION
 from .block_updates import pieces_of
 from .blocks import QUAD, padded
+from .joint_jacobian import Jacobian, jacobian_of
+from .joint_sides import side_lists
 
 MOST_LINES = 6
 """Of a product of two quads, in registers."""
@@ -98,51 +99,6 @@ class Joints:
         return list(accumulate(self.widths, initial=0))
 
 
-@dataclass(frozen=True)
-class Jacobian:
-    """J by blocks of a joint and a body, column by column, each filled up to whole quads.
-
-    Attributes
-    ----------
-    source, at, column : ndarrays of int
-        Of each entry: its value, its place, its velocity.  What is added to other entries comes last.
-    begin : dict
-        Where the block of a joint and a body begins.
-    end : int
-        Where the last ends.
-    thirds : dict
-        For a joint, a body and the first of three of its velocities, the rows of the joint in which each has entries.
-    """
-
-    source: np.ndarray
-    at: np.ndarray
-    column: np.ndarray
-    begin: dict[tuple[int, int], int]
-    end: int
-    thirds: dict[tuple[int, int, int], list[set[int]]]
-
-
-def jacobian_of(joints: Joints, system: System, kept: np.ndarray) -> Jacobian:
-    """The blocks of J, of which the entries `kept` stand in equations that are solved for."""
-    node, within = np.zeros(system.n_c, dtype=np.int64), np.zeros(system.n_c, dtype=np.int64)
-    for k, rows in enumerate(joints.rows):
-        node[rows], within[rows] = k, np.arange(len(rows))
-    jacobian, width = system.term("acceleration", "J"), system.of_body.n_u
-    row, column = jacobian.row[kept], jacobian.column[kept]
-    body, line = column // width, column % width
-    pairs = [(k, own) for k, bodies in enumerate(joints.bodies) for own in bodies]
-    begins = list(accumulate((width * joints.widths[k] for k, _ in pairs), initial=0))
-    begin = dict(zip(pairs, begins, strict=False))
-    starts = np.array([begin[both] for both in zip(node[row].tolist(), body.tolist(), strict=True)], dtype=np.int64)
-    at = starts + line * np.array(joints.widths, dtype=np.int64)[node[row]] + within[row]
-    thirds: dict[tuple[int, int, int], list[set[int]]] = {}
-    for k, own, place, r in zip(node[row].tolist(), body.tolist(), line.tolist(), within[row].tolist(), strict=True):
-        third = thirds.setdefault((k, own, place - place % 3), [set(), set(), set()])
-        third[place % 3].add(r)
-    order = np.argsort(_occurrence(at), kind="stable")
-    return Jacobian(jacobian.source[kept][order], at[order], column[order], begin, begins[-1], thirds)
-
-
 def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any]:
     """What the table holds of joints (`stiffmbs.solve.native.tables.linear.BLOCK_ELIMINATION`).
 
@@ -165,7 +121,8 @@ def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, A
     forming, products = _products(joints, j)
     lists = {
         "gamma_source": gamma.source[solved], "gamma_place": place[gamma.row[solved]],
-        "j_source": j.source, "j_at": j.at, "j_scale": scale[j.column], "j": _at_a_line(j.end),
+        "j_source": j.source, "j_at": j.at, "j_scale": scale[j.column], "scale": scale, "j": _at_a_line(j.end),
+        **side_lists(joints, j.sides, j.begin, system.of_body.n_u),
         "pair": pairs, "single": singles, "forming": forming, "product": products,
         "node": list(_nodes(joints, updates, right)), "blocks": _at_a_line(joints.multiplied_starts[-1]),
         "update": [row for part in updates for row in part], "right": [x for part in right for x in part], "place": place,
@@ -173,17 +130,10 @@ def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, A
         "x": _at_a_line(joints.places[-1]), "y": _at_a_line(joints.places[-1]),
     }  # fmt: skip
     return {
-        **arrays_of(BLOCK_ELIMINATION, lists), "n_gamma": len(solved), "n_first": len(np.unique(j.at)), "n_j": len(j.at),
+        **arrays_of(BLOCK_ELIMINATION, lists), "n_full": len(lists["full"]), "n_diagonals": len(lists["straight"]), "n_gamma": len(solved), "n_first": len(np.unique(j.at)), "n_j": len(j.at),
         "n_pairs": len(pairs), "n_singles": len(singles), "n_forming": len(forming), "n_products": len(products),
         "n_nodes": len(joints.sizes), "n_panels": joints.starts[-1], "n_x": joints.places[-1],
     }  # fmt: skip
-
-
-def _occurrence(at: np.ndarray) -> np.ndarray:
-    """0 where a number stands first in a list, 1 where it stands again."""
-    again = np.ones(len(at), dtype=np.int64)
-    again[np.unique(at, return_index=True)[1]] = 0
-    return again
 
 
 def _nodes(joints: Joints, updates: list[Any], right: list[Any]) -> Iterator[tuple[int, ...]]:
@@ -201,6 +151,8 @@ def _pairs(joints: Joints, j: Jacobian, width: int) -> tuple[Rows, Rows]:
     pairs: Rows = []
     singles: Rows = []
     for (k, body, first), rows in j.thirds.items():
+        if (k, body, first) in j.sides.handled:
+            continue
         begin, velocity, x = j.begin[k, body] + first * joints.widths[k], width * body + first, joints.places[k]
         if _is_thin(rows):
             singles += [
@@ -220,6 +172,8 @@ def _products(joints: Joints, j: Jacobian) -> tuple[Rows, Rows]:
     single: Rows = []
     for (body, first), meeting in of_third.items():
         for k, other in combinations_with_replacement(meeting, 2):
+            if k == other and (k, body, first) in j.sides.handled:
+                continue
             start, stride = joints.starts[k] + joints.offsets[k][other], joints.strides[k]
             widths = joints.widths[k], joints.widths[other]
             a, b = (j.begin[one, body] + first * width for one, width in zip((k, other), widths, strict=True))

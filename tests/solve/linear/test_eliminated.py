@@ -88,3 +88,23 @@ def test_what_is_not_finite_leaves_no_trace(examples):
     assert not np.isfinite(found).all()
     dynamics.return_to_start()
     assert_equal(*both_ways(dynamics), 1e-10)
+
+
+def column(dynamics, name):
+    """A number in the table of the blocks."""
+    lists = dynamics.eliminated._lists
+    return lists[name]
+
+
+def test_no_entry_of_a_hinge_is_copied_by_itself():
+    """Its rotations have entries in all five rows, its translations one in each of three: for two bodies, and one at the ground."""
+    dynamics = prepare(chain_in_space(4), presolve=False).dynamics
+    assert (column(dynamics, "n_full"), column(dynamics, "n_diagonals")) == (7, 7)
+    assert column(dynamics, "n_j") == column(dynamics, "n_pairs") == column(dynamics, "n_singles") == 0
+
+
+def test_rows_of_a_slider_are_copied_where_they_have_gaps(examples):
+    dynamics = prepare(stiffmbs.load_scene(examples / "spatial_slider_crank.yaml"), presolve=False).dynamics
+    assert column(dynamics, "n_full") > 0
+    assert column(dynamics, "n_j") > 0
+    assert_equal(*both_ways(dynamics), 1e-10)

@@ -16,6 +16,7 @@ LLVM_TYPES = {
     "indices": "ptr",
     "floats": "ptr",
     "quad": "<4 x double>",
+    "octet": "<8 x double>",
 }
 """The kinds of values: numbers, truth values, C's int, pointers to int64, int32 and float64, four floats side by side."""
 ITEMS = {"ints": "int", "indices": "int32", "floats": "float"}

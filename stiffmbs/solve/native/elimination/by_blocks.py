@@ -7,12 +7,14 @@ joints in trees, as that of the articulated-body algorithm does (Featherstone, R
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
-from stiffmbs.compile.machine.native.quads import (
-    add_products,
+from stiffmbs.compile.machine.native.node_factors import (
     complete_vector,
+    eliminate_node,
     eliminate_rows,
     eliminate_vector,
     factor_symmetric,
+)
+from stiffmbs.compile.machine.native.quads import (
     plus_product,
     quad,
     set_quad,
@@ -21,70 +23,14 @@ from stiffmbs.compile.machine.native.quads import (
     take_products,
 )
 from stiffmbs.solve.native.elimination.digits import keeps_digits
+from stiffmbs.solve.native.elimination.shapes import formed, taken
+from stiffmbs.solve.native.elimination.sides import add_full_sides, add_straight_sides, take_side_reactions
 from stiffmbs.solve.native.tables.linear import BLOCK_ELIMINATION
 
 PAIR, SINGLE, FORMING, NODE, UPDATE = 4, 3, 7, 10, 5
 """Numbers in a row of the lists."""
 
 blocks_view = view_of("BlockElimination", BLOCK_ELIMINATION)
-
-
-@compiled
-def _formed(shape, into, stride, a, a_stride, b, b_stride):
-    """into += a^T b over three velocities, for lines of a shape: twice the number of lines, and one less where it is one quad wide, not two."""
-    if shape == 10:
-        add_products(5, 2, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 5:
-        add_products(3, 1, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 12:
-        add_products(6, 2, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 7:
-        add_products(4, 1, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 9:
-        add_products(5, 1, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 11:
-        add_products(6, 1, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 8:
-        add_products(4, 2, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 6:
-        add_products(3, 2, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 4:
-        add_products(2, 2, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 3:
-        add_products(2, 1, into, stride, a, a_stride, b, b_stride, 3)
-    elif shape == 2:
-        add_products(1, 2, into, stride, a, a_stride, b, b_stride, 3)
-    else:
-        add_products(1, 1, into, stride, a, a_stride, b, b_stride, 3)
-
-
-@compiled
-def _taken(shape, into, stride, a, a_stride, b, b_stride, depth):
-    """into -= a^T b for lines of a shape."""
-    if shape == 12:
-        take_products(6, 2, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 11:
-        take_products(6, 1, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 10:
-        take_products(5, 2, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 9:
-        take_products(5, 1, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 8:
-        take_products(4, 2, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 7:
-        take_products(4, 1, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 6:
-        take_products(3, 2, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 5:
-        take_products(3, 1, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 4:
-        take_products(2, 2, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 3:
-        take_products(2, 1, into, stride, a, a_stride, b, b_stride, depth)
-    elif shape == 2:
-        take_products(1, 2, into, stride, a, a_stride, b, b_stride, depth)
-    else:
-        take_products(1, 1, into, stride, a, a_stride, b, b_stride, depth)
 
 
 @compiled
@@ -104,6 +50,9 @@ def _assemble(r, b, values):
         b.j[b.j_at[k]] = values[b.j_source[k]] * b.j_scale[k]
     for k in range(b.n_first, b.n_j):
         b.j[b.j_at[k]] += values[b.j_source[k]] * b.j_scale[k]
+    _clear(b.blocks, b.n_panels)
+    add_full_sides(r, b, values)
+    add_straight_sides(r, b, values)
     for k in range(b.n_singles):
         p = shifted(b.single, SINGLE * k)
         b.x[p[0]] += b.j[p[1]] * r.a[p[2]]
@@ -115,13 +64,12 @@ def _assemble(r, b, values):
             total = plus_product(quad(b.x, p[0] + at), spread(a[0]), quad(j, at))
             total = plus_product(total, spread(a[1]), quad(j, width + at))
             set_quad(b.x, p[0] + at, plus_product(total, spread(a[2]), quad(j, 2 * width + at)))
-    _clear(b.blocks, b.n_panels)
     for k in range(b.n_products):
         p = shifted(b.product, SINGLE * k)
         b.blocks[p[0]] += b.j[p[1]] * b.j[p[2]]
     for k in range(b.n_forming):
         p = shifted(b.forming, FORMING * k)
-        _formed(p[0], shifted(b.blocks, p[1]), p[2], shifted(b.j, p[3]), p[4], shifted(b.j, p[5]), p[6])
+        formed(p[0], shifted(b.blocks, p[1]), p[2], shifted(b.j, p[3]), p[4], shifted(b.j, p[5]), p[6])
 
 
 @compiled
@@ -206,9 +154,15 @@ def _completed_vector(size, block, stride, x):
 @compiled
 def _forward(b, p, first):
     """Eliminate a node of x: take it out of those whose places stand from `first` on in `right`."""
+    _eliminated_vector(p[0], shifted(b.blocks, p[2]), p[3], shifted(b.x, p[6]), shifted(b.y, p[6]))
+    _carry(b, p, first)
+
+
+@compiled
+def _carry(b, p, first):
+    """Take an eliminated node of x out of those whose places stand from `first` on in `right`."""
     size, stride = p[0], p[3]
     block, y = shifted(b.blocks, p[2]), shifted(b.y, p[6])
-    _eliminated_vector(size, block, stride, shifted(b.x, p[6]), y)
     rows = shifted(block, p[1])
     for at in range(first, p[9]):
         into, column = shifted(b.x, b.right[at]), shifted(rows, 4 * (at - first))
@@ -246,29 +200,34 @@ def _factored(r, b):
         p = shifted(b.node, NODE * k)
         size, stride, width, first = p[0], p[3], p[5], p[7]
         block = shifted(b.blocks, p[2])
-        _factored_block(size, block, stride, shifted(b.pivot, first))
+        pivot, scaled, x, y = shifted(b.pivot, first), shifted(b.blocks, p[4]), shifted(b.x, p[6]), shifted(b.y, p[6])
+        if size == 5 and width == 8:
+            eliminate_node(5, 2, block, stride, pivot, scaled, x, y)
+        elif size == 5 and width == 16:
+            eliminate_node(5, 4, block, stride, pivot, scaled, x, y)
+        else:
+            _factored_block(size, block, stride, pivot)
+            for column in range(0, width, 4):
+                _eliminated_rows(size, block, stride, shifted(block, p[1] + column), shifted(scaled, column), width)
+            _eliminated_vector(size, block, stride, x, y)
         for i in range(first, first + size):
             if not keeps_digits(r, b.pivot[i], b.diagonal[i]):
                 return False
-        for column in range(0, width, 4):
-            _eliminated_rows(
-                size, block, stride, shifted(block, p[1] + column), shifted(b.blocks, p[4] + column), width
-            )
         while at < p[8]:
             u = shifted(b.update, UPDATE * at)
-            into, scaled, rows = shifted(b.blocks, u[1]), shifted(b.blocks, u[3]), shifted(b.blocks, u[4])
+            into, factors, rows = shifted(b.blocks, u[1]), shifted(b.blocks, u[3]), shifted(b.blocks, u[4])
             if size == 5 and u[0] == 10:
-                take_products(5, 2, into, u[2], scaled, width, rows, stride, 5)
+                take_products(5, 2, into, u[2], factors, width, rows, stride, 5)
             elif size == 2 and u[0] == 3:
-                take_products(2, 1, into, u[2], scaled, width, rows, stride, 2)
+                take_products(2, 1, into, u[2], factors, width, rows, stride, 2)
             elif size == 3 and u[0] == 5:
-                take_products(3, 1, into, u[2], scaled, width, rows, stride, 3)
+                take_products(3, 1, into, u[2], factors, width, rows, stride, 3)
             elif size == 6 and u[0] == 12:
-                take_products(6, 2, into, u[2], scaled, width, rows, stride, 6)
+                take_products(6, 2, into, u[2], factors, width, rows, stride, 6)
             else:
-                _taken(u[0], into, u[2], scaled, width, rows, stride, size)
+                taken(u[0], into, u[2], factors, width, rows, stride, size)
             at += 1
-        _forward(b, p, first_right)
+        _carry(b, p, first_right)
         first_right = p[9]
     r.most_kept = max(r.most_kept, r.kept)
     return True
@@ -277,6 +236,7 @@ def _factored(r, b):
 @compiled
 def _take_reactions(r, b):
     """a -= j^T x."""
+    take_side_reactions(r, b)
     for k in range(b.n_singles):
         p = shifted(b.single, SINGLE * k)
         r.a[p[2]] -= b.j[p[1]] * b.x[p[0]]

@@ -91,12 +91,17 @@ with the later pin that it belongs to; rows of `product` tell which blocks of J 
 BLOCK_ELIMINATION = Layout({
     "n_gamma": INT, "gamma_source": INDICES, "gamma_place": INDICES,
     "n_first": INT, "n_j": INT, "j_source": INDICES, "j_at": INDICES, "j_scale": FLOATS, "j": FLOATS,
+    "n_full": INT, "full": INDICES, "n_diagonals": INT, "straight": INDICES, "scale": FLOATS,
     "n_pairs": INT, "pair": INDICES, "n_singles": INT, "single": INDICES,
     "n_forming": INT, "forming": INDICES, "n_products": INT, "product": INDICES,
     "n_nodes": INT, "node": INDICES, "n_panels": INT, "blocks": FLOATS, "update": INDICES, "right": INDICES,
     "place": INTS, "pivot": FLOATS, "diagonal": FLOATS, "n_x": INT, "x": FLOATS, "y": FLOATS,
 })  # fmt: skip
-"""The same by dense blocks (`stiffmbs.solve.linear.joint_blocks`).  Velocities are taken by threes.  Rows of `pair`: a joint's place in x, its block of J for three velocities of a body, the
+"""The same by dense blocks (`stiffmbs.solve.linear.joint_blocks`).  Velocities are taken by threes.  Rows of `full`, where
+each has an entry of J in all rows of a joint: how many these are, start and stride of the joint's panel, place in x, block of J for
+the three, the first of them, and where the entries of each row begin among the values.  Rows of `straight`, where each has one entry, on
+a diagonal: place and step in the panel, place in x, place and step in J, first velocity, three sources.  All others are copied into J
+one by one.  Rows of `pair`: a joint's place in x, its block of J for three velocities of a body, the
 first of them, the block's width.  Where each has one entry of J at the most, rows of `single`: place in x, entry, velocity.  Rows of
 `forming`: a shape, where lines are added, their stride, and both factors with theirs; of `product`: where the product of two single
 entries is added, and both.  Rows of `node`: size, width, start and stride of the node's panel, start and width of what stands right
