@@ -13,7 +13,7 @@ from ...compile.machine.layout import Layout, held_once
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.block_updates import updates
-from ..linear.blocks import QUAD, Blocks, filled
+from ..linear.blocks import QUAD, Blocks, at_a_line, filled
 from ..linear.elimination_order import EliminationOrder, nodes_in_order
 from ..native.tables.linear import BLOCK_LU
 from .fixed_order import FixedOrder, Memory
@@ -89,11 +89,14 @@ class BlockLU(FixedOrder):
         """What the compiled routines work on, given the address of N_VGetArrayPointer."""
         with_pivots = PairedColumns(self.n, self.rows, self.columns, self.order).memory(array_of)
         blocks = self.blocks
-        scratch = max([*blocks.right_width, *(2 * QUAD * size for size in blocks.sizes)])
+        beside = [right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
+        scratch = max([*beside, *blocks.down_width, *(2 * QUAD * size for size in blocks.sizes)])
         arrays = {
             **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"],
             "with_pivots": np.array([with_pivots.content.ctypes.data]), "kept": with_pivots,
-            "x": np.zeros(blocks.node_starts[-1]), "scratch": np.zeros(scratch),
+            "x": at_a_line(blocks.node_starts[-1]), "scratch": at_a_line(scratch),
+            "order": np.zeros(max(blocks.sizes), dtype=np.int64),
+            "unit": np.eye(QUAD), "behind": np.triu(np.ones((QUAD, QUAD)), 1),
             **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
         }  # fmt: skip
         content = packed_with_memory(BLOCK_LU, arrays)

@@ -1,7 +1,7 @@
 """Which blocks of a matrix are filled when whole nodes are eliminated one after the other, and where they are stored.
 
 A node is a set of unknowns that are eliminated together.  Node k has two panels: one with its columns from the diagonal
-down, transposed, one with its rows right of the diagonal.  Blocks in them begin at whole quads, filled up with zeros.
+down, transposed, one with its rows right of the diagonal, and behind these room for a block of its own size.  Blocks in them begin at whole quads, filled up with zeros.
 """
 
 from __future__ import annotations
@@ -15,6 +15,15 @@ import numpy as np
 
 QUAD = 4
 """Floats that are computed with at once (`stiffmbs.compile.machine.native.quads`)."""
+CACHE_LINE = 64
+"""Bytes that a processor loads at a time."""
+
+
+def at_a_line(count: int) -> np.ndarray:
+    """Zeros that begin with a cache line: quads that lie in two of them are written and read again far more slowly."""
+    longer = np.zeros(count + CACHE_LINE // 8)
+    first = -longer.ctypes.data % CACHE_LINE // 8
+    return longer[first : first + count]
 
 
 def padded(size: int) -> int:
@@ -70,11 +79,10 @@ class Blocks:
 
     @cached_property
     def starts(self) -> np.ndarray:
-        """Where each node's panels begin, first and second in turn, and where the last ends."""
+        """Where each node's panels begin, first and second in turn, and where the last ends with the room behind it."""
+        second = [width + right for width, right in zip(self.widths, self.right_width, strict=True)]
         lengths = [
-            size * width
-            for size, *both in zip(self.sizes, self.down_width, self.right_width, strict=True)
-            for width in both
+            size * width for size, *both in zip(self.sizes, self.down_width, second, strict=True) for width in both
         ]
         return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)])
 

@@ -14,14 +14,12 @@ from ...compile.machine.layout import arrays_of
 from ...compile.system import System
 from ..native.tables.linear import BLOCK_ELIMINATION
 from .block_updates import pieces_of
-from .blocks import QUAD, padded
+from .blocks import QUAD, at_a_line, padded
 from .joint_jacobian import Jacobian, jacobian_of
 from .joint_sides import side_lists
 
 MOST_LINES = 6
 """Of a product of two quads, in registers."""
-CACHE_LINE = 64
-"""Bytes that a processor loads at a time."""
 Rows = list[tuple[int, ...]]
 Piece = tuple[int, int, int]
 """Shape, first line and first column of a part of a product that fits into registers."""
@@ -121,13 +119,13 @@ def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, A
     forming, products = _products(joints, j)
     lists = {
         "gamma_source": gamma.source[solved], "gamma_place": place[gamma.row[solved]],
-        "j_source": j.source, "j_at": j.at, "j_scale": scale[j.column], "scale": scale, "j": _at_a_line(j.end),
+        "j_source": j.source, "j_at": j.at, "j_scale": scale[j.column], "scale": scale, "j": at_a_line(j.end),
         **side_lists(joints, j.sides, j.begin, system.of_body.n_u),
         "pair": pairs, "single": singles, "forming": forming, "product": products,
-        "node": list(_nodes(joints, updates, right)), "blocks": _at_a_line(joints.multiplied_starts[-1]),
+        "node": list(_nodes(joints, updates, right)), "blocks": at_a_line(joints.multiplied_starts[-1]),
         "update": [row for part in updates for row in part], "right": [x for part in right for x in part], "place": place,
         "pivot": np.zeros(sum(joints.sizes)), "diagonal": np.zeros(sum(joints.sizes)),
-        "x": _at_a_line(joints.places[-1]), "y": _at_a_line(joints.places[-1]),
+        "x": at_a_line(joints.places[-1]), "y": at_a_line(joints.places[-1]),
     }  # fmt: skip
     return {
         **arrays_of(BLOCK_ELIMINATION, lists), "n_full": len(lists["full"]), "n_diagonals": len(lists["straight"]), "n_gamma": len(solved), "n_first": len(np.unique(j.at)), "n_j": len(j.at),
@@ -214,13 +212,6 @@ def _parts(lines: int, width: int) -> Iterator[Piece]:
         rows = min(MOST_LINES, lines - first)
         for shift, quads in pieces_of(width // QUAD):
             yield 2 * rows - (2 - quads), first, shift
-
-
-def _at_a_line(count: int) -> np.ndarray:
-    """Zeros that begin with a cache line: quads that lie in two of them are written and read again far more slowly."""
-    longer = np.zeros(count + CACHE_LINE // 8)
-    first = -longer.ctypes.data % CACHE_LINE // 8
-    return longer[first : first + count]
 
 
 def _filled(bodies: list[list[int]]) -> list[list[int]]:

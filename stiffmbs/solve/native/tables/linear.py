@@ -35,18 +35,19 @@ PAIRED_COLUMNS = Layout({
 BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
     "compile_pivots": INT_CELL, "setup_pivots": INT_CELL, "solve_pivots": INT_CELL,
-    "ready": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL, "refined": INT_CELL,
+    "ready": INT_CELL, "panels": INT_CELL, "pivoted": INT_CELL, "waits": INT_CELL, "serves": INT_CELL, "refused": INT_CELL, "refined": INT_CELL,
     "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
-    "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS, "pivot": FLOATS, "tried": FLOATS,
-    "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
+    "order": INTS, "unit": FLOATS, "behind": FLOATS, "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS,
+    "pivot": FLOATS, "tried": FLOATS, "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
-"""The same by dense blocks without pivots (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
+"""The same by dense blocks (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
 of columns in pairs that takes over where those cannot be trusted, `compile_pivots` that of the C function that puts the addresses of
 its routines into the next two cells.  `ready` says whether the counts are of this run: whether the factors at
 hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, trials that were failed, and
-whether solutions are refined."""
+whether solutions are refined; `panels` is where the factors begin in `lu`.  `order` tells which rows a node's pivots were found in;
+`unit` and `behind` are the rows of a unit matrix and of ones above its diagonal."""
 
 DYNAMICS = Layout({
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
