@@ -8,7 +8,7 @@ import numpy as np
 
 from .coordinates import FIXED, Coordinates, all_independent
 from .formulation import Formulation
-from .machine.layout import packed
+from .machine.layout import held_once, packed
 from .machine.native.tables import EQUATIONS
 from .system import System, Term
 from .terms import TERM_SETS
@@ -155,8 +155,8 @@ class Equations:
         columns = [
             np.concatenate([lines[k] for part in parts.values() for lines in part] or [np.empty(0)]) for k in range(4)
         ]
-        self._r_row, self._r_source, self._r_operand = (np.ascontiguousarray(c, dtype=np.int32) for c in columns[:3])
-        self._r_factor = np.ascontiguousarray(columns[3], dtype=float)
+        self._r_row, self._r_source, self._r_operand = (held_once(c.astype(np.int32)) for c in columns[:3])
+        self._r_factor = held_once(columns[3].astype(float))
 
     def _compile_matrix(self) -> None:
         lines = []
@@ -173,10 +173,11 @@ class Equations:
         place = column * self.n + row
         order = np.argsort(place, kind="stable")
         new = np.diff(place[order], prepend=-1) > 0
-        self.pattern = (place[order][new] % self.n, place[order][new] // self.n)
-        self._slot, self._source = np.empty(len(place), dtype=np.int32), source.astype(np.int32)
-        self._slot[order] = np.cumsum(new) - 1
-        self._constant, self._cj = constant.astype(float), cj.astype(float)
+        self.pattern = held_once(place[order][new] % self.n), held_once(place[order][new] // self.n)
+        slot = np.empty(len(place), dtype=np.int32)
+        slot[order] = np.cumsum(new) - 1
+        self._slot, self._source = held_once(slot), held_once(source.astype(np.int32))
+        self._constant, self._cj = held_once(constant.astype(float)), held_once(cj.astype(float))
 
     def used(self) -> dict[str, np.ndarray]:
         """For the sets of the residual and of the matrix, which groups of the system write values that are read."""
@@ -254,8 +255,9 @@ def entry_lists(
     other[first] = False
     parts = (first, np.flatnonzero(other), np.flatnonzero(late[slot]))
     order = np.concatenate(parts)
+    columns = {"slot": slot, "source": source, "constant": constant, "cj": cj}
     return {
-        "n_cleared": 0 if len(first) else n_slots, "n_bare": len(bare), "m_bare": bare,
+        "n_cleared": 0 if len(first) else n_slots, "n_bare": len(bare), "m_bare": held_once(bare),
         "n_first": len(first), "n_constant": len(first) + len(parts[1]), "n_entries": len(slot),
-        "m_slot": slot[order], "m_source": source[order], "m_constant": constant[order], "m_cj": cj[order],
+        **{f"m_{name}": held_once(part[order]) for name, part in columns.items()},
     }  # fmt: skip

@@ -17,6 +17,7 @@ from .bodies import BodyKind
 from .group import Group
 from .kernels import kernel_of
 from .machine.compiler import Compiled
+from .machine.layout import held_once
 from .reactions import reported_terms
 from .record import source_of
 from .terms import TERM_AXES, TERM_SETS, TURNED
@@ -275,7 +276,7 @@ class System:
         nothing = np.empty(0, dtype=np.int64)  # of a scene without joints, forces and weight
         source, row, column = (np.concatenate([nothing, *(part[i] for part in parts)]) for i in range(3))
         inside = (row < self.extent(axes[0])) & (column < (self.extent(axes[1]) if len(axes) > 1 else 1))
-        return Term(source[inside], row[inside], column[inside])
+        return Term(*(held_once(part[inside]) for part in (source, row, column)))
 
     def extent(self, axis: str) -> int:
         """How many there are of what a term's rows or columns count (`stiffmbs.compile.terms.TERM_AXES`)."""

@@ -9,7 +9,9 @@ from scipy.integrate import quad
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 import stiffmbs
+from stiffmbs import AppliedForce, Body, Model
 from stiffmbs.compile.compile_model import compile_model
+from stiffmbs.compile.inputs import ends, of_time
 from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
@@ -291,3 +293,19 @@ def test_behind_a_corner_a_drive_leads_with_its_new_velocity(position, how):
     values, breakpoints = DRIVES[position]
     assert solution["g.vx"][-1] == pytest.approx(quad(values, 0, 10, points=breakpoints)[0], abs=1e-5)
     assert any("a drive makes velocities jump" in note for note in solution.notes)
+
+
+@pytest.mark.parametrize("ending", ["t", "body.x"])
+def test_long_formulas_are_looked_through_once(monkeypatch, ending):
+    """However many terms a formula has, each of its nodes is asked once whether it is of time."""
+    terms = 200
+    model = Model()
+    model.add("body", Body(mass=1, inertia=1))
+    model.add("push", AppliedForce(i="body", force=(" + ".join(["body.x*body.y"] * terms + [ending]), 0)))
+    system, asked = compile_model(model.data()), []
+    for module, name in ((of_time, "parts_of"), (ends, "_is_of_state")):
+        found = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *which, found=found: asked.append(which) or found(*which))
+    assert len(of_time.inputs_of(system)) == (ending == "t")
+    assert ends.first_input_end(system, 0.0, 1.0) is None
+    assert len(asked) <= 30 * terms

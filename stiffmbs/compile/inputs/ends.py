@@ -90,30 +90,39 @@ def first_input_end(system: System, start: float, end: float) -> InputEnd | None
 
 def _of_element(name: str, element: Element, start: float, end: float) -> Iterator[InputEnd]:
     for _, formula in element.parts(Formula):
-        for part in _parts_of_time(formula.tree, formula):
+        for part in _parts_of_time(formula):
             for node in reading_order(part):
                 if _is_risky(node):
                     yield from _of_node(name, formula, part, node, start, end)
 
 
-def _parts_of_time(node: ast.expr, formula: Formula) -> Iterator[ast.expr]:
+def _parts_of_time(formula: Formula) -> list[ast.expr]:
     """The largest parts that depend on time alone; not the arguments of tables, which go on in straight lines."""
-    if _is_of_time(node, formula):
-        yield node
-    elif not (isinstance(node, ast.Call) and (is_named(node) or _is_table(node, formula))):
-        for child in ast.iter_child_nodes(node):
-            if isinstance(child, ast.expr):
-                yield from _parts_of_time(child, formula)
+    if not formula.uses_time:
+        return []
+    return [part for part in _divided(formula.tree, formula)[1] if isinstance(part, ast.expr)]
 
 
-def _is_of_time(node: ast.expr, formula: Formula) -> bool:
-    """Whether a part holds neither coordinates nor states, measures, reactions, tables or variables of its field."""
-    for part in ast.walk(node):
-        of_state = isinstance(part, ast.Attribute) and f"{UNIT}.{part.attr}" not in formula.values
-        of_field = isinstance(part, ast.Name) and part.id in (*formula.variables, *formula.tables, *formula.states)
-        if of_state or of_field or is_named(part):
-            return False
-    return True
+def _divided(node: ast.AST, formula: Formula) -> tuple[bool, list[ast.AST]]:
+    """Whether a part depends on time alone, and its largest parts that do."""
+    of_time, found = not _is_of_state(node, formula), list[ast.AST]()
+    for child in ast.iter_child_nodes(node):
+        child_of_time, parts = _divided(child, formula)
+        of_time = of_time and child_of_time
+        found += parts
+    if of_time:
+        return True, [node]
+    return False, [] if isinstance(node, ast.Call) and (is_named(node) or _is_table(node, formula)) else found
+
+
+def _is_of_state(node: ast.AST, formula: Formula) -> bool:
+    """Whether a node is a coordinate, state, measure, reaction, table or variable of its field."""
+    match node:
+        case ast.Attribute():
+            return f"{UNIT}.{node.attr}" not in formula.values
+        case ast.Name():
+            return node.id in formula.variables or node.id in formula.tables or node.id in formula.states
+    return is_named(node)
 
 
 def _is_table(node: ast.Call, formula: Formula) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, get_args
@@ -15,7 +15,7 @@ from ...describe.element import Element
 from ...describe.formula.field import FormulaOf
 from ...describe.formula.formula import Formula
 from ...describe.formula.functions import IN_FORMULAS
-from ...describe.formula.nodes import TIME, is_named, reading_order
+from ...describe.formula.nodes import TIME, is_named, parts_of
 from ...describe.formula.text import BINARY, UNARY, UNIT
 from ...describe.table import Table
 from ..system import System
@@ -189,7 +189,7 @@ def _squared(node: ast.expr) -> ast.expr | None:
 
 def _expressions(element: Element) -> Iterator[tuple[ast.expr, str, Mapping[str, float], Mapping[str, Table]]]:
     for _, formula in element.parts(Formula):
-        for part in _of_time_alone(formula.tree, formula):
+        for part in _of_time_alone(formula):
             names = [node.func.id for node in ast.walk(part) if isinstance(node, ast.Call)]  # type: ignore[attr-defined]
             used = {name: formula.tables[name] for name in names if name in formula.tables}
             yield part, formula.text, formula.values, used
@@ -213,30 +213,26 @@ def _marks(metadata: list[object], annotation: object) -> Iterator[object]:
         yield from _marks([], part)
 
 
-def _of_time_alone(node: ast.expr, formula: Formula) -> Iterator[ast.expr]:
+def _of_time_alone(formula: Formula) -> list[ast.expr]:
     """The largest parts of a formula that use time and nothing of the state."""
-    if is_named(node):
-        return
-    if _uses(node, formula, time=True) and not _uses(node, formula, time=False):
-        yield node
-        return
-    children = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
-    for child in children:
-        if isinstance(child, ast.expr) and not isinstance(node, ast.Attribute):
-            yield from _of_time_alone(child, formula)
+    return _largest_parts(formula.tree, {*formula.variables, *formula.states})[2] if formula.uses_time else []
 
 
-def _uses(tree: ast.expr, formula: Formula, time: bool) -> bool:
-    """Whether a part of a formula uses time, or else anything of the state or of the field's variables."""
-    for node in reading_order(tree):
-        match node:
-            case ast.Name(name) if name == TIME if time else name in (*formula.variables, *formula.states):
-                return True
-            case ast.Attribute(ast.Name(owner)) if owner != UNIT and not time:
-                return True
-        if not time and is_named(node):
-            return True
-    return False
+def _largest_parts(node: ast.expr, of_state: Set[str]) -> tuple[bool, bool, list[ast.expr]]:
+    """Whether a part uses time, whether anything of the state or of the field's variables, and its largest parts of time alone."""
+    match node:
+        case ast.Name(name):
+            time, state = name == TIME, name in of_state
+        case ast.Attribute(ast.Name(owner)):
+            time, state = False, owner != UNIT
+        case _:
+            time, state = False, is_named(node)
+    found: list[ast.expr] = []
+    for child in parts_of(node):
+        of_time, of_child, parts = _largest_parts(child, of_state)
+        time, state = time or of_time, state or of_child
+        found += parts
+    return time, state, [node] if time and not state else found
 
 
 def _by_argument(of_numbers: Callable[..., Any], of_enclosures: Callable[..., Any]) -> Callable[..., Any]:

@@ -10,9 +10,14 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Mapping
 from functools import cached_property
+from hashlib import blake2b
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
+
+_HELD: WeakValueDictionary[tuple[str, tuple[int, ...], bytes], np.ndarray] = WeakValueDictionary()
+"""Lists that jobs of equal structure share, by their content."""
 
 
 class Layout(dict[str, str]):
@@ -97,3 +102,17 @@ def address(array: np.ndarray) -> int:
 def addresses(*arrays: np.ndarray) -> list[int]:
     """The addresses of several arrays' numbers."""
     return [address(array) for array in arrays]
+
+
+def held_once(array: np.ndarray) -> np.ndarray:
+    """An array of the same content that nobody can write, which all who ask for it share for as long as any of them uses it.
+
+    Parameters
+    ----------
+    array : ndarray
+        Of numbers that stay as they are; compiled code may read them.
+    """
+    content = np.array(array, order="C")
+    content.flags.writeable = False
+    key = content.dtype.str, content.shape, blake2b(content.tobytes()).digest()
+    return _HELD.setdefault(key, content)

@@ -11,7 +11,7 @@ from ..marker import MarkerReference
 from ..table import Table
 from ..units.units import Quantity
 from .dimension import UNKNOWN, Known
-from .nodes import is_measure, is_reaction, joint_of, measured_markers, reading_order
+from .nodes import TIME, is_measure, is_reaction, joint_of, measured_markers, reading_order
 from .text import UNIT
 
 USED = "used"
@@ -27,11 +27,14 @@ class Used:
     coordinates : tuple of (body, coordinate)
     measures : tuple of (function, markers)
     reactions : tuple of (component, joint)
+    time : bool
+        Whether it uses time.
     """
 
     coordinates: tuple[tuple[str, str], ...]
     measures: tuple[tuple[str, tuple[MarkerReference, ...]], ...]
     reactions: tuple[tuple[str, str], ...]
+    time: bool
 
 
 def used_by(tree: ast.expr) -> Used:
@@ -48,6 +51,7 @@ def used_by(tree: ast.expr) -> Used:
         tuple((x.value.id, x.attr) for x in attributes if isinstance(x.value, ast.Name) and x.value.id != UNIT),
         tuple((x.func.id, measured_markers(x)) for x in nodes if is_measure(x)),  # type: ignore[attr-defined]
         tuple((x.func.id, joint_of(x)) for x in nodes if is_reaction(x)),  # type: ignore[attr-defined]
+        any(isinstance(x, ast.Name) and x.id == TIME for x in nodes),
     )
 
 
@@ -104,6 +108,11 @@ class Formula:
     def reactions(self) -> Iterator[tuple[str, str]]:
         """The components of reactions that it uses, with their joints, in reading order."""
         yield from self._used.reactions
+
+    @property
+    def uses_time(self) -> bool:
+        """Whether it uses time itself; the tables that it calls aside."""
+        return self._used.time
 
     @property
     def _used(self) -> Used:

@@ -17,17 +17,20 @@ TAKERS = (*MEASURES, *REACTIONS)
 def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
     """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
     yield tree
-    match tree:
-        case ast.Attribute() | ast.Name() | ast.Constant():
-            return
-        case ast.BinOp(left, _, right):
-            children = [left, right]
-        case ast.Call(_, arguments):
-            children = [] if is_named(tree) else arguments
-        case _:
-            children = [child for child in ast.iter_child_nodes(tree) if isinstance(child, ast.expr)]
-    for child in children:
+    for child in parts_of(tree):
         yield from reading_order(child)
+
+
+def parts_of(node: ast.expr) -> list[ast.expr]:
+    """What `reading_order` has next below a node."""
+    match node:
+        case ast.Attribute() | ast.Name() | ast.Constant():
+            return []
+        case ast.BinOp(left, _, right):
+            return [left, right]
+        case ast.Call(_, arguments):
+            return [] if is_named(node) else arguments
+    return [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.expr)]
 
 
 def is_measure(node: ast.AST) -> bool:

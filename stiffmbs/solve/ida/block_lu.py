@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import Layout
+from ...compile.machine.layout import Layout, held_once
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.machine.routines import Routine
 from ..linear.block_updates import updates
@@ -80,8 +80,9 @@ class BlockLU(FixedOrder):
         signs = random.choice([-1.0, 1.0], self.n)
         return {
             "n": self.n, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
-            **{name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}, **updates(blocks),
-            "slot": blocks.slots(self.rows, self.columns), "state": signs * random.uniform(0.5, 1.0, self.n),
+            **{name: held_once(np.asarray(part, dtype=np.int64)) for name, part in lists.items()},
+            **{name: held_once(part) for name, part in updates(blocks).items()},
+            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": signs * random.uniform(0.5, 1.0, self.n),
         }  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
