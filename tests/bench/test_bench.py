@@ -14,11 +14,13 @@ from stiffmbs.bench.benchmark import families
 from stiffmbs.bench.by_hand import andrews, cart_pendulum, chain, half_car
 from stiffmbs.bench.by_hand.ida import Run
 from stiffmbs.bench.contestant import Contestant, Failed
+from stiffmbs.bench.drives import CARS
 from stiffmbs.bench.problem import Problem
 from stiffmbs.bench.problems import andrews as andrews_problem
 from stiffmbs.bench.problems import cart_pendulum as cart_problem
 from stiffmbs.bench.problems import chain as chain_problem
 from stiffmbs.bench.problems import half_car as half_car_problem
+from stiffmbs.bench.problems.car_conditioning import RTOLS, Conditioning
 from stiffmbs.bench.sweep import at_target_rows
 from stiffmbs.commands.main import main
 
@@ -113,7 +115,7 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
 
 LONG_LOOKS = (
     "elements_in_space", "chain_scaling", "stiffness", "stepping", "half_car_gradient", "half_car_study", "bushing_fit", "car",
-    "car_choice", "car_events",
+    "car_choice", "car_conditioning", "car_events",
     "car_jobs",
 )  # fmt: skip
 BEYOND_THE_SOLVER = {"bushing_fit": 0.1}  # noise of the measured curves
@@ -122,6 +124,7 @@ WITHOUT_YARDSTICK = (
     "bushing_fit",
     "car",
     "car_choice",
+    "car_conditioning",
     "car_events",
     "car_jobs",
     "chain_in_space",
@@ -210,3 +213,12 @@ def test_families_are_named_in_any_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code = "from stiffmbs.bench.benchmark import families; assert all(families().values())"
     assert subprocess.run([sys.executable, "-c", code], cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("car", CARS, ids=lambda car: car.name)
+def test_places_of_a_car_are_off_by_little_more_than_one_error_at_the_start_makes(car):
+    rows = Conditioning(car).measured()
+    of_starts = max(row.error / RTOLS[0] for row in rows if row.solver != "bdf")
+    for row, rtol in zip((row for row in rows if row.solver == "bdf"), RTOLS, strict=True):
+        assert row.error / rtol < 10 * of_starts
