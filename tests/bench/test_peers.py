@@ -89,6 +89,7 @@ def _slope(m, k):
     return (plus - minus) / 2e-6
 
 
+@pytest.mark.long
 def test_the_jacobian_of_the_half_car_is_the_derivative_of_its_rates():
     minimal = PROBLEMS["half_car"].task().minimal
     y, h = minimal.start + 1e-2 * np.random.default_rng(3).normal(size=18), 1e-6
@@ -161,6 +162,7 @@ def test_a_figure_is_drawn(tmp_path):
     assert path.stat().st_size > 1000
 
 
+@pytest.mark.long
 def test_quick_look_at_peers_in_json(tmp_path):
     result = CliRunner().invoke(main, ["bench", "--quick", "--json", "--peers", "--plot", str(tmp_path), "andrews"])
     assert result.exit_code == 0, result.output

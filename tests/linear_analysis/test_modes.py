@@ -36,7 +36,8 @@ def frequencies(found):
     "name, at",
     [
         ("bar_pendulum", 0.3), ("cart_pendulum", 1.3), ("half_car", 2.0), ("four_bars", 0.2), ("crank_slider", 0.1),
-        ("heavy_top", 0.2), ("rolling_disc", 0.4), ("bricard", 0.5), ("door", 0.3), ("spatial_slider_crank", 0.2),
+        ("heavy_top", 0.2), ("bricard", 0.5),
+        *(pytest.param(*each, marks=pytest.mark.long) for each in (("rolling_disc", 0.4), ("door", 0.3), ("spatial_slider_crank", 0.2))),
     ],
 )  # fmt: skip
 def test_accelerations_vary_as_the_state_matrix_says(name, at):

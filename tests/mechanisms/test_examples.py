@@ -8,9 +8,15 @@ import stiffmbs
 from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
 OVERCONSTRAINED = ("bricard", "door")
+LONG = ("bushing_axle", "leaf_sprung_car", "quarter_car")
+"""Their kinds take seconds to compile; `car` and `front_axle` stand for them."""
 
 
-@pytest.mark.parametrize("path", EXAMPLE_SCENES.values(), ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=pytest.mark.long if path.stem in LONG else ()) for path in EXAMPLE_SCENES.values()],
+    ids=lambda path: path.stem,
+)
 def test_scene_runs_and_has_what_its_figure_shows(path):
     scene = stiffmbs.load_scene(path)
     solution = stiffmbs.run(scene, duration=min(scene.run.duration, 0.2))

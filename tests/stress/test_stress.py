@@ -16,7 +16,7 @@ from stiffmbs.stress.exact_rank import Guide, Pin, rank
 from stiffmbs.stress.pendulum import swing
 from stiffmbs.stress.simulation import simulation
 
-ALWAYS = 2
+ALWAYS = 1
 """Cases of each family that are run without being asked for: compiling the kinds of all of them takes minutes."""
 QUICK = [
     pytest.param(family, case, marks=pytest.mark.long if number >= ALWAYS else ())
