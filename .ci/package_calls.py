@@ -9,6 +9,7 @@ loaded.  A change is a call in another package than the call before it; a return
 from __future__ import annotations
 
 import argparse
+import gc
 import sys
 from collections import Counter
 from dataclasses import dataclass, field
@@ -54,6 +55,7 @@ def warm_run(scene: str) -> Calls:
     """The calls of the second run of a scene."""
     model, calls = stiffmbs.load_scene(scene), Calls()
     stiffmbs.run(model)
+    gc.collect()  # what earlier runs of this process have left is let go now, not in the middle of the run
     sys.setprofile(calls.note)
     try:
         stiffmbs.run(model)

@@ -106,6 +106,17 @@ def test_a_planar_scene_loads_nothing_of_space():
     assert not found.stdout.split()
 
 
+def test_a_run_without_tables_and_drives_loads_no_masked_arrays():
+    """`numpy.unique` and the functions of sets load them; they are 3 % of a short run."""
+    program = (
+        "import sys, stiffmbs;"
+        f"stiffmbs.run({str(ROOT.parent / 'examples' / 'cart_pendulum.yaml')!r}, duration=0.1);"
+        "print(*sys.modules)"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "numpy.ma" not in found.stdout.split()
+
+
 def test_help_loads_nothing_heavy():
     """The package, and the command with all its subcommands: what describes, computes or draws is loaded where it is used."""
     program = (

@@ -116,7 +116,7 @@ class Equations:
         base, _, part = name.removesuffix(".T").partition(":")
         constants = system.constants(term_set)
         if base == "E":
-            diagonal = np.setdiff1d(np.arange(system.n_q), system.algebraic_coordinates)
+            diagonal = np.flatnonzero(~np.isin(np.arange(system.n_q), system.algebraic_coordinates))
             return np.full(len(diagonal), constants["I"]), diagonal, diagonal
         if base == "I":
             diagonal = system.quaternions if part == "turning" else np.arange(system.extent(rows))

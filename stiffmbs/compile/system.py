@@ -137,11 +137,11 @@ class System:
     @cached_property
     def following_reactions(self) -> np.ndarray:
         """The numbers of the algebraic states, among the coordinates, that follow multipliers at once, directly or through others."""
-        found = np.intersect1d(self.term("tangent", "rate_lam").row, self.algebraic_coordinates)
-        among = self.term("tangent", "rate_q")
-        inside = np.isin(among.row, self.algebraic_coordinates)
+        algebraic, among = self.algebraic_coordinates, self.term("tangent", "rate_q")
+        found = algebraic[np.isin(algebraic, self.term("tangent", "rate_lam").row)]
         while True:
-            more = np.union1d(found, among.row[inside & np.isin(among.column, found)])
+            following = among.row[np.isin(among.column, found)]
+            more = algebraic[np.isin(algebraic, np.concatenate([found, following]))]
             if len(more) == len(found):
                 return found
             found = more
@@ -149,7 +149,7 @@ class System:
     @cached_property
     def quaternions(self) -> np.ndarray:
         """The numbers of the coordinates that are parts of quaternions; none in the plane."""
-        return np.setdiff1d(np.arange(self.n_pose), self.straight[0])
+        return np.flatnonzero(~np.isin(np.arange(self.n_pose), self.straight[0]))
 
     @cached_property
     def mass_by_coordinate(self) -> np.ndarray:
@@ -299,8 +299,8 @@ class System:
             for group in self.groups
             if TURNED in (source_of(group.kind, term_set) or "")
         ]
-        bodies = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *read]))
-        return bodies[bodies < self.of_body.n_q * len(self.bodies)]
+        bodies = np.concatenate([np.empty(0, dtype=np.int64), *read])
+        return np.flatnonzero(np.bincount(bodies)[: self.of_body.n_q * len(self.bodies)])
 
     def constants(self, term_set: str) -> dict[str, int]:
         """Where the constants stand that follow the values of a set: mass entries, relaxations, a one."""

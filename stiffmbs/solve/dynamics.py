@@ -126,7 +126,8 @@ class Dynamics:
         self._power = np.array(system.term("output", "power").source, dtype=np.int64)
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
-        turned = np.setdiff1d(system.turned("output"), system.turned("acceleration"))
+        for_output = system.turned("output")
+        turned = for_output[~np.isin(for_output, system.turned("acceleration"))]
         self._turned_for_output = turned.astype(np.int64)
         self.table = packed(
             DYNAMICS,

@@ -50,7 +50,8 @@ def elimination_order(equations: Equations) -> EliminationOrder:
     size = sizes.tolist()
     neighbours: list[set[int]] = [set() for _ in size]
     rows, columns = equations.pattern
-    for both in np.unique(owner[rows] * len(size) + owner[columns]).tolist():
+    pairs = np.sort(owner[rows] * len(size) + owner[columns])
+    for both in pairs[np.diff(pairs, prepend=-1) > 0].tolist():
         a, b = divmod(both, len(size))
         if a != b:
             neighbours[a].add(b)
