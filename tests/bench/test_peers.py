@@ -142,6 +142,20 @@ def test_times_at_errors_and_the_best_of_each_side():
     assert {row.solver for row in rows if row.setting == SET_UP} == {"own", "peer", "few"}
 
 
+def test_a_first_solution_that_compiles_ends_no_sweep(monkeypatch):
+    monkeypatch.setattr("stiffmbs.bench.decades.LONGEST", 0.2)
+    solved = []
+
+    def solve(setting):
+        _spent(0.0 if solved else 0.3)
+        solved.append(setting)
+        return np.array([[setting]])
+
+    once = Contestant("compiled", False, lambda setting: lambda: solve(setting), settings=(1e-3, 1e-4, 1e-5))
+    rows = over_decades([once], np.zeros((1, 1)), (1e-4,), rounds=1)
+    assert {row.error for row in rows if row.setting.startswith("rtol")} == {1e-3, 1e-4, 1e-5}
+
+
 def test_a_solver_that_is_more_accurate_than_asked_counts_with_its_shortest_time():
     rows = [Row("own", f"rtol {e:g}", e, 1e-3 * e**-0.1, False) for e in (1e-6, 1e-7)]
     (found,) = at_errors("own", False, rows, [1e-3])
