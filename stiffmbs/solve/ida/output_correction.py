@@ -80,7 +80,7 @@ class OutputCorrection:
         """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left.
 
         States are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest, nor
-        would be if joints that are open were closed: by that opening times `stiffness`, N/m.
+        would be by ten times that if joints that are open were closed: by that opening times `stiffness`, N/m.
         """
         self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
         self._cells["stiffness"] = stiffness

@@ -22,6 +22,10 @@ MOST_CORRECTIONS = 8
 SLOWEST = 0.3
 """A correction that is a larger part of the one before asks for new factors, or ends the iteration in vain."""
 
+MAY_CLOSE = 10.0
+"""Times the force that may be left which closing the joints may make: a bound that springs beside the stiffest seldom reach, beside
+errors of forces that come to as much over a run."""
+
 FAR_BELOW, MOST_UNSEEN = 0.1, 7
 """Part of the force that may be left below which some states after this one are not looked at, and their number at the most."""
 
@@ -95,7 +99,7 @@ def _left(b, s, e):
             return 2.0
         part = max(part, left / (b.balanced * largest) if largest > 0.0 else 0.0)
         if kind == 0 and largest > 0.0:
-            part = max(part, _by_joints(b) / (b.balanced * largest))
+            part = max(part, _by_joints(b) / (MAY_CLOSE * b.balanced * largest))
     return part
 
 
