@@ -124,13 +124,13 @@ class AdaptiveRun:
             self._chattering.begin(work.t, self._start)
         self._begun = work.count("steps")
         stable_step = self._stable_step
-        bounds = stable_step.begin(work)
+        bounds = stable_step.begin(work, self._events)
         look_at, held_at = self._looks(most, leaving) if bounds else (0, 0)
         while status == PAUSED:
             wait, held = most, self._held(most, leaving)
             if bounds:
                 wait = min(look_at - work.count("steps"), stable_step.wait(work))
-                held = held_at - work.count("stiff_steps")
+                held = min(held_at - work.count("stiff_steps"), stable_step.held(work))
             status = advance(stop, wait, held, self._grid.times is None, work.at)
             work.collect(self._rows)
             if is_logged():
