@@ -206,7 +206,7 @@ class Integrator:
             while just_after(t) < stop:
                 refuse_beyond_limits(self.dynamics, t, start.q, start.u)
                 self._begin(start, t)
-                chattering.begin(t, start)
+                chattering.begin(t, start.q, start.u)
                 for reached in self._segment(t, stop, grid):
                     yield reached if not reached.failure else self._explained(reached)
                     if reached.t < stop and not (reached.fired or reached.failure):

@@ -11,7 +11,6 @@ import numpy as np
 from ...compile.written_values import writer
 from ...errors import SolverError
 from ..dynamics import Dynamics
-from ..initial import InitialValues
 from .discontinuity import LARGER_MOVE, jumping, sliding
 
 WINDOW, TRUSTED_EVENTS = 250, 1000
@@ -48,8 +47,8 @@ class Chattering:
         self._count = 0
         self._mark: tuple[float, int] | None = None
 
-    def begin(self, t: float, start: InitialValues) -> None:
-        """Look at the values from which the integrator is to start.
+    def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Look at the state from which the integrator is to start.
 
         Raises
         ------
@@ -57,7 +56,7 @@ class Chattering:
             Where a force drives the motion back from both sides of its jump; names the element.
         """
         if self._any:
-            self.refuse(t, sliding(self._dynamics, t, start.q, start.u, acceleration=start.acceleration))
+            self.refuse(t, sliding(self._dynamics, t, q, u))
 
     def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
         """Look at a state on the way, after so many steps of the run.

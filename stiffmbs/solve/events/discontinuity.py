@@ -10,12 +10,11 @@ from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import together
 from ..dynamics import Dynamics
 
-SWITCHES, CROSSED, BY_VELOCITIES, HERE, SIDE = together(
+SWITCHES, CROSSED, BY_VELOCITIES, SIDE = together(
     "stiffmbs.solve.native.event_search.sides",
     switches="void(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
     crossed="int64(float64, float64, float64*, float64*, float64*, float64*, int64, int64*, int64*)",
     by_velocities="void(float64, float64, float64*, float64*, float64*, int64, float64*, int64*)",
-    here="void(float64, float64, float64*, float64*, float64*, int64, float64*, float64*, float64*, int64*)",
     side="int64(float64, float64, float64, float64*, float64*, float64*, float64*, float64*, int64, float64*, float64*, float64*, int64*)",
 )
 
@@ -93,15 +92,6 @@ class _Beside:
         BY_VELOCITIES.short_call(self.t, reach, at_q, at_u, along_u, self._count, address(found), self._table)
         return found != 0.0
 
-    def here(self, acceleration: np.ndarray) -> _Side:
-        """The state itself, whose accelerations are known."""
-        values, rates = np.empty(self._count), np.empty(self._count)
-        HERE.short_call(
-            self.t, RATE_INTERVAL, *self._at[:2], address(self._there), self._count,
-            *addresses(values, acceleration, rates), self._table,
-        )  # fmt: skip
-        return _Side(values, acceleration, rates)
-
     def at_zero(self, reach: float, event_function: int) -> _Beside:
         """From where an event function changes its sign, by a move between -reach and reach."""
         low, high = -reach, reach
@@ -145,9 +135,7 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
     return crossed if near > max(JUMPS * far, LEAST_JUMP) else crossed[:0]
 
 
-def sliding(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = LARGER_MOVE, acceleration: np.ndarray | None = None
-) -> np.ndarray:  # fmt: skip
+def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = LARGER_MOVE) -> np.ndarray:
     """The event functions that the motion is driven to from both sides, by a force that jumps there.
 
     There is then no solution in the ordinary sense but a sliding mode (Filippov, Differential Equations with
@@ -157,17 +145,12 @@ def sliding(
     ----------
     reach : float
         Size of the move, as `LARGER_MOVE`, within which a jump is looked for.
-    acceleration : ndarray, shape (n_u,), optional
-        At the state, where it is known: an event function that they drive away from zero needs no look at its sides.
     """
     with dynamics.state.unchanged():
         beside = _Beside(dynamics, t, q, u)
         back = beside.crossed(reach)
         if len(back):  # the rate of others is the same on both sides, however forces jump
             back = back[beside.follow_velocities(reach)[back]]
-        if acceleration is not None and len(back):
-            here = beside.here(acceleration)
-            back = back[~(here.rates[back] * here.values[back] > 0.0)]
         for way in _ahead_first(beside, reach, back) if len(back) else ():
             back = back[_returns(beside.side(way * reach), back)]
             if not len(back):

@@ -121,7 +121,7 @@ class AdaptiveRun:
         work, advance, status = self.work, ADVANCE.call, PAUSED
         most = min(leaving.first, work.capacity) if leaving else work.capacity
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
-            self._chattering.begin(work.t, self._start)
+            self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
         stable_step = self._stable_step
         bounds = stable_step.begin(work, self._events)

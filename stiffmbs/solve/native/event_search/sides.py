@@ -19,20 +19,6 @@ def _take(s, size, q, u, along_q, along_u):
         s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
 
 
-@compiled
-def _rates(s, t, interval, acceleration, there, count, values, rates):
-    """Rates of the event functions over an interval of time from the state at hand, which becomes the one at its end."""
-    copied(there, s.q, s.n_q)
-    add_rates(s, s.u, interval, there)
-    copied(s.q, there, s.n_q)
-    take_unit_length(s)
-    for k in range(s.n_u):
-        s.u[k] += interval * acceleration[k]
-    ahead = evaluate(s, SWITCH, t + interval)
-    for k in range(count):
-        rates[k] = (ahead[k] - values[k]) / interval
-
-
 def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
     """Which of the first `count` event functions differ in sign between the two sides of a move; how many."""
     s = state_view(dynamics_view(dynamics).state)
@@ -70,15 +56,6 @@ def by_velocities(t, size, q, u, along_u, count, found, dynamics):
         found[k] = found[k] != values[k]
 
 
-def here(t, interval, q, u, there, count, values, acceleration, rates, dynamics):
-    """The event functions at a state whose accelerations are known, and their rates; see `side`."""
-    s = state_view(dynamics_view(dynamics).state)
-    copied(s.q, q, s.n_q)
-    copied(s.u, u, s.n_u)
-    copied(values, evaluate(s, SWITCH, t), count)
-    _rates(s, t, interval, acceleration, there, count, values, rates)
-
-
 def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):
     """The same, with accelerations and with rates over an interval of time; a negative status where there are no accelerations.
 
@@ -87,10 +64,18 @@ def side(t, size, interval, q, u, along_q, along_u, there, count, values, accele
     m = dynamics_view(dynamics)
     s = state_view(m.state)
     _take(s, size, q, u, along_q, along_u)
+    copied(there, s.q, s.n_q)
     copied(values, evaluate(s, SWITCH, t), count)
+    add_rates(s, s.u, interval, there)
     status = to_accelerations(s, m, t)
     if status < 0:
         return status
     copied(acceleration, factors_view(m.acceleration_factors).b, s.n_u)
-    _rates(s, t, interval, acceleration, there, count, values, rates)
+    copied(s.q, there, s.n_q)
+    take_unit_length(s)
+    for k in range(s.n_u):
+        s.u[k] += interval * acceleration[k]
+    ahead = evaluate(s, SWITCH, t + interval)
+    for k in range(count):
+        rates[k] = (ahead[k] - values[k]) / interval
     return status
