@@ -149,7 +149,7 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
     ]
     shared, results = _shared([expression for *_, expression in outputs], e.meanings, turned)
     needed = {symbol for expression in [*results, *(part for _, part in shared)] for symbol in expression.free_symbols}
-    printer = _Printer({"fully_qualified_modules": False, "precision": 17, "order": "none"})
+    printer = _Printer({"fully_qualified_modules": False, "precision": 17})
     first_state = 2 * len(e.frames) + 1 + len(derived.symbols.joint_lam)
     first_counter = first_state + len(e.states)
     width = first_counter + len(e.angles)
