@@ -83,6 +83,11 @@ class KindRecord:
         """Number of entries that one element has in each term."""
         return defaultdict(int, {term: len(pattern) for term, pattern in self.patterns.items()})
 
+    def n_operations(self, term_set: str) -> int:
+        """Number of arithmetic operators in the source of a kernel, those of its places among numbers included."""
+        source = self.sources.get(term_set, "")
+        return sum(map(source.count, "+-*/"))
+
 
 def record_of(kind: Kind, place: str = "") -> KindRecord:
     """Read a kind's record from the cache, or derive it and keep it.

@@ -222,6 +222,17 @@ class System:
             for term_set, terms in TERM_SETS.items()
         }
 
+    def n_operations(self, term_set: str) -> int:
+        """Number of arithmetic operations in the kernels of a set, for estimates of their cost."""
+        return self._numbers_of_operations[term_set]
+
+    @cached_property
+    def _numbers_of_operations(self) -> dict[str, int]:
+        return {
+            term_set: sum(group.count * group.record.n_operations(term_set) for group in self.groups)
+            for term_set in ("acceleration", "tangent")
+        }
+
     @cached_property
     def reported(self) -> dict[str, int]:
         """The channels of joints and forces, and where each stands among the values of the output terms; -1 for one that is zero."""

@@ -55,15 +55,15 @@ def alike(
     if len(smooth) < 2:
         return sets + [[k] for k in smooth]
     rates = _rates(dynamics, during[0], start, label, len(mechanisms))
-    whole = cost.of_implicit_step(cost.unknowns(dynamics)) if implicit else cost.of_explicit_step(dynamics)
-    itself = cost.of_implicit_step(0) if implicit else cost.EXPLICIT_STEP[0]
+    whole = cost.ImplicitCost.of(dynamics).step if implicit else cost.of_explicit_step(dynamics)
+    itself = cost.RESIDUALS * cost.RESIDUAL[0] if implicit else cost.EXPLICIT_STEP[0]
     share = np.bincount(label[label >= 0], minlength=len(mechanisms)) / np.count_nonzero(label >= 0)
     of_unknowns = (whole - itself) * share
     steps = cost.STEPS_OF_A_START + (IMPLICIT_STEPS if implicit else EXPLICIT_STEPS) * (during[1] - during[0]) * rates
     current: list[int] = []
     for k in sorted(smooth, key=lambda k: -steps[k]):
         more = (steps[current[0]] - steps[k]) * of_unknowns[k] if current else np.inf
-        if more < cost.START + steps[k] * itself:
+        if more < cost.START[0] + steps[k] * itself:
             current.append(k)
         else:
             current = [k]

@@ -92,12 +92,9 @@ class _Shared:
     def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings, watch: ProgressCallback) -> None:
         self._dynamics, self._grid, self._watch = dynamics, grid, watch
         self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
-        self._unknowns = n = cost.unknowns(dynamics)
         self._explicit_step = cost.of_explicit_step(dynamics)
-        self._implicit_step = cost.of_implicit_step(n)
-        self._trial = cost.of_implicit_start(n) + FAIR_TRIAL * self._implicit_step  # what one costs at the most
-        self._short_trial = cost.START + SHORT_TRIAL * self._implicit_step
         self._implicit: bdf.Integrator | None = None
+        self._expect(cost.ImplicitCost.of(dynamics))
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
@@ -105,6 +102,12 @@ class _Shared:
         self._messages: list[str] = []
         self._short = False  # whether the trial at hand is a short one that is still to be looked at
         self._gave_up = False  # whether explicit steps could not go on
+
+    def _expect(self, costs: cost.ImplicitCost) -> None:
+        """Take these as the costs of BDF, and so of trials."""
+        self._costs = costs
+        self._trial = costs.start + FAIR_TRIAL * costs.step  # what one costs at the most
+        self._short_trial = costs.memory + SHORT_TRIAL * costs.step
 
     def run(self, start: InitialValues) -> Trajectory:
         """All segments, put together; all of them again by the implicit integrator where explicit steps could not go on.
@@ -136,8 +139,15 @@ class _Shared:
         rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         left = (self._grid.end - t) * self._explicit_cost
+        if self._implicit is None and self._pays_for_a_trial(left):
+            self._implicit = bdf.Integrator(self._dynamics, self._settings)
+            self._expect(cost.ImplicitCost.of(self._dynamics, self._implicit.factors))
+        return self._pays_for_a_trial(left), rate
+
+    def _pays_for_a_trial(self, left: float) -> bool:
+        """Whether a trial, be it a short one, costs little beside what is left for explicit steps."""
         self._short = left <= WORTH_A_TRIAL * self._trial
-        return not self._short or left > WORTH_A_SHORT_TRIAL * self._short_trial, rate
+        return not self._short or left > WORTH_A_SHORT_TRIAL * self._short_trial
 
     def _rest(self, t: float) -> Grid:
         """What is left of the grid."""
@@ -209,7 +219,7 @@ class _Shared:
             self._short = False
             self._implicit.engine.pause_after(FAIR_TRIAL)
             if not self._promises(effort, taken):
-                self._trial = cost.START + effort.cost - self._before.cost
+                self._trial = self._costs.memory + effort.cost - self._before.cost
                 return False
         if taken < FAIR_TRIAL or self._is_breakpoint(reached.t):
             return True
@@ -217,7 +227,7 @@ class _Shared:
         self._pace, self._before = _Pace(reached.t), effort
         pays = spent < COSTS_MORE * explicit
         if not pays:
-            self._trial = cost.of_implicit_start(self._unknowns) + spent - explicit  # as seen: the way is not lost
+            self._trial = self._costs.start + spent - explicit  # as seen: the way is not lost
         return pays
 
     def _promises(self, effort: _Effort, taken: int) -> bool:
@@ -240,8 +250,8 @@ class _Shared:
         counted = self._implicit.statistics()
         starts = int(counted["breakpoints"]) + int(counted["events"])
         small = cost.STEPS_OF_A_START * starts
-        work = cost.of_implicit_work(self._unknowns, int(counted["residuals"]), int(counted["jacobians"]))
-        return _Effort(int(counted["steps"]) - small, work - small * self._implicit_step)
+        work = self._costs.work(int(counted["residuals"]), int(counted["jacobians"]))
+        return _Effort(int(counted["steps"]) - small, work - small * self._costs.step)
 
     def _together(self) -> Trajectory:
         """The segments as one trajectory, and how it came about."""

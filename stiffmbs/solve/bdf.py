@@ -24,7 +24,7 @@ from .events.masked import MaskedEvents
 from .events.restart import just_after, restarted
 from .events.velocity_jumps import VelocityJumps
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
-from .ida.choice import chosen
+from .ida.choice import chosen, dense_cost
 from .ida.engine import Engine, Reached
 from .ida.libraries import available
 from .ida.native_engine import NativeEngine
@@ -128,10 +128,10 @@ def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
     return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)
 
 
-def _native(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine]:
-    """The native driver, where SUNDIALS' libraries are as it needs them."""
-    equations, matrix = chosen(_natural(dynamics, settings))
-    return equations, NativeEngine(equations, dynamics, matrix, settings, control)
+def _native(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine, float]:
+    """The native driver, where SUNDIALS' libraries are as it needs them, and the cost of its linear solver, ns."""
+    equations, matrix, cost = chosen(_natural(dynamics, settings))
+    return equations, NativeEngine(equations, dynamics, matrix, settings, control), cost
 
 
 def _through_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
@@ -156,6 +156,8 @@ class Integrator:
     ----------
     reached : Reached or None
         Where it was last heard of.
+    factors : float
+        Estimated time for the factors of an iteration matrix and the solutions with them, us.
     """
 
     def __init__(
@@ -167,12 +169,13 @@ class Integrator:
         self._notes: list[str] = []
         native, reason = available()
         if native:
-            self.equations, self.engine = dynamics.kept(
+            self.equations, self.engine, cost = dynamics.kept(
                 memory, (settings, control), lambda: _native(dynamics, settings, control)
             )
             self.engine.forget()
         else:
             self.equations, self.engine = _through_callbacks(dynamics, settings)
+            cost = dense_cost(self.equations.n)
             self._notes.append(
                 f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
             )
@@ -180,6 +183,7 @@ class Integrator:
                 self._notes.append(
                     "contacts and other events that begin and end within one step are not seen this way; set max_step"
                 )
+        self.factors = 1e-3 * cost
         self._jumps = VelocityJumps(dynamics)
         self._of_inputs = ""
         self._events = self._breakpoints = 0

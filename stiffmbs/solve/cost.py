@@ -6,27 +6,76 @@ no clock, so that a scene is solved the same way each time.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from .dynamics import Dynamics
 
-EXPLICIT_STEP = (0.96, 0.061)
-"""Of order 8, with 12 accelerations: for itself, and for a value of the kernels of accelerations."""
-BY_LU = 2.8
-"""Times as long where accelerations are not found by elimination (measured on stick_slip, with friction to iterate)."""
-RESIDUAL, MATRIX = (0.12, 0.0213), (0.0, 0.0138)
+EXPLICIT_STEP = (2.0, 0.0043, 0.020)
+"""Of order 8, with 12 accelerations: for itself, for an operation of the kernels of accelerations, and for an unknown of BDF."""
+BY_LU = 0.034
+"""More for each pair of constraint equations where accelerations are not found by elimination (measured on cars on ideal joints)."""
+RESIDUAL = (0.34, 0.0131)
 """Of BDF, with what else a step consists of: for itself, and for an unknown."""
+MATRIX = (0.00029, 1.9)
+"""For an operation of the kernels of the iteration matrix, and times as long as its linear solver is estimated to take."""
+LEAST_FACTORS = 0.044
+"""Of the linear solver for an unknown, before it is chosen: those of a chain; others take up to six times as long."""
 RESIDUALS, MATRICES = 1.5, 0.2
 """Of a step of BDF on average."""
-START = 250.0
-"""Consistent values and the integrators' memory, when a run switches integrator."""
+START = (250.0, 3.5)
+"""Consistent values and the integrators' memory, when a run switches integrator: for itself, and for an unknown."""
 STEPS_OF_A_START = 40
 """Of BDF, from order 1 on to where its own steps are."""
 
 
+@dataclass(frozen=True)
+class ImplicitCost:
+    """What BDF costs.
+
+    Attributes
+    ----------
+    residual, matrix : float
+        One of each, with the solutions by the matrix.
+    memory : float
+        Of a start, but for its first steps.
+    """
+
+    residual: float
+    matrix: float
+    memory: float
+
+    @classmethod
+    def of(cls, dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
+        """That of a scene; `factors` is what a matrix' factors and solutions are estimated to take, None where that is not known."""
+        n = unknowns(dynamics)
+        operation, times = MATRIX
+        factors = LEAST_FACTORS * n if factors is None else factors
+        return cls(
+            RESIDUAL[0] + RESIDUAL[1] * n,
+            operation * dynamics.system.n_operations("tangent") + times * factors,
+            START[0] + START[1] * n,
+        )
+
+    def work(self, residuals: float, matrices: float) -> float:
+        """So many residuals and iteration matrices."""
+        return residuals * self.residual + matrices * self.matrix
+
+    @property
+    def step(self) -> float:
+        """A step, as they are on average."""
+        return self.work(RESIDUALS, MATRICES)
+
+    @property
+    def start(self) -> float:
+        """A start, with its small steps."""
+        return self.memory + STEPS_OF_A_START * self.step
+
+
 def of_explicit_step(dynamics: Dynamics) -> float:
     """A step of DOP853."""
-    itself, value = EXPLICIT_STEP
-    by_elimination = itself + value * dynamics.system.n_values("acceleration")
-    return by_elimination if dynamics.eliminated.serves else BY_LU * by_elimination
+    itself, operation, unknown = EXPLICIT_STEP
+    by_elimination = itself + operation * dynamics.system.n_operations("acceleration") + unknown * unknowns(dynamics)
+    return by_elimination if dynamics.eliminated.serves else by_elimination + BY_LU * dynamics.system.n_c**2
 
 
 def unknowns(dynamics: Dynamics) -> int:
@@ -35,18 +84,3 @@ def unknowns(dynamics: Dynamics) -> int:
     solved_for = dynamics.system.active & ~coordinates.satisfied
     free = coordinates.independent.sum() + coordinates.independent_u.sum()
     return int(free) + 2 * int(solved_for.sum())
-
-
-def of_implicit_work(n: int, residuals: float, matrices: float) -> float:
-    """So many residuals and iteration matrices with n unknowns."""
-    return residuals * (RESIDUAL[0] + RESIDUAL[1] * n) + matrices * (MATRIX[0] + MATRIX[1] * n)
-
-
-def of_implicit_step(n: int) -> float:
-    """A step of BDF, as they are on average."""
-    return of_implicit_work(n, RESIDUALS, MATRICES)
-
-
-def of_implicit_start(n: int) -> float:
-    """A start of BDF."""
-    return START + STEPS_OF_A_START * of_implicit_step(n)

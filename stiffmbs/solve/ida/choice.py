@@ -82,8 +82,8 @@ def superlu_cost(n: int, order: EliminationOrder) -> float:
     )
 
 
-def chosen(equations: Equations) -> tuple[Equations, Matrix]:
-    """The linear solver of the least estimated cost, and the equations with their unknowns in its order.
+def chosen(equations: Equations) -> tuple[Equations, Matrix, float]:
+    """The equations with their unknowns in the order of the linear solver of the least estimated cost, that solver, and the cost.
 
     The band is looked for where the dense and the fixed order cost more than one that is as narrow as a row is long.
 
@@ -107,7 +107,7 @@ def chosen(equations: Equations) -> tuple[Equations, Matrix]:
         band = Banded(n, *ordered.pattern)
         offers.append((banded_cost(n, band.lower, band.upper), ordered, band))
     cheapest_first = sorted(offers, key=lambda offer: offer[0])
-    return next((ordered, matrix) for _, ordered, matrix in cheapest_first if _served(matrix))
+    return next((ordered, matrix, cost) for cost, ordered, matrix in cheapest_first if _served(matrix))
 
 
 def _served(matrix: Matrix) -> bool:

@@ -210,6 +210,7 @@ class NativeIda:
     def forget(self) -> None:
         """Forget counters, history and pivots, as if it had never begun."""
         self._begun, self._look = False, self._usual_pace
+        self._ida.ask("IDAReInit", 0.0, self._ida.y_vector, self._ida.yp_vector)  # its own counters become zero
         self._statistics.forget()
         self._ida.forget()
 
