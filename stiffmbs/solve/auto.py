@@ -34,15 +34,13 @@ LOOK = 32
 HELD_BACK = 0.05
 """Part of those steps that stability held back, from which on the scene counts as stiff: where it holds all of them,
 steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
-COSTS_MORE, FAIR_TRIAL = 1.1, 200
-"""The implicit integrator is left when so many steps of it have cost so much more than explicit ones on the same way."""
-WORTH_A_TRIAL = 6.0
-"""What is left for explicit steps must cost so many fair trials of the implicit integrator before one is made."""
-SHORT_TRIAL, WORTH_A_SHORT_TRIAL = 80, 12.0
-"""Where that is less, but so many times what so few steps cost, these are made."""
-HOPELESS = 2.2
-"""The implicit integrator is left where the later half of a short trial has cost so much more than explicit steps.  Its steps
-grow from the start on, and where they come to be long enough they are near it by then (on a car 1.1 to 1.3 times, where they stay short 3.4 and more)."""
+LOOK_AT_IMPLICIT = 3.0
+"""Starts of the implicit integrator, without their steps, that its steps between two looks cost: a look takes a tenth of one."""
+MAY_LOSE = 0.15
+"""The implicit integrator is left when it has fallen behind explicit steps by a start and such a part of what these still cost up to
+the end, half as much in each further trial: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
+WORTH_A_TRIAL = 10.0
+"""What is left for explicit steps must cost so many starts of the implicit integrator before one is made."""
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
 as many times after each further one."""
@@ -78,14 +76,6 @@ class _Pace:
     held: int = 0
 
 
-@dataclass(frozen=True)
-class _Effort:
-    """What the implicit integrator has done so far."""
-
-    steps: int
-    cost: float
-
-
 class _Shared:
     """One run that two integrators share."""
 
@@ -94,20 +84,15 @@ class _Shared:
         self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
         self._explicit_step = cost.of_explicit_step(dynamics)
         self._implicit: bdf.Integrator | None = None
-        self._expect(cost.ImplicitCost.of(dynamics))
+        self._costs = cost.ImplicitCost.of(dynamics)
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
         self._segments: list[Segment] = []
         self._messages: list[str] = []
-        self._short = False  # whether the trial at hand is a short one that is still to be looked at
+        self._lost = 0.0  # by BDF against explicit steps since it was last ahead of them
+        self._may_lose = MAY_LOSE
         self._gave_up = False  # whether explicit steps could not go on
-
-    def _expect(self, costs: cost.ImplicitCost) -> None:
-        """Take these as the costs of BDF, and so of trials."""
-        self._costs = costs
-        self._trial = costs.start + FAIR_TRIAL * costs.step  # what one costs at the most
-        self._short_trial = costs.memory + SHORT_TRIAL * costs.step
 
     def run(self, start: InitialValues) -> Trajectory:
         """All segments, put together; all of them again by the implicit integrator where explicit steps could not go on.
@@ -139,15 +124,10 @@ class _Shared:
         rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         left = (self._grid.end - t) * self._explicit_cost
-        if self._implicit is None and self._pays_for_a_trial(left):
+        if self._implicit is None and left > WORTH_A_TRIAL * self._costs.start:
             self._implicit = bdf.Integrator(self._dynamics, self._settings)
-            self._expect(cost.ImplicitCost.of(self._dynamics, self._implicit.factors))
-        return self._pays_for_a_trial(left), rate
-
-    def _pays_for_a_trial(self, left: float) -> bool:
-        """Whether a trial, be it a short one, costs little beside what is left for explicit steps."""
-        self._short = left <= WORTH_A_TRIAL * self._trial
-        return not self._short or left > WORTH_A_SHORT_TRIAL * self._short_trial
+            self._costs = cost.ImplicitCost.of(self._dynamics, self._implicit.factors)
+        return left > WORTH_A_TRIAL * self._costs.start, rate
 
     def _rest(self, t: float) -> Grid:
         """What is left of the grid."""
@@ -195,8 +175,8 @@ class _Shared:
     def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
         """Implicit steps from t on; the time at which they were left, or None at the end."""
         self._implicit = self._implicit or bdf.Integrator(self._dynamics, self._settings)
-        self._implicit.engine.pause_after(SHORT_TRIAL if self._short else FAIR_TRIAL)
-        self._pace, self._before = _Pace(t), self._effort()
+        self._implicit.engine.pause_after(int(LOOK_AT_IMPLICIT * self._costs.memory / self._costs.step))
+        self._pace, self._before, self._lost = _Pace(t), self._spent(), 0.0
         pays = None if self._gave_up else self._implicit_pays
         segment = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
         self._segments.append(Segment(replace(segment, solver="bdf"), bdf.traits(self._settings)))
@@ -204,54 +184,34 @@ class _Shared:
         if segment.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
         self._state = self._implicit.split(reached.y)
-        self._amends = max(AMENDS * self._trial, 2.0 * self._amends)
+        self._may_lose /= 2
+        self._amends = max(AMENDS * (self._costs.start + self._lost), 2.0 * self._amends)
         self._messages.append(
             f"projected again from t = {reached.t:.4g} s on, as bdf took shorter steps than they pay for"
         )
         return reached.t
 
     def _implicit_pays(self, reached: Reached) -> bool:
-        """Whether BDF keeps ahead of explicit steps, over so many of its steps that its start does not count."""
-        assert self._implicit is not None
-        effort = self._effort()
-        taken, way = effort.steps - self._before.steps, reached.t - self._pace.t
-        if self._short and not self._is_breakpoint(reached.t):
-            self._short = False
-            self._implicit.engine.pause_after(FAIR_TRIAL)
-            if not self._promises(effort, taken):
-                self._trial = self._costs.memory + effort.cost - self._before.cost
-                return False
-        if taken < FAIR_TRIAL or self._is_breakpoint(reached.t):
+        """Whether what BDF has lost against explicit steps since it was last ahead of them is little beside what these still cost."""
+        if self._is_breakpoint(reached.t):
             return True
-        spent, explicit = effort.cost - self._before.cost, way * self._explicit_cost
-        self._pace, self._before = _Pace(reached.t), effort
-        pays = spent < COSTS_MORE * explicit
-        if not pays:
-            self._trial = self._costs.start + spent - explicit  # as seen: the way is not lost
-        return pays
-
-    def _promises(self, effort: _Effort, taken: int) -> bool:
-        """Whether the later half of a short trial keeps within sight of explicit steps."""
-        assert self._implicit is not None
-        ends, later = self._implicit.engine.history().t, SHORT_TRIAL // 2
-        if taken < SHORT_TRIAL or len(ends) <= later:  # a breakpoint or an event ended it: the steps begin anew
-            return True
-        spent = (effort.cost - self._before.cost) * later / taken
-        return bool(spent < HOPELESS * (ends[-1] - ends[-1 - later]) * self._explicit_cost)
+        spent, way = self._spent(), reached.t - self._pace.t
+        self._lost = max(self._lost + spent - self._before - way * self._explicit_cost, 0.0)
+        self._pace, self._before = _Pace(reached.t), spent
+        left = (self._grid.end - reached.t) * self._explicit_cost
+        return self._lost <= self._costs.start + self._may_lose * left
 
     def _is_breakpoint(self, t: float) -> bool:
         """Whether inputs may still show at t what they were before: no integrator can start there."""
         breakpoints = self._dynamics.input_features(self._grid.start, self._grid.end).breakpoints
         return bool(np.any((breakpoints >= just_before(t)) & (breakpoints <= just_after(t))))
 
-    def _effort(self) -> _Effort:
-        """The implicit integrator's, but for the small steps after each of its starts at breakpoints and events."""
+    def _spent(self) -> float:
+        """What the implicit integrator has cost so far, but for the small steps after each of its starts at breakpoints and events."""
         assert self._implicit is not None
         counted = self._implicit.statistics()
-        starts = int(counted["breakpoints"]) + int(counted["events"])
-        small = cost.STEPS_OF_A_START * starts
-        work = self._costs.work(int(counted["residuals"]), int(counted["jacobians"]))
-        return _Effort(int(counted["steps"]) - small, work - small * self._costs.step)
+        small = cost.STEPS_OF_A_START * (int(counted["breakpoints"]) + int(counted["events"]))
+        return self._costs.work(int(counted["residuals"]), int(counted["jacobians"])) - small * self._costs.step
 
     def _together(self) -> Trajectory:
         """The segments as one trajectory, and how it came about."""
