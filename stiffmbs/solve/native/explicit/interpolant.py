@@ -108,15 +108,19 @@ def _sound(x, count):
 
 @compiled
 def interpolated(x, c, theta, target):
-    """The state at a part theta of the last step."""
+    """The state at a part theta of the last step; what it is away from the step's start is summed up first, which rounds less."""
     n = x.n
-    copied(target, x.y_before, n)
-    factor = 1.0
-    for k in range(x.dense_ready):
+    first = x.polynomial
+    for i in range(n):
+        target[i] = theta * first[i]
+    factor = theta
+    for k in range(1, x.dense_ready):
         factor *= theta if k % 2 == 0 else 1.0 - theta
-        p = shifted(x.polynomial, k * n)
+        p = shifted(first, k * n)
         for i in range(n):
             target[i] += factor * p[i]
+    for i in range(n):
+        target[i] += x.y_before[i]
 
 
 @compiled
