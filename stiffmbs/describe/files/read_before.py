@@ -52,7 +52,9 @@ def folder_of_files() -> Folder:
     """The entries that this version of the package and of the reader of YAML make."""
     from importlib.metadata import version
 
-    return Folder("files", tag_of(FORMAT, version("stiffmbs"), version("ruamel.yaml")))
+    from ... import __version__
+
+    return Folder("files", tag_of(FORMAT, __version__, version("ruamel.yaml")))
 
 
 def _is_plain(found: Any) -> bool:
