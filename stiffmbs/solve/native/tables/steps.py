@@ -12,8 +12,8 @@ IDA = Layout({
 note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
 
 SCHEME = Layout({
-    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
-    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
+    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT,
+    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS, "free": FLOATS, "free_error": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 })  # fmt: skip
 """The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
