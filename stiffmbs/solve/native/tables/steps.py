@@ -12,8 +12,8 @@ IDA = Layout({
 note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
 
 SCHEME = Layout({
-    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
-    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
+    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT,
+    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS, "free": FLOATS, "free_error": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 })  # fmt: skip
 """The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
@@ -40,8 +40,8 @@ EXPLICIT = Layout({
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
-event functions' values there, the stages k, one over the tolerance of each number in the last step tried, the counters, the
-output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
+event functions' values there, the stages k, one over the tolerance of each number in the last step tried, how many polynomials describe
+the last step (0: they are not made), the counters, the output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
 `started` is 0: the state, its accelerations in the last stage, and `lam` are consistent values then."""
 
 NATIVE_IDA = Layout({
