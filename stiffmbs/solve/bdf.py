@@ -21,7 +21,7 @@ from .events.divergence import refuse_beyond_sense
 from .events.limits import refuse_beyond_limits
 from .events.long_steps import LongSteps
 from .events.masked import MaskedEvents
-from .events.restart import just_after, restarted, restarted_past, straight_on
+from .events.restart import just_after, restarted_past, straight_on
 from .events.velocity_jumps import VelocityJumps
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.choice import chosen
@@ -216,19 +216,17 @@ class Integrator:
                         self._masked.note(t, q, u, self.steps(), reached.fired)
                     if t >= stop:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
                         t = just_after(t)
-                    start, t = self._restarted(reached, t, stop)
+                    start, t = restarted_past(self.dynamics, t, q, u, self._ahead(reached, stop))
                     self._jumps.note(before, start.u - u)
                     yield from self._at_once(start, before, t, grid)
                     self._events += before < stop
                     self._breakpoints += before >= stop
 
-    def _restarted(self, reached: Reached, t: float, stop: float) -> tuple[InitialValues, float]:
-        """Consistent values from which to go on, and their time: behind an event others that come with it are passed."""
-        state, last = self.split(reached.y), self.engine.last_step()
-        ahead = straight_on(last[0], self.settings.rtol) if last and reached.fired else 0.0
-        if not ahead or reached.rates is None or just_after(t + ahead) >= stop:
-            return restarted(self.dynamics, t, *state), t
-        return restarted_past(self.dynamics, t, state, self.split(reached.rates), ahead)
+    def _ahead(self, reached: Reached, stop: float) -> float:
+        """How far beyond an event others that come with it are passed."""
+        last = self.engine.last_step() if reached.fired else None
+        ahead = straight_on(last[0], self.settings.rtol) if last else 0.0
+        return ahead if just_after(reached.t + ahead) < stop else 0.0
 
     def steps(self) -> int:
         """Taken so far."""

@@ -15,7 +15,7 @@ from ..initial import InitialValues
 GONE_PAST = Routine(
     "stiffmbs.solve.native.event_search.past",
     "gone_past",
-    "float64(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
+    "float64(float64, float64, int64, float64*, float64*, int64*)",
 )
 INDISTINCT = 4 * float(np.finfo(float).eps)
 """Part of a time within which another one is taken for the same, by IDA and for breakpoints, which rounding moves by as much."""
@@ -62,11 +62,7 @@ def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, projec
 
 
 def restarted_past(
-    dynamics: Dynamics,
-    t: float,
-    state: tuple[np.ndarray, np.ndarray],
-    rates: tuple[np.ndarray, np.ndarray],
-    ahead: float,
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, ahead: float
 ) -> tuple[InitialValues, float]:
     """Consistent values behind an event, at its time or a little ahead, and the time that they belong to.
 
@@ -77,24 +73,22 @@ def restarted_past(
     ----------
     t : float
         s.
-    state, rates : pairs of ndarrays, shapes (n_q,), (n_u,)
-        Positions and velocities, and their rates before the event.
+    q, u : ndarrays, shapes (n_q,), (n_u,)
     ahead : float
-        Length of the straight way, s (`straight_on`).
+        Length of the straight way, s (`straight_on`); 0 for none.
     """
-    _take(dynamics, t, *state)
-    t += _gone_past(dynamics, t, ahead, rates)
+    _take(dynamics, t, q, u)
+    if ahead:
+        t += _gone_past(dynamics, t, ahead)
     return _at_hand(dynamics, t), t
 
 
-def _gone_past(dynamics: Dynamics, t: float, ahead: float, rates: tuple[np.ndarray, np.ndarray]) -> float:
-    """Move the state at hand on at its rates where event functions change on that way; for how long."""
+def _gone_past(dynamics: Dynamics, t: float, ahead: float) -> float:
+    """Move the state at hand on at its velocities where event functions change on that way; for how long."""
     count = dynamics.system.n_event_functions
     dynamics.state.load("event_function")
-    q, u = map(np.ascontiguousarray, rates)
-    memory = np.empty_like(q), np.empty_like(u), q, u, np.empty(count)  # held as long as compiled code works on it
-    *states, values = addresses(*memory)
-    return float(GONE_PAST.short_call(t, ahead, *states, count, values, dynamics.table.ctypes.data))
+    memory = np.empty(len(dynamics.state.q)), np.empty(count)  # held as long as compiled code works on it
+    return float(GONE_PAST.short_call(t, ahead, count, *addresses(*memory, dynamics.table)))
 
 
 def _take(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> None:

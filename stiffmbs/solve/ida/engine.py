@@ -32,8 +32,6 @@ class Reached:
         The event functions that stopped it by changing their sign; empty where none did.
     failure : str
         Why it cannot go on; empty where it can.
-    rates : ndarray, shape (n,), optional
-        Those of all unknowns where it is now, where they are known.
     """
 
     times: np.ndarray
@@ -42,7 +40,6 @@ class Reached:
     y: np.ndarray
     fired: tuple[int, ...] = ()
     failure: str = ""
-    rates: np.ndarray | None = None
 
 
 class Engine(Protocol):

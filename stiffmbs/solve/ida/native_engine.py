@@ -167,7 +167,7 @@ class NativeEngine:
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
         failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
         fired = tuple(map(int, np.flatnonzero(self._ida.roots()))) if status is Status.ROOT else ()
-        return Reached(times, rows, self._ida.t, self._ida.y, fired, failure, self._ida.yp)
+        return Reached(times, rows, self._ida.t, self._ida.y, fired, failure)
 
     def _worst(self) -> str:
         """Where the last step's error, or the last correction of Newton's iteration, was largest; nothing where that is not known."""
