@@ -13,9 +13,9 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
+from ...cache.source_files import digest_of, modules_within, python_files
 from . import cache as store
 from .description import Description
-from .source_files import digest_of, modules_within, python_files
 
 LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
