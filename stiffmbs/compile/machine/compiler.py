@@ -14,6 +14,7 @@ from threading import RLock
 from typing import Any
 
 from ...cache.source_files import digest_of, modules_within, python_files
+from ...interrupts import uncollected
 from . import cache as store
 from .description import Description
 
@@ -128,7 +129,8 @@ def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
         found = _linked(code, entry, source.signatures) if code else None
         if found is None:
             LOGGER.info("compiling %s", source.of)
-            code = _object_code(source, _symbol(entry, ""))
+            with uncollected():
+                code = _object_code(source, _symbol(entry, ""))
             store.write(entry, _header(entry, code) + code)
             found = _linked(code, entry, source.signatures)
     assert found is not None, entry
