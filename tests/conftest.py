@@ -15,9 +15,14 @@ EXAMPLE_SCENES = scene_files()
 G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 
 
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """SymPy keeps millions of expressions; to look through those of earlier files again and again takes a tenth of a run."""
+    if nextitem is None or nextitem.path != item.path:
+        gc.freeze()
+
+
 def pytest_sessionfinish() -> None:
-    """Millions of SymPy's expressions are kept to the end; to look through them again and again takes a process longer than
-    those it works for wait."""
+    """Nor is it worth the time to look through all of them at the end."""
     gc.freeze()
 
 

@@ -38,18 +38,15 @@ def prepare(x, c, s, m):
         p[n + i] = h * before[i] - p[i]
         p[2 * n + i] = 2.0 * p[i] - h * (after[i] + before[i])
     rows = c.n_free if free else c.n_dense
-    for row in range(c.n_dense):
+    for row in range(rows):
         target = shifted(p, (3 + row) * n)
         for i in range(n):
             target[i] = 0.0
-        if row < rows:
-            add_stages(x, target, shifted(c.free if free else c.dense, row * c.extended), c.extended, h)
-    sound = _sound(x, c)
+        add_stages(x, target, shifted(c.free if free else c.dense, row * c.extended), c.extended, h)
+    sound = _sound(x, 3 + rows)
     if sound == 0:
         return NOT_FINITE_WITHIN
-    for i in range(sound * n, (3 + c.n_dense) * n):
-        p[i] = 0.0
-    x.dense_ready = 1
+    x.dense_ready = sound
     return 0
 
 
@@ -82,7 +79,7 @@ def _is_fast(x, c, h):
 
 
 @compiled
-def _sound(x, c):
+def _sound(x, count):
     """How many of the polynomials count: where sums of stages tell nothing, the rates at the ends, or the ends alone.
 
     None where a stage is no number: a Python function has failed, or a law ends beside the motion.
@@ -97,7 +94,7 @@ def _sound(x, c):
     for i in range(x.n):
         weight = x.weight[i] * x.weight[i]
         of_stages = 0.0
-        for k in range(3, 3 + c.n_dense):
+        for k in range(3, count):
             of_stages += p[k * x.n + i] * p[k * x.n + i]
         ends += p[i] * p[i] * weight
         by_rates += (p[x.n + i] * p[x.n + i] + p[2 * x.n + i] * p[2 * x.n + i]) * weight
@@ -105,21 +102,23 @@ def _sound(x, c):
     if not isfinite(ends + by_rates + by_stages):
         return 0
     if by_stages <= max(x.n, ASTRAY**2 * (ends + by_rates)):
-        return 3 + c.n_dense
+        return count
     return 3 if by_rates <= max(x.n, ASTRAY**2 * ends) else 1
 
 
 @compiled
 def interpolated(x, c, theta, target):
-    """The state at a part theta of the last step."""
+    """The state at a part theta of the last step; what it is away from the step's start is summed up first, which rounds less."""
     n = x.n
+    first = x.polynomial
     for i in range(n):
-        target[i] = 0.0
-    for k in range(2 + c.n_dense, -1, -1):
-        factor = theta if k % 2 == 0 else 1.0 - theta
-        p = shifted(x.polynomial, k * n)
+        target[i] = theta * first[i]
+    factor = theta
+    for k in range(1, x.dense_ready):
+        factor *= theta if k % 2 == 0 else 1.0 - theta
+        p = shifted(first, k * n)
         for i in range(n):
-            target[i] = (target[i] + p[i]) * factor
+            target[i] += factor * p[i]
     for i in range(n):
         target[i] += x.y_before[i]
 
