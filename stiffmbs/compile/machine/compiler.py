@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from threading import RLock
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
@@ -29,8 +29,7 @@ SERIES = "rotation_vector("
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
-@dataclass(frozen=True)
-class Compiled:
+class Compiled(NamedTuple):
     """A compiled function: its address for other compiled code, and two ways to call it from Python.
 
     Pointers are passed as addresses (``array.ctypes.data``); the interpreter lock is released during a `call`, and kept during a
