@@ -44,7 +44,10 @@ def collect_from_now_on() -> None:
 
 @contextlib.contextmanager
 def uncollected() -> Iterator[None]:
-    """Collect nothing for a while: expressions live on in SymPy's caches, and looking through them takes 5 to 10 % of deriving."""
+    """Collect nothing for a while: expressions live on in SymPy's caches, and looking through them takes 5 to 10 % of deriving.
+
+    Of translating a kernel, whose syntax tree is kept until the end, it takes two fifths.
+    """
     enabled = gc.isenabled()
     gc.disable()
     try:

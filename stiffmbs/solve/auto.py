@@ -9,6 +9,7 @@ is tried, for as long as it keeps ahead, and best from the start, before explici
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -78,8 +79,7 @@ class _Pace:
     held: int = 0
 
 
-@dataclass(frozen=True)
-class _Effort:
+class _Effort(NamedTuple):
     """What the implicit integrator has done so far."""
 
     steps: int

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,8 +31,7 @@ it shows.  Measured on a bar on a bushing and on the half car: with 8 accelerati
 1.6e4 forces are off by a tenth of their size."""
 
 
-@dataclass(frozen=True)
-class Stiffness:
+class Stiffness(NamedTuple):
     """Bounds on what forces do to the motion near a state.
 
     Attributes
@@ -89,8 +88,7 @@ def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
     return max(min(LOOSEST, stiffness.allowed_residual), TIGHTEST, NUMBERS_END / settings.rtol)
 
 
-@dataclass(frozen=True)
-class RowSums:
+class RowSums(NamedTuple):
     """Sums of magnitudes in the rows of M^-1/2 A M^-1/2, A being a term.
 
     The largest bounds the same eigenvalues as that of M^-1 A, and does not depend on the units of lengths and angles.  On a car it was
