@@ -1,6 +1,8 @@
 """What many tests share: the example scenes and the converged cart-pendulum."""
 
 import gc
+import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +16,19 @@ EXAMPLE_SCENES = scene_files()
 """All example scenes by name, those in folders by theme too."""
 G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 
+os.environ.setdefault("SYMPY_CACHE_SIZE", "None")  # as the command has it: deriving takes a fourth less
+
+
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """To look through millions of expressions of earlier files again and again takes a tenth of a run; SymPy's own go."""
+    if nextitem is None or nextitem.path != item.path:
+        if "sympy.core.cache" in sys.modules:
+            sys.modules["sympy.core.cache"].clear_cache()
+        gc.freeze()
+
 
 def pytest_sessionfinish() -> None:
-    """Millions of SymPy's expressions are kept to the end; to look through them again and again takes a process longer than
-    those it works for wait."""
+    """Nor is it worth the time to look through all of them at the end."""
     gc.freeze()
 
 

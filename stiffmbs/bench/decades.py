@@ -71,18 +71,20 @@ def _set_up(contestant: Contestant, points: Sequence[Point]) -> Iterator[Row]:
 def at_errors(solver: str, peer: bool, rows: Sequence[Row], targets: Sequence[float]) -> Iterator[Row]:
     """Times at errors: by a line through many points about each, or between two neighbours where they are few.
 
-    Where all settings have smaller errors, the shortest time counts: a solver that is more accurate than asked is not slower for it.
+    A setting that has a smaller error and takes less time than the line says counts with its own time: looser settings that
+    take longer, where steps follow stability and not the error, make no solver slower.
     """
     own = sorted((row for row in rows if row.solver == solver), key=lambda row: row.error)
     for target in targets:
         near = [row for row in own if target / WINDOW <= row.error <= target * WINDOW]
         if len(near) < FEWEST:
             near = [row for pair in itertools.pairwise(own) if pair[0].error <= target < pair[1].error for row in pair]
+        seconds = [row.seconds for row in own if row.error <= target]
         if near and near[0].error <= target <= near[-1].error:
-            yield on_line(solver, peer, near, target)
-        elif own and own[-1].error < target:
-            fastest = min(own, key=lambda row: row.seconds)
-            yield Row(solver, f"{AT_TARGET} {target:g}", target, fastest.seconds, peer)
+            seconds.append(on_line(solver, peer, near, target).seconds)
+        elif not own or own[-1].error >= target:
+            continue
+        yield Row(solver, f"{AT_TARGET} {target:g}", target, min(seconds), peer)
 
 
 def _points(contestant: Contestant, reference: np.ndarray, targets: Sequence[float]) -> Iterator[Point]:

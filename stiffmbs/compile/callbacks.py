@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -126,8 +125,7 @@ def has_fault(system: System) -> bool:
     return any(callback.fault is not None for *_, callback in callbacks(system))
 
 
-@dataclass(frozen=True)
-class Fault:
+class Fault(NamedTuple):
     """What a Python function raised, and the clause on it, which names the element."""
 
     raised: BaseException

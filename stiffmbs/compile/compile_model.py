@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import repeat
+from typing import NamedTuple
 
 import numpy as np
 
@@ -107,8 +107,7 @@ def _principal_axes(model: Compilable) -> np.ndarray:
     return np.array([body.principal_axes() for body in model.bodies.values()])
 
 
-@dataclass(frozen=True)
-class _Member:
+class _Member(NamedTuple):
     name: str
     element: Element
     data: ElementData

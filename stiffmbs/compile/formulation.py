@@ -7,11 +7,10 @@ line of a matrix a block in its rows and columns.  Nothing else is needed for a 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class Product:
+class Product(NamedTuple):
     """One line of a residual: in `rows`, factor * block @ operand.
 
     `rows` and `operand` are names of unknowns (``q u mu lam``, ``x`` for algebraic states by themselves); an operand with a prime is a derivative; a vector
@@ -27,8 +26,7 @@ class Product:
     operand: str | None = None
 
 
-@dataclass(frozen=True)
-class Block:
+class Block(NamedTuple):
     """One line of a matrix: in `rows` and `columns`, (constant + cj * cj-part) * block."""
 
     rows: str
@@ -38,8 +36,7 @@ class Block:
     cj: float = 0.0
 
 
-@dataclass(frozen=True)
-class Formulation:
+class Formulation(NamedTuple):
     """Equations of motion in the form that a solver integrates or solves.
 
     Attributes

@@ -10,8 +10,8 @@ that swings by a millimetre a second over a knot of its table does not change it
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,8 +47,7 @@ NEARER = 2.0 ** -np.arange(21)
 """Parts of a zone at which that is looked at."""
 
 
-@dataclass(frozen=True)
-class Zones:
+class Zones(NamedTuple):
     """Zones of all event functions, in the order of the values of the set ``event_function``.
 
     Attributes

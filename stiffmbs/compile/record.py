@@ -17,13 +17,13 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..cache.source_files import digest_of, python_files
 from ..describe.element import Component, Element
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
 from .machine import cache as store
 from .machine.description import Description
-from .machine.source_files import digest_of, python_files
 from .terms import TERM_SETS
 
 if TYPE_CHECKING:

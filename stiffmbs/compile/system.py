@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +24,7 @@ from .record import source_of
 from .terms import TERM_AXES, TERM_SETS, TURNED
 
 
-@dataclass(frozen=True)
-class Term:
+class Term(NamedTuple):
     """Where the entries of a term stand: `source` in the values of its set, `row` and `column` in the whole.
 
     Entries that belong to the ground are left out.

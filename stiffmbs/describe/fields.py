@@ -9,6 +9,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from pydantic import (
@@ -105,7 +106,7 @@ class Described(_Base):
     @classmethod
     def _no_unknown_key(cls, found: Any) -> Any:
         if isinstance(found, dict):
-            known = [field.alias or name for name, field in cls.model_fields.items()]
+            known = _keys(cls)
             for key in found:
                 if key not in known:
                     raise ValueError(f"found the unknown key '{quoted(key)}', expected one of {', '.join(known)}")
@@ -118,6 +119,12 @@ class Described(_Base):
         if not isinstance(found, dict):
             return found
         return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}
+
+
+@cache
+def _keys(described: type[Described]) -> tuple[str, ...]:
+    """The keys that the fields of a class have in scenes."""
+    return tuple(field.alias or name for name, field in described.model_fields.items())
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from .files.expand import (
 )
 from .files.held import with_held
 from .files.include import read_including
+from .files.other_files import ASKED, FOLDER, Asked
 from .files.quoted import written
 from .files.stages import written_stages
 from .files.unchanged import Unchanged
@@ -39,7 +40,11 @@ SECTIONS = ("variables", "states", "bodies", "joints", "forces")
 
 
 def read_scene(
-    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", file: Path | None = None
+    text: str,
+    changes: Sequence[tuple[str, str]] = (),
+    source: str = "scene",
+    file: Path | None = None,
+    asked: Asked | None = None,
 ) -> Scene:
     """Read a scene from text.
 
@@ -53,6 +58,8 @@ def read_scene(
         What messages call it.
     file : Path, optional
         The file that the text is of: what it includes is looked for beside it, or in the working folder without it.
+    asked : callable, optional
+        Told of every other file before it is read.
 
     Returns
     -------
@@ -63,12 +70,12 @@ def read_scene(
     InputError
         When it is no valid scene; names the line and the path in it.
     """
-    found, line = read_including(text, source, file)
+    found, line = read_including(text, source, file, asked)
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, line, file.parent if file else None)
+    return made_scene(found, changes, source, line, file.parent if file else None, asked=asked)
 
 
 def made_scene(
@@ -78,6 +85,7 @@ def made_scene(
     line_of: Callable[[tuple[Any, ...]], int | str | None],
     folder: Path | None = None,
     unchanged: Unchanged | None = None,
+    asked: Asked | None = None,
 ) -> Scene:
     """The scene of a mapping.
 
@@ -95,6 +103,8 @@ def made_scene(
         Where meshes and property files are looked for; the working folder by default.
     unchanged : Unchanged, optional
         What was validated before and need not be again; the scene then does not keep what it was read from.
+    asked : callable, optional
+        Told of every file before it is read.
 
     Raises
     ------
@@ -117,7 +127,7 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        scene = _validated(found, replaced, in_parts, chosen, folder, known)
+        scene = _validated(found, replaced, in_parts, {**chosen, FOLDER: folder, ASKED: asked}, known)
     except _Located as error:
         message = as_written(str(error), parts)
         there = error.path if message == str(error) else ("parts", *error.path[1:])
@@ -125,9 +135,9 @@ def made_scene(
         raise InputError(f"{source}, {where}{message}") from None
     scene._written, scene._validated = scene_as_written, known
     if scene.stages:
-        scene._stage_scenes = _stage_scenes(scene, source)
+        scene._stage_scenes = _stage_scenes(scene, source, asked)
     elif scene.at_start:
-        scene._held_at_start = _held_at_start(scene, source)
+        scene._held_at_start = _held_at_start(scene, source, asked)
     return scene
 
 
@@ -147,7 +157,7 @@ def _chosen(
     return merged, chosen, [change for change in changes if change[0] not in words]
 
 
-def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
+def _stage_scenes(scene: Scene, source: str, asked: Asked | None) -> tuple[Scene, ...]:
     """The scene of each stage; errors as for `made_scene`."""
     if scene.written is None:
         raise InputError(f"{source}: found stages, expected a scene of one run")
@@ -156,17 +166,21 @@ def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
     except InputError as error:
         raise InputError(f"{source}, {error}") from None
     return tuple(
-        made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
+        made_scene(
+            dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder, asked=asked
+        )
         for k, stage in enumerate(stages)
     )
 
 
-def _held_at_start(scene: Scene, source: str) -> Scene:
+def _held_at_start(scene: Scene, source: str, asked: Asked | None) -> Scene:
     """The scene with what holds at its start alone; errors as for `made_scene`."""
     if scene.written is None:
         raise InputError(f"{source}: found at_start, expected a scene that starts as described")
     held = with_held(scene.written)
-    return made_scene(dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder)
+    return made_scene(
+        dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder, asked=asked
+    )
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
@@ -203,8 +217,7 @@ def _validated(
     found: dict[str, Any],
     replaced: Mapping[str, Quantity],
     in_parts: Sequence[tuple[str, Any]],
-    chosen: Mapping[str, Any],
-    folder: Path | None,
+    known: Mapping[str, Any],
     unchanged: Unchanged,
 ) -> Scene:
     try:
@@ -214,9 +227,8 @@ def _validated(
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
         }
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
-        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, "folder": folder}
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, **known}
         context["roads"] = read_roads(raw.get("roads"), context)
-        context |= chosen
         raw, context = with_parts(raw, _family(raw), context, in_parts)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
@@ -233,7 +245,7 @@ def _validated(
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
     scene._quantities = parameters
-    unchanged.keep(written_entries, context, scene)
+    unchanged.keep(written_entries, {**context, ASKED: None}, scene)
     return scene
 
 

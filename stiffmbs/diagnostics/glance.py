@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +20,7 @@ GLANCE = Routine(
 )
 
 
-@dataclass(frozen=True)
-class Glance:
+class Glance(NamedTuple):
     """What rows show that are all finite, at increasing times.
 
     Attributes

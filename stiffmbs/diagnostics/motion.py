@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +15,7 @@ from .near_limits import near_limits_sentence
 from .singular_passage import singular_passage_sentence
 
 
-@dataclass(frozen=True)
-class MotionNotes:
+class MotionNotes(NamedTuple):
     """Sentences on a motion.
 
     Attributes

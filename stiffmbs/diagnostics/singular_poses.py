@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,7 @@ MOST_POSES, USUAL_POSES, EFFORT = 400, 20, 5e8
 """Poses to look at on a stretch, and on the whole way; products in all decompositions together."""
 
 
-@dataclass(frozen=True)
-class SingularPose:
+class SingularPose(NamedTuple):
     """A pose near a singular one.
 
     Attributes

@@ -6,7 +6,7 @@ import logging
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from ..compile.compile_model import compile_model
 from ..describe.building.model_builder import ModelBuilder
@@ -32,8 +32,7 @@ from .start_from import StartFrom, started_from, starting_at, state_to_start_fro
 LOGGER = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class Examined:
+class Examined(NamedTuple):
     """A model compiled and examined for redundant equations."""
 
     data: ModelData

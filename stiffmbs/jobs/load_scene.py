@@ -51,7 +51,10 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
-    from ..describe.reading import read_scene
+    if str(path) == STANDARD_INPUT:
+        from ..describe.reading import read_scene
 
-    file = None if str(path) == STANDARD_INPUT else Path(path)
-    return read_scene(file_text(path), changes, source_name(path), file)
+        return read_scene(file_text(path), changes, source_name(path))
+    from ..describe.files.scenes_read_before import read_scene_file
+
+    return read_scene_file(file_text(path), changes, source_name(path), Path(path))

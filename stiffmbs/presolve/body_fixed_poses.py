@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -36,8 +35,7 @@ class BodyFixedPoses(Protocol):
         """The states of the bodies from those of their parent bodies; shapes (..., k, n_q) and (..., k, n_u)."""
 
 
-@dataclass(frozen=True)
-class PlanarPoses:
+class PlanarPoses(NamedTuple):
     """In the plane.
 
     Attributes
@@ -77,8 +75,7 @@ class PlanarPoses:
         return place, np.concatenate([u[..., :2] + u[..., 2:] * across, u[..., 2:]], axis=-1)
 
 
-@dataclass(frozen=True)
-class SpatialPoses:
+class SpatialPoses(NamedTuple):
     """In space.
 
     Attributes

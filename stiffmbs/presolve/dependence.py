@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +15,7 @@ from ..compile.terms import TERM_SETS
 from .relations import NEGLIGIBLE
 
 
-@dataclass(frozen=True)
-class Dependence:
+class Dependence(NamedTuple):
     """The entries of C_q that are not zero at every pose; those of the ground are left out.
 
     Attributes
@@ -81,8 +80,7 @@ def curved(system: System, group: Group) -> np.ndarray:
     return found
 
 
-@dataclass(frozen=True)
-class _Summands:
+class _Summands(NamedTuple):
     """The summands of all entries of a kind, one after the other.
 
     Attributes

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
-from dataclasses import dataclass
 from importlib import import_module
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..describe.element import Element
 from ..describe.formula.formula import Formula
@@ -17,8 +16,7 @@ from ..describe.model_data import ModelData
 from ..describe.states.state import StateValue
 
 
-@dataclass(frozen=True)
-class MergedBodies:
+class MergedBodies(NamedTuple):
     """A model whose bodies between fixed joints are merged.
 
     Attributes

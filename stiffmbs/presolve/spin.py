@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..compile.quaternions import CONJUGATE, rotated, times
 
 
-@dataclass(frozen=True)
-class Spin:
+class Spin(NamedTuple):
     """A body of a part whose quaternion doesn't follow its spin.
 
     Attributes

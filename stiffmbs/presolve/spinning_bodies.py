@@ -9,8 +9,7 @@ Forces stay as they are; what is differentiated by time, constraints and the ang
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,8 +29,7 @@ ANGLE = "spin_angle"
 """Behind a body's name: the name of its state."""
 
 
-@dataclass(frozen=True)
-class SpinningBodies:
+class SpinningBodies(NamedTuple):
     """A model some of whose quaternions don't follow the spin of their bodies.
 
     Attributes
@@ -129,8 +127,7 @@ REFUSED, POINT, BODY = "", "point", "body"
 """Besides an axis what is asked of a marker on a body that spins (`stiffmbs.describe.element.Element.spins_with`)."""
 
 
-@dataclass(frozen=True)
-class _Demand:
+class _Demand(NamedTuple):
     """What is asked of a marker that is placed on a body, and whether that lets the body turn about the marker's axis."""
 
     what: str

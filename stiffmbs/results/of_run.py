@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,7 @@ from .energy_balance_notes import balance_notes
 from .undefined_values import no_number_sentences
 
 
-@dataclass(frozen=True)
-class RunResults:
+class RunResults(NamedTuple):
     """The results of a run.
 
     Attributes

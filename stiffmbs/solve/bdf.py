@@ -21,7 +21,7 @@ from .events.divergence import refuse_beyond_sense
 from .events.limits import refuse_beyond_limits
 from .events.long_steps import LongSteps
 from .events.masked import MaskedEvents
-from .events.restart import just_after, restarted
+from .events.restart import just_after, restarted_past, straight_on
 from .events.velocity_jumps import VelocityJumps
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.choice import chosen, dense_cost
@@ -115,12 +115,6 @@ def _failure(integrator: Integrator, reached: Reached) -> str:
         return ""
     missing = no_value_ahead(integrator.dynamics, reached.t, q, u)
     return missing or reached.failure + suspect(integrator.dynamics, reached.t, q, u)
-
-
-def _within(times: np.ndarray, after: float, until: float) -> np.ndarray:
-    """Those of increasing times that lie after one and not after another."""
-    first, end = np.searchsorted(times, (after, until), side="right")
-    return times[first:end]
 
 
 def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
@@ -226,11 +220,17 @@ class Integrator:
                         self._masked.note(t, q, u, self.steps(), reached.fired)
                     if t >= stop:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
                         t = just_after(t)
-                    start = restarted(self.dynamics, t, q, u)
+                    start, t = restarted_past(self.dynamics, t, q, u, self._ahead(reached, stop))
                     self._jumps.note(before, start.u - u)
                     yield from self._at_once(start, before, t, grid)
                     self._events += before < stop
                     self._breakpoints += before >= stop
+
+    def _ahead(self, reached: Reached, stop: float) -> float:
+        """How far beyond an event others that come with it are passed."""
+        last = self.engine.last_step() if reached.fired else None
+        ahead = straight_on(last[0], self.settings.rtol) if last else 0.0
+        return ahead if just_after(reached.t + ahead) < stop else 0.0
 
     def steps(self) -> int:
         """Taken so far."""
@@ -257,14 +257,14 @@ class Integrator:
         """Integrate from t to `stop` or to the first event."""
         if grid.times is None:
             return self.engine.by_steps(stop)
-        return self.engine.to_times(_within(grid.times, just_after(t), stop), stop)
+        return self.engine.to_times(grid.within(just_after(t), stop), stop)
 
     def _at_once(self, start: InitialValues, before: float, t: float, grid: Grid) -> Iterator[Reached]:
         """Output times that rounding alone keeps from t, as 0.1 s * 7 from a breakpoint at 0.7 s: the state at t is theirs.
 
         Those up to `before` have been given.
         """
-        times = np.empty(0) if grid.times is None else _within(grid.times, before, just_after(t))
+        times = grid.within(before, just_after(t))
         if len(times):
             state = self.equations.coordinates.state(start.q, start.u)
             yield Reached(times, np.tile(state, (len(times), 1)), t, state)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 
@@ -16,10 +16,12 @@ from ..compile.machine.layout import address, addresses, packed
 from ..compile.machine.routines import Routine, together
 from ..compile.state import State
 from ..compile.system import System
-from .linear.eliminated import Eliminated
 from .linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
 from .native.tables.linear import DYNAMICS
 from .storage import all_finite, allocated, blocks, release
+
+if TYPE_CHECKING:
+    from .linear.eliminated import Eliminated
 
 T = TypeVar("T")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, CONTRADICTING, OUTPUT_POINTS = together(
@@ -188,6 +190,8 @@ class Dynamics:
     @cached_property
     def eliminated(self) -> Eliminated:
         """The quicker way to accelerations that explicit steps take where it serves."""
+        from .linear.eliminated import Eliminated
+
         return Eliminated(self.state)
 
     def input_features(self, start: float, end: float) -> InputFeatures:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,7 @@ LARGE_SHIFT, LARGE_TURN = 0.25, math.radians(45.0)
 """Part of the mechanism's size and angle from which on a move is no correction of a drawing."""
 
 
-@dataclass(frozen=True)
-class Move:
+class Move(NamedTuple):
     """What assembly changed of one body.
 
     Attributes

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..describe.settings import RunSettings
 from .trajectory import Solver, Trajectory
@@ -57,8 +57,7 @@ class Traits:
         }
 
 
-@dataclass(frozen=True)
-class Registered:
+class Registered(NamedTuple):
     """A solver by the name in the settings.
 
     Attributes

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,8 +23,7 @@ from .storage import allocated
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
 
-@dataclass(frozen=True)
-class Subsystem:
+class Subsystem(NamedTuple):
     """A mechanism ready to be solved.
 
     Attributes

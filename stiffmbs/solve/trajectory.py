@@ -78,6 +78,13 @@ class Grid:
             return breakpoints
         return np.union1d(breakpoints, self.stops[(self.stops > self.start) & (self.stops < self.end)])
 
+    def within(self, after: float, until: float) -> np.ndarray:
+        """The output times that lie after one time and not after another."""
+        if self.times is None:
+            return np.empty(0)
+        first, end = np.searchsorted(self.times, (after, until), side="right")
+        return self.times[first:end]
+
 
 @dataclass(frozen=True)
 class Trajectory:

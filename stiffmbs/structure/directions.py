@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,8 +14,7 @@ SAME_DIRECTION = 1e-5
 """Angle, rad, and part of a force across it, up to which a direction counts as the same."""
 
 
-@dataclass(frozen=True)
-class Direction:
+class Direction(NamedTuple):
     """Where what is undetermined of a reaction always lies.
 
     Attributes

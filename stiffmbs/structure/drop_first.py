@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,8 +16,7 @@ TAKES_PART = 1e-6
 """Share in a combination, relative to its largest, below which a row has no part in it."""
 
 
-@dataclass(frozen=True)
-class Redundant:
+class Redundant(NamedTuple):
     """One redundant equation.
 
     Attributes

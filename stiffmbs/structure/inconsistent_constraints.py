@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,7 @@ REGULAR = 1e-5
 """Least singular value for a velocity to be computed from the equations kept."""
 
 
-@dataclass(frozen=True)
-class Inconsistency:
+class Inconsistency(NamedTuple):
     """Redundant equations that disagree with those that hold the same.
 
     Attributes

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,8 +27,7 @@ LEAST_NORM = 1e-9
 """A row is scaled as if it were at least this part of the others: one that vanishes must not be blown up."""
 
 
-@dataclass(frozen=True)
-class Pose:
+class Pose(NamedTuple):
     """A loop at an instant and pose, everything in the loop's own rows and columns and without units.
 
     Attributes

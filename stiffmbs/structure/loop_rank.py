@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,8 +24,7 @@ POSES, PERTURBATION, SHRINKS = 3, 0.1, 5
 """Poses to confirm the rank at, the size of a perturbation (arms, rad), and how often it is made smaller in vain."""
 
 
-@dataclass(frozen=True)
-class LoopRank:
+class LoopRank(NamedTuple):
     """What the singular values of one loop's scaled J say.
 
     Attributes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,7 @@ FULL_RANK = 1e-8
 """Determinant of the Gram matrix of scaled rows above which a joint surely holds a body with all its equations."""
 
 
-@dataclass(frozen=True)
-class LoopJoint:
+class LoopJoint(NamedTuple):
     """A joint with its rows and bodies.
 
     Attributes
@@ -35,8 +34,7 @@ class LoopJoint:
     bodies: tuple[int, ...]
 
 
-@dataclass(frozen=True)
-class Loop:
+class Loop(NamedTuple):
     """Bodies and joints of a mechanism that is no tree, connected by more than the ground.
 
     Attributes

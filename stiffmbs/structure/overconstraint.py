@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,8 +22,7 @@ if TYPE_CHECKING:
 MOST_NAMES = 6
 
 
-@dataclass(frozen=True)
-class Overconstraint:
+class Overconstraint(NamedTuple):
     """Joints that together hold something more than once.
 
     Attributes

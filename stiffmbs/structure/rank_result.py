@@ -7,7 +7,7 @@ undetermined, `inconsistencies` equations that cannot hold together.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +20,7 @@ from .loops import Loop
 from .uniqueness import Indeterminate, forces_change, indeterminate
 
 
-@dataclass(frozen=True)
-class LoopRankResult:
+class LoopRankResult(NamedTuple):
     """A loop whose equations are not independent at the start, and what follows.
 
     Attributes

@@ -7,8 +7,7 @@ only loops are looked at, each by itself: `loops` finds them, and `rank_result` 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,8 +20,7 @@ if TYPE_CHECKING:
     from .uniqueness import Indeterminate
 
 
-@dataclass(frozen=True)
-class Redundancy:
+class Redundancy(NamedTuple):
     """What the examination of a system found.
 
     Attributes

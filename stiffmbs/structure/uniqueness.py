@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,7 @@ SPEED = 1.0
 """Velocity (arms and rad per second) at which forces that depend on reactions are looked at: friction has none at rest."""
 
 
-@dataclass(frozen=True)
-class Indeterminate:
+class Indeterminate(NamedTuple):
     """What of a joint's or force's reaction has no unique value.
 
     Attributes

@@ -163,6 +163,16 @@ def test_a_solver_that_is_more_accurate_than_asked_counts_with_its_shortest_time
     assert not list(at_errors("own", False, rows, [1e-9]))
 
 
+def test_looser_settings_that_take_longer_make_no_solver_slower():
+    """As where steps follow stability: the line through all of them would say more than one of them takes."""
+    rows = [
+        Row("own", f"rtol {e:g}", e, seconds, False)
+        for e, seconds in ((3e-2, 5.0), (2e-2, 4.0), (8e-3, 2.0), (1e-3, 2.5))
+    ]
+    (found,) = at_errors("own", False, rows, [1e-2])
+    assert (found.seconds, found.error) == (2.0, 1e-2)
+
+
 def test_errors_count_where_a_solution_has_values():
     reference = np.zeros((3, 2))
     assert error_of(np.array([[0.0, 0.0], [np.nan, np.nan], [0.5, 0.1]]), reference) == 0.5

@@ -55,7 +55,7 @@ def _lists(job):
     equations = first.equations
     return [
         *equations.pattern, equations._slot, equations._source, equations._constant, equations._cj, equations._r_row, equations._r_factor, *first._slots,
-        *vars(job.dynamics.system.term("acceleration", "J")).values(),
+        *job.dynamics.system.term("acceleration", "J"),
     ]  # fmt: skip
 
 

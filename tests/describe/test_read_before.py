@@ -7,8 +7,9 @@ import pytest
 
 import stiffmbs
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
-from stiffmbs.describe.files import read_before
-from stiffmbs.describe.files.read_before import folder_of_files, read_yaml_file
+from stiffmbs.describe.files import folder, read_before
+from stiffmbs.describe.files.folder import folder_of_files
+from stiffmbs.describe.files.read_before import read_yaml_file
 
 TEXT = "a: {b: [1, 2.5, 1e-3, true, null, 'x', .inf, -0.0], c: {}}\nd: &d [[], {e: f}]\ng: *d\n"
 
@@ -48,8 +49,8 @@ def test_a_changed_file_is_read_anew_and_takes_the_place_of_the_old_one(scene, r
 @pytest.mark.parametrize(("files", "size"), [(4, 10_000), (100, 600)])
 def test_few_files_are_kept_the_latest_ones(scene, reads, monkeypatch, files, size):
     """By their number or their size: a fifth file is one too many, as are 600 bytes."""
-    monkeypatch.setattr(read_before, "MOST_FILES", files)
-    monkeypatch.setattr(read_before, "MOST_BYTES", size)
+    monkeypatch.setattr(folder, "MOST_FILES", files)
+    monkeypatch.setattr(folder, "MOST_BYTES", size)
     scenes = [scene.with_name(f"{k}.yaml") for k in range(5)]
     for k, file in enumerate(scenes):
         read_yaml_file(f"a: {'x' * 60}", "scene", file)

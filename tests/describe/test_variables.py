@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import InputError
+from stiffmbs.describe.formula.nodes import reading_order
 from stiffmbs.describe.formula.size import DEEPEST, MOST_PARTS, balanced, check_size, depth, parts
 from stiffmbs.describe.formula.text import FormulaError, parse
+from stiffmbs.describe.formula.variables import resolved, with_variables
 from stiffmbs.spatial import in_space
 
 BODIES = {"a": {"mass": 1, "inertia": 1}, "b": {"mass": 1, "inertia": 1, "position": [1, 0]}}
@@ -162,7 +164,15 @@ def test_a_balanced_chain_has_the_same_value(chain):
     found = balanced(tree)
     assert parts(found) == parts(tree)
     if depth(tree) > DEEPEST:
-        check_size(found, "the chain")
+        check_size(found, lambda: "the chain")
     values = [eval(compile(ast.fix_missing_locations(ast.Expression(each)), "", "eval")) for each in (found, tree)]
     size = sum(n for _, n in chain)
     assert values[0] == pytest.approx(values[1], rel=1e-10, abs=1e-10 * size)
+
+
+def test_a_variable_that_stands_in_two_places_is_two_trees():
+    """What changes a formula's nodes in their place, as a mirrored part does, must not meet one of them twice."""
+    trees = resolved({"v": "2*dm(bar) + sin(bar.x)", "w": "v - v"}, {"t"})
+    found = with_variables(parse("w*v/w"), trees)
+    nodes = [node for tree in (found, *trees.values()) for node in reading_order(tree)]
+    assert len(set(map(id, nodes))) == len(nodes)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,8 +41,7 @@ RISKY = (*DOMAINS, *(name for name, function in IN_FORMULAS.items() if function.
 Values = Callable[[float], float | None]
 
 
-@dataclass(frozen=True)
-class InputEnd:
+class InputEnd(NamedTuple):
     """Where a formula of time ends.
 
     Attributes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,16 +29,14 @@ WINDOW = np.array([-0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.25])
 """Where the change around a piece is looked at, in lengths from its start."""
 
 
-@dataclass(frozen=True)
-class Bounds:
+class Bounds(NamedTuple):
     """Lengths of pieces: from each time to the next, the longest piece there that a cubic represents."""
 
     starts: np.ndarray
     lengths: np.ndarray
 
 
-@dataclass(frozen=True)
-class _Pieces:
+class _Pieces(NamedTuple):
     """Pieces that are looked at together, and how much the input changes around each."""
 
     low: np.ndarray

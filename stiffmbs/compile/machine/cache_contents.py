@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...cache.entries import PART, SECRET, cache_directory
-from ...describe.files.read_before import FILE, folder_of_files
+from ...describe.files.folder import folder_of_files
+from ...describe.files.read_before import FILE
+from ...describe.files.scenes_read_before import SCENE
 from .cache import FOLDER, KERNEL, RECORD, ROUTINE, own_directory
 
-KINDS = (RECORD, KERNEL, ROUTINE, FILE)
+KINDS = (RECORD, KERNEL, ROUTINE, FILE, SCENE)
 OTHERS = "other"
 _ENTRY = re.compile(rf"({'|'.join(KINDS)})-[0-9a-f]{{40}}|{re.escape(PART)}.*|[0-9a-f]{{40}}")
 """Names of entries, of files that a process left half written, and of the entries of earlier versions."""

@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from threading import RLock
-from typing import Any
+from typing import Any, NamedTuple
 
+from ...cache.source_files import digest_of, modules_within, python_files
+from ...interrupts import uncollected
 from . import cache as store
 from .description import Description
-from .source_files import digest_of, modules_within, python_files
 
 LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
@@ -28,8 +29,7 @@ SERIES = "rotation_vector("
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
-@dataclass(frozen=True)
-class Compiled:
+class Compiled(NamedTuple):
     """A compiled function: its address for other compiled code, and two ways to call it from Python.
 
     Pointers are passed as addresses (``array.ctypes.data``); the interpreter lock is released during a `call`, and kept during a
@@ -128,7 +128,8 @@ def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
         found = _linked(code, entry, source.signatures) if code else None
         if found is None:
             LOGGER.info("compiling %s", source.of)
-            code = _object_code(source, _symbol(entry, ""))
+            with uncollected():
+                code = _object_code(source, _symbol(entry, ""))
             store.write(entry, _header(entry, code) + code)
             found = _linked(code, entry, source.signatures)
     assert found is not None, entry

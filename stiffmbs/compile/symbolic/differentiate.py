@@ -139,22 +139,22 @@ class Derivatives:
 
     def _depends(self, x: sp.Expr, v: sp.Symbol) -> bool:
         """Whether v, or a symbol that stands for a function of v, occurs in x."""
-        return any(v in self._of_one(symbol) for symbol in self._symbols_in(x))
+        return any(v in self._of_one(symbol) for symbol in self.symbols_in(x))
 
     def variables(self, x: sp.Expr) -> frozenset[sp.Symbol]:
         """The symbols of x, and those that they are functions of."""
-        return frozenset().union(*(self._of_one(symbol) for symbol in self._symbols_in(x)))
+        return frozenset().union(*(self._of_one(symbol) for symbol in self.symbols_in(x)))
 
     def _of_one(self, symbol: sp.Symbol) -> frozenset[sp.Symbol]:
         if symbol not in self._variables:
             self._variables[symbol] = frozenset((symbol, *self._chain.get(symbol, ())))
         return self._variables[symbol]
 
-    def _symbols_in(self, x: sp.Basic) -> frozenset[sp.Symbol]:
+    def symbols_in(self, x: sp.Basic) -> frozenset[sp.Symbol]:
         """The symbols in an expression; SymPy itself would walk through all of it each time."""
         if x not in self._symbols:
             within = frozenset((x,)) if isinstance(x, sp.Symbol) else frozenset()
-            self._symbols[x] = within.union(*map(self._symbols_in, x.args))
+            self._symbols[x] = within.union(*map(self.symbols_in, x.args))
         return self._symbols[x]
 
     def _by_rule(self, x: sp.Expr, v: sp.Symbol) -> sp.Expr:

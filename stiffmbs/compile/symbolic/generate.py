@@ -14,7 +14,9 @@ from ..terms import KERNEL_ARGUMENTS, TERM_SETS
 from .common_normal import CommonNormal, CommonNormalSlope
 from .continuous_angle import ContinuousAngle, counter
 from .derive import Derived
+from .differentiate import Derivatives
 from .nonsmooth import NonsmoothBase, Step
+from .ordered_terms import ordered_terms
 from .python_call import PythonCall
 from .relative_rotation import RotationVector
 from .spline import Spline
@@ -47,6 +49,11 @@ GEOMETRY = f"from {compiler.GEOMETRY}.common_normal import common_normal, common
 
 class _Printer(PythonCodePrinter):
     """Plain function names; small and half powers as products and roots (a general power costs fifty products)."""
+
+    def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
+        """By monomials, which are SymPy's own order; it takes the complex value of each coefficient for it, which decides nothing
+        between monomials that differ."""
+        return ordered_terms(expr) or super()._as_ordered_terms(expr, order)
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         base, power = expr.as_base_exp()
@@ -98,16 +105,17 @@ class _Printer(PythonCodePrinter):
 
 
 def _shared(
-    outputs: list[sp.Expr], meanings: Mapping[sp.Symbol, sp.Expr], turned: Mapping[sp.Expr, sp.Symbol]
+    outputs: list[sp.Expr], derivatives: Derivatives, turned: Mapping[sp.Expr, sp.Symbol]
 ) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
     """What outputs have in common, each part after those that it uses, and the outputs in terms of these."""
     names: dict[sp.Symbol, sp.Expr] = {}
-    following = [symbol for output in outputs for symbol in _by_name(output.free_symbols)]
+    meanings, symbols_in = derivatives.meanings, derivatives.symbols_in
+    following = [symbol for output in outputs for symbol in _by_name(symbols_in(output))]
     while following:
         symbol = following.pop()
         if symbol in meanings and symbol not in names:
             names[symbol] = meanings[symbol].xreplace(turned)
-            following += _by_name(names[symbol].free_symbols)
+            following += _by_name(symbols_in(names[symbol]))
     common, reduced = sp.cse([*outputs, *names.values()], symbols=sp.numbered_symbols("s_"), order="none")
     parts = {**dict(common), **dict(zip(names, reduced[len(outputs) :], strict=True))}
     ordered: dict[sp.Symbol, sp.Expr] = {}
@@ -116,7 +124,7 @@ def _shared(
     return list(ordered.items()), reduced[: len(outputs)]
 
 
-def _by_name(symbols: set[sp.Symbol]) -> list[sp.Symbol]:
+def _by_name(symbols: Iterable[sp.Symbol]) -> list[sp.Symbol]:
     """Symbols in an order that does not change from run to run, so that neither do sums."""
     return sorted(symbols, key=lambda symbol: symbol.name)
 
@@ -126,7 +134,7 @@ def _append(symbol: sp.Symbol, parts: Mapping[sp.Symbol, sp.Expr], ordered: dict
     pending = [symbol]
     while pending:
         last = pending[-1]
-        missing = [part for part in _by_name(parts[last].free_symbols) if part in parts and part not in ordered]
+        missing = _by_name(part for part in parts[last].free_symbols if part in parts and part not in ordered)
         if last in ordered or not missing:
             ordered.setdefault(last, parts[last])
             pending.pop()
@@ -147,7 +155,7 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
         for k, term in enumerate(TERM_SETS[term_set])
         for n, entry in enumerate(terms.get(term, ()))
     ]
-    shared, results = _shared([expression for *_, expression in outputs], e.meanings, turned)
+    shared, results = _shared([expression for *_, expression in outputs], e.derivatives, turned)
     needed = {symbol for expression in [*results, *(part for _, part in shared)] for symbol in expression.free_symbols}
     printer = _Printer({"fully_qualified_modules": False, "precision": 17})
     first_state = 2 * len(e.frames) + 1 + len(derived.symbols.joint_lam)

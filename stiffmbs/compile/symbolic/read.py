@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -62,14 +63,21 @@ def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
     expression = sp.sympify(x)
     if not isinstance(expression, sp.Expr):
         raise InputError(f"found {x!r}, expected an expression of SymPy or a number")
-    other = False
+    if _is_ready(expression):
+        return expression
     for part in sp.preorder_traversal(expression):
         if part in NO_NUMBER:
             raise InputError(f"found {expression}, which is no real number, expected one")
         if isinstance(part, UNDONE):
             raise InputError(f"found {part}, which SymPy has not worked out, expected an expression without it")
-        other = other or not (_is_plain(part) or _is_own(part))
-    return _read(expression, note) if other else expression
+    return _read(expression, note)
+
+
+@lru_cache(maxsize=2**16)
+def _is_ready(x: sp.Basic) -> bool:
+    """Whether kernels can have an expression as it is; long ones share most of their parts, each of which is looked at once."""
+    here = _is_plain(x) or _is_own(x)
+    return here and x not in NO_NUMBER and not isinstance(x, UNDONE) and all(map(_is_ready, x.args))
 
 
 def _is_plain(part: sp.Basic) -> bool:

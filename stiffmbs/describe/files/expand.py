@@ -6,7 +6,6 @@ A repeated entry stands for many: ``link{k}: {for: k in 1..N, mass: 1, position:
 
 from __future__ import annotations
 
-import copy
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -199,7 +198,7 @@ def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity
             repeated = _filled(where, name, names, variable)
             if repeated in expanded:
                 raise InputError(f"{where}: found the name '{repeated}' twice, expected a name with {{{variable}}}")
-            expanded[repeated] = _filled(where, copy.deepcopy(pattern), names, variable)
+            expanded[repeated] = _filled(where, pattern, names, variable)
     return expanded
 
 

@@ -6,21 +6,17 @@ There is one entry for a file, which a change of the file replaces.  Where there
 from __future__ import annotations
 
 import json
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ...cache.entries import Folder, digest, tag_of
+from ...cache.entries import digest
+from .folder import folder_of_files, keep
 from .yaml_text import read_yaml
 
-FORMAT = "1"
-"""Changed whenever YAML is read in another way."""
 FILE = "file"
 """How the names of the entries begin."""
 LARGEST = 1_000_000
 """Characters of what is kept of a file: aliases can stand for much."""
-MOST_FILES, MOST_BYTES = 1000, 20_000_000
-"""That are kept."""
 
 
 def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
@@ -42,17 +38,8 @@ def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
         return json.loads(stored[len(version) :])
     found = read_yaml(text, source)
     if _is_plain(found) and len(content := json.dumps(found)) <= LARGEST:
-        folder_of_files().write(name, f"{version}{content}".encode())
-        folder_of_files().keep_newest(MOST_FILES, MOST_BYTES)
+        keep(name, f"{version}{content}".encode())
     return found
-
-
-@cache
-def folder_of_files() -> Folder:
-    """The entries that this version of the package and of the reader of YAML make."""
-    from importlib.metadata import version
-
-    return Folder("files", tag_of(FORMAT, version("stiffmbs"), version("ruamel.yaml")))
 
 
 def _is_plain(found: Any) -> bool:

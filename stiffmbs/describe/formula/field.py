@@ -25,7 +25,7 @@ from .measured import dimension_within
 from .names import COORDINATES, MEASURES, REACTIONS
 from .nodes import TAKERS, TIME, reading_order
 from .state_names import with_states
-from .text import UNIT, FormulaError, as_written, parse
+from .text import UNIT, FormulaError, parse
 from .variables import with_variables
 
 READ_BEFORE = "formulas"
@@ -141,14 +141,13 @@ class FormulaOf:
             named, tree = (with_variables(each, names.values, self.variables) for each in (named, tree))
             text = text_in_full(found, named, names)
             used = dict(self.quantities(text, tree, parameters, names.states))
-        expanded = as_written(tree) if variables else ""
         values = {name: quantity.value for name, quantity in used.items()}
         called = called_tables(tree, tables)
         dimension = self.dimension_of(tree, used, called, names.states)
         states = (node.id for node in reading_order(tree) if isinstance(node, ast.Name) and node.id in names.states)
         own = {name: quantity for name, quantity in used.items() if name in parameters}
         return Formula(
-            text, tree, self.variables, values, self.velocities, called, dimension, own, expanded, tuple(dict.fromkeys(states))
+            text, tree, self.variables, values, self.velocities, called, dimension, own, bool(variables), tuple(dict.fromkeys(states))
         )  # fmt: skip
 
     def _listed(self) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from ..table import Table
 from ..units.units import Quantity
 from .dimension import UNKNOWN, Known
 from .nodes import TIME, is_measure, is_reaction, joint_of, measured_markers, reading_order
-from .text import UNIT
+from .text import UNIT, as_written
 
 USED = "used"
 """Under which a formula keeps what its tree uses."""
@@ -77,8 +77,8 @@ class Formula:
         Of its value.
     parameters : mapping of str to Quantity
         The scene's parameters among `values`, with their dimensions.
-    expanded : str
-        The text with the scene's variables in their places; empty where the scene has none.
+    among_variables : bool
+        Whether the scene has variables, which stand in the tree in the places of their names.
     states : tuple of str
         The states of the model that it uses, by their full names.
     kept : dict
@@ -93,7 +93,7 @@ class Formula:
     tables: Mapping[str, Table] = field(default_factory=dict)
     dimension: Known = UNKNOWN
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
-    expanded: str = ""
+    among_variables: bool = False
     states: tuple[str, ...] = ()
     kept: dict[Any, Any] = field(default_factory=dict)
 
@@ -108,6 +108,11 @@ class Formula:
     def reactions(self) -> Iterator[tuple[str, str]]:
         """The components of reactions that it uses, with their joints, in reading order."""
         yield from self._used.reactions
+
+    @property
+    def expanded(self) -> str:
+        """The text with the scene's variables in their places; empty where the scene has none."""
+        return as_written(self.tree) if self.among_variables else ""
 
     @property
     def uses_time(self) -> bool:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from .dimension import Known, Part, alike, of_angle, of_branch, of_first, of_numbers, of_root, of_step, plain_always
+from .size import within
 from .text import FormulaError, real_power
 
 
@@ -217,7 +218,7 @@ def check_functions(
     ------
     FormulaError
     """
-    for node in ast.walk(tree):
+    for node in within(tree):
         match node:
             case ast.Call(ast.Name(name), arguments) if name not in measures:
                 if name not in known and name not in tables:

@@ -16,9 +16,11 @@ TAKERS = (*MEASURES, *REACTIONS)
 
 def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
     """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
-    yield tree
-    for child in parts_of(tree):
-        yield from reading_order(child)
+    ahead = [tree]
+    while ahead:
+        node = ahead.pop()
+        yield node
+        ahead.extend(reversed(parts_of(node)))
 
 
 def parts_of(node: ast.expr) -> list[ast.expr]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+import itertools
+from collections.abc import Callable, Iterator, Sequence
 
 from ..files.quoted import quoted
 
@@ -31,6 +32,11 @@ def depth(tree: ast.expr) -> int:
     return sum(1 for _ in _levels(tree)) - 1
 
 
+def within(tree: ast.expr) -> Iterator[ast.expr]:
+    """The parts of a formula, the outer ones before those within them."""
+    return itertools.chain.from_iterable(_levels(tree))
+
+
 def _levels(tree: ast.expr) -> Iterator[list[ast.expr]]:
     """The parts of a formula, from the outermost inwards."""
     level = [tree]
@@ -50,14 +56,14 @@ def _children(node: ast.expr) -> list[ast.expr]:
     return []
 
 
-def check_size(tree: ast.expr, text: str, inserted: Sequence[ast.expr] = ()) -> None:
+def check_size(tree: ast.expr, text: Callable[[], str], inserted: Sequence[ast.expr] = ()) -> None:
     """Refuse a formula of too many parts, or with too many within each other.
 
     Parameters
     ----------
     tree : ast.expr
-    text : str
-        For messages.
+    text : callable
+        What messages call it, made when there is one.
     inserted : sequence of ast.expr
         What is to be put into it.
 
@@ -68,10 +74,12 @@ def check_size(tree: ast.expr, text: str, inserted: Sequence[ast.expr] = ()) -> 
     size = parts(tree) + sum(map(parts, inserted))
     if size > MOST_PARTS:
         raise FormulaError(
-            f"found {size} numbers, names and operations in '{quoted(text)}', expected at most {MOST_PARTS}"
+            f"found {size} numbers, names and operations in '{quoted(text())}', expected at most {MOST_PARTS}"
         )
     if depth(tree) > DEEPEST:
-        raise FormulaError(f"found a formula nested deeper than {DEEPEST} in '{quoted(text)}', expected a flatter one")
+        raise FormulaError(
+            f"found a formula nested deeper than {DEEPEST} in '{quoted(text())}', expected a flatter one"
+        )
 
 
 def balanced(tree: ast.expr) -> ast.expr:

@@ -58,7 +58,7 @@ def parse(text: str) -> ast.expr:
         tree = ast.parse(_python_spelling(text), mode="eval").body
         if len(text) > DEEPEST:  # shorter ones are within the bounds
             tree = balanced(tree)
-            check_size(tree, text)
+            check_size(tree, lambda: text)
     except FormulaError:
         raise
     except (SyntaxError, tokenize.TokenError, ValueError, RecursionError, MemoryError):

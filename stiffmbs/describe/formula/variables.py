@@ -42,9 +42,9 @@ def with_variables(tree: ast.expr, variables: Mapping[str, ast.expr], own: Colle
                 f"found the variable '{name}', which uses a parameter '{hidden[0]}', expected another name of it, as here "
                 f"'{hidden[0]}' is the formula's own: rename the parameter"
             )
-    check_size(tree, ", ".join(dict.fromkeys(named)), [variables[name] for name in named])
-    found: ast.expr = _InPlace(variables, own).visit(copy.deepcopy(tree))
-    check_size(found, as_written(tree))
+    check_size(tree, lambda: ", ".join(dict.fromkeys(named)), [variables[name] for name in named])
+    found = _in_place(tree, variables, own)
+    check_size(found, lambda: as_written(tree))
     return found
 
 
@@ -120,6 +120,27 @@ def _names(node: ast.AST) -> list[str]:
     return [name for child in children for name in _names(child)]
 
 
+def _in_place(node: ast.expr, variables: Mapping[str, ast.expr], own: Collection[str] = ()) -> ast.expr:
+    """A copy of a formula with variables in the places of their names; no node stands in two places, as others change them there."""
+    match node:
+        case ast.Name(name) if name in variables and name not in own:
+            return _in_place(variables[name], {})
+        case ast.Name(name):
+            return ast.Name(name)
+        case ast.BinOp(left, op, right):
+            return ast.BinOp(_in_place(left, variables, own), op, _in_place(right, variables, own))
+        case ast.UnaryOp(op, operand):
+            return ast.UnaryOp(op, _in_place(operand, variables, own))
+        case ast.Constant(value):
+            return ast.Constant(value)
+        case ast.Attribute(owner, name):
+            return ast.Attribute(_in_place(owner, {}), name)
+        case ast.Call(ast.Name(name), arguments):
+            meant = {} if name in measured.MEASURES else variables
+            return ast.Call(ast.Name(name), [_in_place(argument, meant, own) for argument in arguments], [])
+    return copy.deepcopy(node)
+
+
 class _Alone(ast.NodeTransformer):
     """Visits the names that stand alone."""
 
@@ -130,18 +151,6 @@ class _Alone(ast.NodeTransformer):
         if node.func.id in measured.MEASURES:  # type: ignore[attr-defined]
             return node
         return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
-
-
-class _InPlace(_Alone):
-    """Puts variables in the places of their names."""
-
-    def __init__(self, variables: Mapping[str, ast.expr], own: Collection[str]) -> None:
-        self._variables, self._own = variables, own
-
-    def visit_Name(self, node: ast.Name) -> ast.expr:
-        if node.id in self._own or node.id not in self._variables:
-            return node
-        return copy.deepcopy(self._variables[node.id])
 
 
 class _UnitsMarked(_Alone):

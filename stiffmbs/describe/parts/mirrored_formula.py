@@ -117,7 +117,7 @@ def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, arg
         tree = _Negated(found.variables).visit(tree)
     tree = _signed(tree, value)
     text = as_written(tree)
-    return replace(found, tree=tree, text=text, expanded=text if found.expanded else "")
+    return replace(found, tree=tree, text=text)
 
 
 class _Negated(ast.NodeTransformer):

@@ -11,6 +11,7 @@ from pydantic_core import core_schema
 
 from ...errors import InputError
 from ..element import Symbolic
+from ..files.other_files import file_beside
 from ..files.quoted import written
 from ..table import Table
 from .crg_grid import CrgGrid, read_crg
@@ -47,7 +48,7 @@ def _read(found: object, context: Mapping[str, Any]) -> CrgGrid:
     if not isinstance(found, str | Path):
         raise ValueError(f"found {written(found)}, expected the name of a file")
     try:
-        return read_crg(Path(context.get("folder") or "") / found)
+        return read_crg(file_beside(context, found))
     except InputError as error:
         raise ValueError(str(error)) from None
 

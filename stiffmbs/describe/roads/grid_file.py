@@ -14,6 +14,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from ...errors import InputError
+from ..files.other_files import file_beside
 from ..files.quoted import quoted, written
 from ..files.text_file import file_text, lines
 from ..table import Table
@@ -105,7 +106,7 @@ def _read(found: object, context: Mapping[str, Any]) -> Grid:
     if not isinstance(found, str | Path):
         raise ValueError(f"found {written(found)}, expected the name of a file")
     try:
-        return read_grid(Path(context.get("folder") or "") / found)
+        return read_grid(file_beside(context, found))
     except InputError as error:
         raise ValueError(str(error)) from None
 

@@ -37,7 +37,7 @@ def combined(parts: Sequence[Weighted], *formulas: Formula) -> Formula:
         tables |= dict(formula.tables)
     return replace(
         formulas[0], text=ast.unparse(ast.fix_missing_locations(tree)), tree=tree, values=values, tables=tables,
-        dimension=UNKNOWN, states=tuple(dict.fromkeys(states)), expanded="",
+        dimension=UNKNOWN, states=tuple(dict.fromkeys(states)), among_variables=False,
     )  # fmt: skip
 
 

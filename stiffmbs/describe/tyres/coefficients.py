@@ -11,6 +11,7 @@ from pydantic_core import core_schema
 
 from ...errors import InputError
 from ..element import Component
+from ..files.other_files import file_beside
 from ..files.quoted import quoted, written
 from .names import COEFFICIENTS, COMBINED, DIMENSIONS, KNOWN_UNUSED, REQUIRED, SCALES, TEXTS
 from .property_file import PropertyFile, read_property_file
@@ -222,7 +223,7 @@ def _read(found: object, context: Mapping[str, Any]) -> TyreProperties:
         return found
     if isinstance(found, str | Path):
         try:
-            return TyreProperties.from_file(Path(context.get("folder") or "") / found)
+            return TyreProperties.from_file(file_beside(context, found))
         except InputError as error:
             raise ValueError(str(error)) from None
     if isinstance(found, dict):

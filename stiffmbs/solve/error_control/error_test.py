@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,8 +11,7 @@ from ...describe.settings import RunSettings
 from .tolerances import independent_tolerances
 
 
-@dataclass(frozen=True)
-class ErrorControl:
+class ErrorControl(NamedTuple):
     """How a tolerance asked for becomes what IDA is given; the defaults are those of `bdf`, by `docs/error_control.md`.
 
     Attributes

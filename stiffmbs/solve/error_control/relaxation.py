@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +23,7 @@ TIGHTEST, LOOSEST = 1e-3, 1e3
 """Bounds of the factor by which a tolerance other than 1e-8 changes the creep."""
 
 
-@dataclass(frozen=True)
-class Creep:
+class Creep(NamedTuple):
     """What the projection takes off the velocities of a run, in tolerances of each.
 
     Attributes

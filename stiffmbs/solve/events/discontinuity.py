@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ RATE_INTERVAL = 1e-4
 """Time, s, over which the rate of an event function is taken."""
 
 
-@dataclass(frozen=True)
-class _Side:
+class _Side(NamedTuple):
     """A state near the one looked at: values of the event functions, accelerations, and rates that these give the event functions."""
 
     values: np.ndarray

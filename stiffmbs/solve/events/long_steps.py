@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebvander
@@ -24,8 +24,7 @@ MOST_STEPS, MOST_VALUES = 1000, 1_000_000
 """Steps, and numbers of their states, that are kept of one run."""
 
 
-@dataclass(frozen=True)
-class Motion:
+class Motion(NamedTuple):
     """States within steps, one row each.
 
     Attributes
@@ -40,8 +39,7 @@ class Motion:
     rate: np.ndarray
 
 
-@dataclass(frozen=True)
-class LongSteps:
+class LongSteps(NamedTuple):
     """Long steps of one run.
 
     Attributes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,8 +37,7 @@ SOON = 8
 """A look comes sooner where stability holds back one in so many of the steps until then."""
 
 
-@dataclass(frozen=True)
-class Leaving:
+class Leaving(NamedTuple):
     """When a run is to be left to another solver: asked after so many steps of a segment, then after a few times as many."""
 
     first: int

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,8 +35,7 @@ CUT = 1e-6
 """Part of a step from which on it is told that steps are shorter."""
 
 
-@dataclass(frozen=True)
-class Stepper:
+class Stepper(NamedTuple):
     """Something that takes steps of one length from the state that it holds.
 
     Attributes

@@ -38,6 +38,10 @@ class Scheme:
         h |e_1|^2 / sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
     dense : tuple of Row
         The coefficients behind the third of the interpolant (`stiffmbs.solve.native.explicit.interpolant`).
+    free : tuple of Row
+        The same of an interpolant that needs no stages of its own; none where `dense` is one.
+    free_error : Row
+        How far that interpolant may be off: a sum of stages that vanishes to its order, times the step.
     exponent, memory : float
         Of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory) last_error^memory.
     stability : float
@@ -51,6 +55,8 @@ class Scheme:
     a: tuple[Row, ...]
     errors: tuple[Row, ...] = ()
     dense: tuple[Row, ...] = ()
+    free: tuple[Row, ...] = ()
+    free_error: Row = field(default_factory=dict)
     exponent: float = 0.0
     memory: float = 0.0
     stability: float = field(default=float("inf"))
@@ -75,9 +81,10 @@ class Scheme:
         """What the table points to."""
         return {
             "order": self.order, "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
-            "n_dense": len(self.dense), "error_needs_end": self.error_needs_end,
+            "n_dense": len(self.dense), "n_free": len(self.free), "error_needs_end": self.error_needs_end,
             "c": np.array(self.c, dtype=float), "a": self.matrix(self.a),
             "errors": self.matrix(self.errors), "dense": self.matrix(self.dense),
+            "free": self.matrix(self.free), "free_error": self.matrix((self.free_error,)),
             "exponent": self.exponent, "memory": self.memory, "stability": self.stability,
         }  # fmt: skip
 

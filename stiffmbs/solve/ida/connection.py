@@ -10,6 +10,7 @@ from ...compile.equations import Equations
 from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
+from ..dynamics import Dynamics
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog
 from ..events.step_bound import StepBound
@@ -187,11 +188,11 @@ class Connection:
         self.output_correction.begin()
         self.history.begin(t)
 
-    def correct_outputs(self, long_step: float, part: float, balanced: float, stiffness: float) -> None:
+    def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Have states within long steps brought back to the equations, as `OutputCorrection.limit` has it."""
         if long_step < np.inf and not self.output_correction.ready:
-            self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector)
-        self.output_correction.limit(long_step, part, balanced, stiffness)
+            self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
+        self.output_correction.limit(long_step, part, balanced)
 
     def suppress(self, suppressed: np.ndarray) -> None:
         """Leave unknowns out of the error test."""

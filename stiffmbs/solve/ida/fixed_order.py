@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,7 @@ SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
 SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
 
 
-@dataclass(frozen=True)
-class Memory:
+class Memory(NamedTuple):
     """What a linear solver works on.
 
     Attributes

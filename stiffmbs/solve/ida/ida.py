@@ -195,13 +195,13 @@ class NativeIda:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
         self._ida.ask("IDASetNonlinConvCoef", part)
 
-    def correct_outputs(self, long_step: float, part: float, balanced: float, stiffness: float) -> None:
+    def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance.
 
         They are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest, nor
-        would be if open joints were closed against a `stiffness`, N/m.
+        would be if joints were closed by the `dynamics` of the same state.
         """
-        self._ida.correct_outputs(long_step, part, balanced, stiffness)
+        self._ida.correct_outputs(dynamics, long_step, part, balanced)
 
     def filter_always(self, asked: bool) -> None:
         """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -11,8 +10,7 @@ from .libraries import COMPRESSED_COLUMNS, Libraries, ida_libraries, sparse_libr
 from .session import Session
 
 
-@dataclass(frozen=True)
-class Assembled:
+class Assembled(NamedTuple):
     """A matrix in SUNDIALS and how to fill it.
 
     Attributes
@@ -57,8 +55,7 @@ class Matrix(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Dense:
+class Dense(NamedTuple):
     """All entries, column after column; Gaussian elimination with partial pivoting."""
 
     n: int
@@ -81,8 +78,7 @@ class Dense:
         )
 
 
-@dataclass(frozen=True)
-class Banded:
+class Banded(NamedTuple):
     """The diagonals near the main one; Gaussian elimination with partial pivoting within them."""
 
     n: int
@@ -116,8 +112,7 @@ class Banded:
         return Assembled(matrix, solver, s.SUNBandMatrix_Data(matrix), slots, _no_pattern())
 
 
-@dataclass(frozen=True)
-class Sparse:
+class Sparse(NamedTuple):
     """The entries of the pattern, by columns; SuperLU_MT with one thread."""
 
     n: int

@@ -13,7 +13,7 @@ from ...compile.inputs.features import InputFeatures
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
-from ..error_control.newton import NUMBERS_END, Stiffness
+from ..error_control.newton import NUMBERS_END, UNBALANCED, Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
 from ..events.restart import just_after
 from ..storage import allocated, blocks, release
@@ -68,6 +68,7 @@ class NativeEngine:
         self._width, self._equations, self.matrix = len(reported), equations, matrix
         self._rtol = settings.rtol
         self._make_starts = partial(self._ida.starts, dynamics, equations, settings, control)
+        self._dynamics = dynamics
         self._started = False
         self._order = StabilityLimitDetection(equations, settings)
         self.forget()
@@ -111,10 +112,10 @@ class NativeEngine:
         """Correct states within long steps, and look at vibrations, by the stiffness at a start."""
         stiffness = self._stiffness
         self._ida.correct_outputs(
+            self._dynamics,
             stiffness.long_step,
             max(stiffness.allowed_residual, NUMBERS_END / self._rtol),
-            self._rtol,
-            stiffness.of_forces,
+            UNBALANCED * self._rtol,
         )
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
 

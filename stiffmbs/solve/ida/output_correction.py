@@ -6,6 +6,7 @@ import numpy as np
 
 from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import fill
+from ..dynamics import Dynamics
 from ..native.tables.steps import OUTPUT_CORRECTION
 from .matrices import Assembled, Matrix
 from .session import Session
@@ -39,7 +40,7 @@ class OutputCorrection:
         """Whether the memory is there."""
         return self._assembled is not None
 
-    def make_ready(self, session: Session, matrix: Matrix, memory: int, y_vector: int) -> None:
+    def make_ready(self, session: Session, matrix: Matrix, memory: int, y_vector: int, dynamics: Dynamics) -> None:
         """Make the matrix, its solver and the vectors.
 
         Parameters
@@ -51,12 +52,14 @@ class OutputCorrection:
             IDA's.
         y_vector : int
             A vector like those of the iteration.
+        dynamics : Dynamics
+            Of the same state.
         """
         libraries, assembled = session.libraries, matrix.assembled(session, y_vector)
         libraries.SUNLinSolInitialize(assembled.solver)
         vectors = {name: np.zeros(self._equations.n) for name in VECTORS}
         force_row, force_end = _rows_of_motion(self._equations)
-        joint_row = _rows_of_joints(self._equations)
+        joint_row, pose = _rows_of_joints(self._equations), np.zeros(self._equations.system.n_q)
         functions = {
             "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights",
             "clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
@@ -69,25 +72,31 @@ class OutputCorrection:
                 **{name: libraries.address(function) for name, function in functions.items()},
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "entries": assembled.values, "pattern": assembled.pattern,
-                "force_row": force_row, "force_end": force_end, "n_joint_rows": len(joint_row), "joint_row": joint_row,
+                "force_row": force_row, "force_end": force_end,
+                "n_joint_rows": len(joint_row), "joint_row": joint_row, "dynamics": dynamics.table, "pose": pose,
                 **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},
             },
         )  # fmt: skip
         self._assembled = assembled
-        self._vectors = {**vectors, "force_row": force_row, "force_end": force_end, "joint_row": joint_row}
+        self._vectors = {
+            **vectors,
+            "force_row": force_row,
+            "force_end": force_end,
+            "joint_row": joint_row,
+            "pose": pose,
+        }
 
-    def limit(self, long_step: float, part: float, balanced: float, stiffness: float) -> None:
+    def limit(self, long_step: float, part: float, balanced: float) -> None:
         """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left.
 
         States are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest, nor
-        would be by ten times that if joints that are open were closed: by that opening times `stiffness`, N/m.
+        would be if their joints were closed.
         """
         self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
-        self._cells["stiffness"] = stiffness
 
     def begin(self) -> None:
         """Look at the first state behind a start."""
-        self._cells["unseen"] = self._cells["next_look"] = 0
+        self._cells["unseen"] = self._cells["next_look"] = self._cells["judged"] = 0
 
     def forget(self) -> None:
         """Have the matrix factored anew, with pivots that are sought anew."""

@@ -27,7 +27,7 @@ FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "start_anew": "IDAReInit", "set_first_step": "IDASetInitStep",
     "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
 }  # fmt: skip
-OF_STIFFNESS = "of_positions", "of_velocities", "of_forces"
+OF_STIFFNESS = "of_positions", "of_velocities"
 """Cells with what makes a `Stiffness`."""
 
 
@@ -141,8 +141,8 @@ def _stiff(dynamics: Dynamics) -> dict[str, Any]:
             f"{name}_scale": np.ascontiguousarray(sums.scales),
         }  # fmt: skip
 
-    of_positions, of_velocities, of_forces = row_sums_of(dynamics)
-    return {**of("f_q", of_positions), **of("f_u", of_velocities), "as_it_is": np.ascontiguousarray(of_forces.scales)}
+    of_positions, of_velocities = row_sums_of(dynamics)
+    return {**of("f_q", of_positions), **of("f_u", of_velocities)}
 
 
 def _integers(numbers: np.ndarray) -> np.ndarray:

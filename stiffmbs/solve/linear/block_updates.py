@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,7 @@ SHAPES = tuple(product((DOWN, RIGHT), ROWS, QUADS))
 """Shapes of products, in order."""
 
 
-@dataclass(frozen=True)
-class Target:
+class Target(NamedTuple):
     """Lines of one node's panel that the elimination of an earlier one changes.
 
     Attributes

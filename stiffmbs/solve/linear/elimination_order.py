@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,7 @@ from ...compile.equations import ABSENT, Equations
 from .eliminated_bodies import EliminatedBodies
 
 
-@dataclass(frozen=True)
-class EliminationOrder:
+class EliminationOrder(NamedTuple):
     """An order of elimination with little fill.
 
     Attributes

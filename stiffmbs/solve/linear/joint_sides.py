@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from .joint_blocks import Joints
@@ -16,8 +15,7 @@ Third = tuple[int, int, int]
 """A joint, a body, and the first of three of its velocities."""
 
 
-@dataclass(frozen=True)
-class Sides:
+class Sides(NamedTuple):
     """Which parts of J are of the kind, and where their entries stand among the values.
 
     Attributes

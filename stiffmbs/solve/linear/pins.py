@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import accumulate, combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,8 +17,7 @@ FIRST, SECOND = (0, 2), (1, 2)
 NOTHING = np.zeros(3)
 
 
-@dataclass(frozen=True)
-class Side:
+class Side(NamedTuple):
     """A body at a pin, and where the entries of J of both equations begin among the values."""
 
     body: int

@@ -186,7 +186,7 @@ def _report_at(c, t, derivative, current, row):
         _report(c, array_of(c, current), row)
         return int32(OK)
     b = output_correction_view(c.output_correction)
-    if c.size > b.long and corrected(c.output_correction, c.state, c.equations, t):
+    if c.size > b.long and corrected(c.output_correction, c.state, c.equations, t, (c.returned - t) / c.size):
         _report(c, b.yp if derivative else b.y, row)
         return int32(OK)
     flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))

@@ -12,8 +12,11 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
 from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
+from stiffmbs.solve.native.dynamics import to_position_constraints
+from stiffmbs.solve.native.explicit.stages import copied
 from stiffmbs.solve.native.statuses import OK
 from stiffmbs.solve.native.tables.steps import OUTPUT_CORRECTION
+from stiffmbs.solve.native.tables.views import dynamics_view
 
 APART = 2.0
 """Factor between cj of the factors and IDA's beyond which they are made anew: accelerations would change too much, or too little."""
@@ -22,17 +25,18 @@ MOST_CORRECTIONS = 8
 SLOWEST = 0.3
 """A correction that is a larger part of the one before asks for new factors, or ends the iteration in vain."""
 
-MAY_CLOSE = 10.0
-"""Times the force that may be left which closing the joints may make: a bound that springs beside the stiffest seldom reach, beside
-errors of forces that come to as much over a run."""
+CLOSED, MOST_MOVES = 1e-12, 20
+"""As reports close joints (`stiffmbs.solve.dynamics.Dynamics.report`)."""
 
-FAR_BELOW, MOST_UNSEEN = 0.1, 7
-"""Part of the force that may be left below which some states after this one are not looked at, and their number at the most."""
+FAR_BELOW, MOST_UNSEEN = 0.2, 7
+"""Part of the force that may be left below which, in the middle of a step, some states after this one are not looked at, and their number at
+the most."""
 
 TRUSTED = 10
-"""States for which a measured rate serves."""
+"""States for which a measured rate serves, or what closing joints makes."""
 WORSE = 3.0
-"""Times the measured rate that is reckoned with: it hangs on the direction of what is left."""
+"""Times the measured figure that is reckoned with: it hangs on the direction of what is left."""
+INFINITE = float("inf")
 
 output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
 
@@ -68,24 +72,12 @@ def _look(b, s, e, t):
     """What the equations leave at the state at hand."""
     load(s, e, b.y, b.yp)
     add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.defect)
-
-
-@compiled
-def _by_joints(b):
-    """A bound on the force that closing the joints would make, N."""
-    opening = 0.0
-    for k in range(b.n_joint_rows):
-        opening = max(opening, abs(b.defect[b.joint_row[k]]))
-    return b.stiffness * opening
-
-
-@compiled
-def _left(b, s, e):
-    """The largest part that the equations of motion leave of the forces in them, in units of what may be left.
-
-    Reported states are moved onto the constraints, by the smallest move, which knows nothing of stiff forces.
-    """
     add_sizes(e, floats(s.values[e.residual_set]), b.y, b.yp, b.size)
+
+
+@compiled
+def _unbalanced(b, defect):
+    """The largest part that the equations of motion leave of the forces in them, in units of what may be left."""
     part = 0.0
     first = 0
     for kind in range(2):
@@ -93,21 +85,57 @@ def _left(b, s, e):
         left = 0.0
         for k in range(first, b.force_end[kind]):
             largest = max(largest, b.size[b.force_row[k]])
-            left = max(left, abs(b.defect[b.force_row[k]]))
+            left = max(left, abs(defect[b.force_row[k]]))
         first = b.force_end[kind]
-        if not left <= b.balanced * largest:
-            return 2.0
-        part = max(part, left / (b.balanced * largest) if largest > 0.0 else 0.0)
-        if kind == 0 and largest > 0.0:
-            part = max(part, _by_joints(b) / (MAY_CLOSE * b.balanced * largest))
+        if left > 0.0:
+            part = max(part, left / (b.balanced * largest))
     return part
 
 
 @compiled
-def _is_balanced(b, s, e):
-    """Whether the forces of the interpolated state balance well enough; settles how many states after it are not looked at."""
-    part = _left(b, s, e)
-    b.unseen = min(2 * b.unseen + 1, MOST_UNSEEN) if part < FAR_BELOW else 0
+def _by_closing(b, s, e, t, opening):
+    """The same where joints are closed, by a move that knows nothing of stiff forces; notes what it changes for an opening."""
+    copied(b.pose, s.q, s.n_q)
+    if to_position_constraints(s, dynamics_view(b.dynamics), t, CLOSED, MOST_MOVES) < 0:
+        copied(s.q, b.pose, s.n_q)
+        return INFINITE
+    add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.correction)
+    copied(s.q, b.pose, s.n_q)
+    part = _unbalanced(b, b.correction)
+    for k in range(e.n):
+        b.correction[k] -= b.defect[k]
+    b.local = _unbalanced(b, b.correction) / opening
+    b.judged = TRUSTED
+    return part
+
+
+@compiled
+def _left(b, s, e, t):
+    """The largest part that the equations of motion leave of the forces in them, also as reported: with joints closed.
+
+    What closing them makes is computed where the last figure for it is old, or near to what may be left.
+    """
+    part = _unbalanced(b, b.defect)
+    opening = 0.0
+    for k in range(b.n_joint_rows):
+        opening = max(opening, abs(b.defect[b.joint_row[k]]))
+    if part > 1.0 or opening <= CLOSED:
+        return part
+    if b.judged > 0 and WORSE * b.local * opening <= 1.0:
+        b.judged -= 1
+        return max(part, WORSE * b.local * opening)
+    return max(part, _by_closing(b, s, e, t, opening))
+
+
+@compiled
+def _is_balanced(b, s, e, t, ahead):
+    """Whether the forces of the interpolated state balance well enough; settles how many states after it are not looked at.
+
+    Interpolants are exact at both ends of a step, so what is left near them says little of other states.
+    """
+    middle = 4.0 * ahead * (1.0 - ahead)
+    part = _left(b, s, e, t)
+    b.unseen = min(2 * b.unseen + 1, MOST_UNSEEN) if part < FAR_BELOW * middle else 0
     b.next_look = b.unseen
     return part <= 1.0
 
@@ -158,14 +186,17 @@ def _settled(b, s, e, t):
             return True
         before = size
         _look(b, s, e, t)
-        if _left(b, s, e) <= 1.0:
+        if _left(b, s, e, t) <= 1.0:
             return True
     return False
 
 
 @compiled
-def corrected(output_correction, state, equations, t):
-    """Interpolate, and bring the state, held in the table's y and y', back to the equations; False where it stays as it is interpolated."""
+def corrected(output_correction, state, equations, t, ahead):
+    """Interpolate, and bring the state, held in the table's y and y', back to the equations; False where it stays as it is interpolated.
+
+    `ahead` is the part of the step that is ahead of t.
+    """
     b = output_correction_view(output_correction)
     if b.next_look > 0:
         b.next_look -= 1
@@ -175,7 +206,9 @@ def corrected(output_correction, state, equations, t):
     if not _interpolated(b, t):
         return False
     _look(b, s, e, t)
-    if _is_balanced(b, s, e) or call_int(b.weights, (b.memory, b.at_weight)) < OK:
+    if _is_balanced(b, s, e, t, ahead):
+        return True
+    if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
     if b.current / APART < b.factored < b.current * APART:
         if _settled(b, s, e, t):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from ...solve.dynamics import Dynamics
 from ...solve.subsystems import Subsystem
@@ -12,8 +12,7 @@ from .presolve_report import presolve_sentences
 from .unconnected import unconnected_sentence
 
 
-@dataclass(frozen=True)
-class StructureNotes:
+class StructureNotes(NamedTuple):
     """Sentences on a structure.
 
     Attributes

@@ -46,8 +46,8 @@ class Problem:
     def native(self, **options):
         kind = Dense if self.equations.n <= DENSE_UP_TO else Sparse
         matrix = options.pop("matrix", kind(self.equations.n, *self.equations.pattern))
-        atol = options.pop("atol", self.atol)
-        return NativeIda(self.equations, State(self.system), matrix, self.rtol, atol, **options)
+        atol, state = options.pop("atol", self.atol), options.pop("state", None) or State(self.system)
+        return NativeIda(self.equations, state, matrix, self.rtol, atol, **options)
 
     def through(self, ida, times, first_step=0.0):
         """Begin, and report at the times, however many calls that takes."""
@@ -61,7 +61,7 @@ class Problem:
 
     def through_scikit_sundae(self, times):
         ida = SundaeEngine(self.equations, State(self.system), self.rtol, self.atol, max_step=0.0)
-        ida.begin(0.0, self.y, self.yp, newton=0.33, stiffness=Stiffness(0.0, 0.0, 0.0))
+        ida.begin(0.0, self.y, self.yp, newton=0.33, stiffness=Stiffness(0.0, 0.0))
         blocks = [(reached.rows.copy(), reached.y.copy()) for reached in ida.to_times(times, times[-1])]
         return np.concatenate([rows for rows, _ in blocks]), blocks[-1][1], ida
 

@@ -90,7 +90,6 @@ def _look_at_stiffness(w, s, t):
     values = evaluate(s, TANGENT, t)
     w.of_positions = _largest_row_sum(w, s, values, w.n_f_q, w.f_q_source, w.f_q_row, w.f_q_scale)
     w.of_velocities = _largest_row_sum(w, s, values, w.n_f_u, w.f_u_source, w.f_u_row, w.f_u_scale)
-    w.of_forces = _largest_row_sum(w, s, values, w.n_f_q, w.f_q_source, w.f_q_row, w.as_it_is)
     fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
     allowed = w.soft / fastest if fastest > 0.0 else w.loosest
     w.newton = max(min(w.loosest, allowed), w.tightest)
@@ -112,6 +111,7 @@ def _begin(w, c, t):
     correction = output_correction_view(c.output_correction)
     correction.unseen = 0
     correction.next_look = 0
+    correction.judged = 0
     search = event_search_view(c.watch)
     search.ready = 0
     for k in range(w.n_watched):

@@ -10,9 +10,11 @@ from __future__ import annotations
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.solve.native.explicit.stages import add_stages, copied, take_stage
+from stiffmbs.solve.native.explicit.stages import add_stages, copied, take_stage, weighted
 from stiffmbs.solve.native.statuses import NOT_FINITE_WITHIN
 
+HARDLY_OFF = 0.3
+"""Error of an interpolant without stages of its own, in tolerances, up to which it serves."""
 ASTRAY = 100.0
 """Size of what stages add to the ends of a step, relative to these, from which on they have gone astray; with smooth
 motions it is a tenth to ten."""
@@ -23,32 +25,61 @@ def prepare(x, c, s, m):
     """The coefficients p_k of the last step; 0 or a negative status."""
     n = x.n
     h = x.span
-    for row in range(c.stages + 1, c.extended):
-        status = take_stage(x, c, s, m, row, h)
-        if status < 0:
-            return status
+    free = c.n_free > 0 and _free_serves(x, c, h)
+    if not free:
+        for row in range(c.stages + 1, c.extended):
+            status = take_stage(x, c, s, m, row, h)
+            if status < 0:
+                return status
     p = x.polynomial
     before, after = x.k, shifted(x.k, c.stages * n)
     for i in range(n):
         p[i] = x.y[i] - x.y_before[i]
         p[n + i] = h * before[i] - p[i]
         p[2 * n + i] = 2.0 * p[i] - h * (after[i] + before[i])
-    for row in range(c.n_dense):
+    rows = c.n_free if free else c.n_dense
+    for row in range(rows):
         target = shifted(p, (3 + row) * n)
         for i in range(n):
             target[i] = 0.0
-        add_stages(x, target, shifted(c.dense, row * c.extended), c.extended, h)
-    sound = _sound(x, c)
+        add_stages(x, target, shifted(c.free if free else c.dense, row * c.extended), c.extended, h)
+    sound = _sound(x, 3 + rows)
     if sound == 0:
         return NOT_FINITE_WITHIN
-    for i in range(sound * n, (3 + c.n_dense) * n):
-        p[i] = 0.0
-    x.dense_ready = 1
+    x.dense_ready = sound
     return 0
 
 
 @compiled
-def _sound(x, c):
+def _free_serves(x, c, h):
+    """Whether stages of the step alone give the states within it: they are hardly off, or stages of a higher order would be no better."""
+    for i in range(x.n):
+        x.difference[i] = 0.0
+    add_stages(x, x.difference, c.free_error, c.stages + 1, h)
+    total = 0.0
+    for i in range(x.n):
+        ratio = x.difference[i] * x.weight[i]
+        total += ratio * ratio
+    return total <= HARDLY_OFF**2 * x.n or _is_fast(x, c, h)
+
+
+@compiled
+def _is_fast(x, c, h):
+    """Whether h |lambda|, seen from two stages at the step's end, is above one: powers of it grow with the order then."""
+    last = c.stages - 1
+    weighted(x, c, x.difference, last, h)
+    k_end = shifted(x.k, c.stages * x.n)
+    k_last = shifted(x.k, last * x.n)
+    rate = 0.0
+    move = 0.0
+    for i in range(x.n):
+        rate += (k_end[i] - k_last[i]) ** 2
+        move += (x.y[i] - x.difference[i]) ** 2
+    return h * h * rate > move
+
+
+@compiled
+def _sound(x, count):
     """How many of the polynomials count: where sums of stages tell nothing, the rates at the ends, or the ends alone.
 
     None where a stage is no number: a Python function has failed, or a law ends beside the motion.
@@ -63,7 +94,7 @@ def _sound(x, c):
     for i in range(x.n):
         weight = x.weight[i] * x.weight[i]
         of_stages = 0.0
-        for k in range(3, 3 + c.n_dense):
+        for k in range(3, count):
             of_stages += p[k * x.n + i] * p[k * x.n + i]
         ends += p[i] * p[i] * weight
         by_rates += (p[x.n + i] * p[x.n + i] + p[2 * x.n + i] * p[2 * x.n + i]) * weight
@@ -71,21 +102,23 @@ def _sound(x, c):
     if not isfinite(ends + by_rates + by_stages):
         return 0
     if by_stages <= max(x.n, ASTRAY**2 * (ends + by_rates)):
-        return 3 + c.n_dense
+        return count
     return 3 if by_rates <= max(x.n, ASTRAY**2 * ends) else 1
 
 
 @compiled
 def interpolated(x, c, theta, target):
-    """The state at a part theta of the last step."""
+    """The state at a part theta of the last step; what it is away from the step's start is summed up first, which rounds less."""
     n = x.n
+    first = x.polynomial
     for i in range(n):
-        target[i] = 0.0
-    for k in range(2 + c.n_dense, -1, -1):
-        factor = theta if k % 2 == 0 else 1.0 - theta
-        p = shifted(x.polynomial, k * n)
+        target[i] = theta * first[i]
+    factor = theta
+    for k in range(1, x.dense_ready):
+        factor *= theta if k % 2 == 0 else 1.0 - theta
+        p = shifted(first, k * n)
         for i in range(n):
-            target[i] = (target[i] + p[i]) * factor
+            target[i] += factor * p[i]
     for i in range(n):
         target[i] += x.y_before[i]
 

@@ -12,8 +12,8 @@ IDA = Layout({
 note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
 
 SCHEME = Layout({
-    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "error_needs_end": INT,
-    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS,
+    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT,
+    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS, "free": FLOATS, "free_error": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 })  # fmt: skip
 """The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
@@ -40,8 +40,8 @@ EXPLICIT = Layout({
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
-event functions' values there, the stages k, one over the tolerance of each number in the last step tried, the counters, the
-output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
+event functions' values there, the stages k, one over the tolerance of each number in the last step tried, how many polynomials describe
+the last step (0: they are not made), the counters, the output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
 `started` is 0: the state, its accelerations in the last stage, and `lam` are consistent values then."""
 
 NATIVE_IDA = Layout({
@@ -77,9 +77,9 @@ START = Layout({
     "creep": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_creep": FLOAT_CELL,
     "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "lightness": FLOATS, "velocity_creep": FLOAT_CELL,
     "n_sets": INT, "at_relaxations": INTS, "sums": FLOATS,
-    "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "f_q_scale": FLOATS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS, "f_u_scale": FLOATS, "as_it_is": FLOATS,
+    "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "f_q_scale": FLOATS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS, "f_u_scale": FLOATS,
     "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
-    "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "of_forces": FLOAT_CELL, "newton": FLOAT_CELL,
+    "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "newton": FLOAT_CELL,
     "n_counters": INT, "counter": INTS, "count": INTS, "counts": INTS,
     "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
@@ -96,7 +96,7 @@ OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
     "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
     "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
-    "stiffness": FLOAT_CELL, "n_joint_rows": INT, "joint_row": INTS,
+    "local": FLOAT_CELL, "judged": INT_CELL, "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
@@ -108,8 +108,9 @@ Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the 
 beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
 grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
 force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
-equations of motion: those of forces, then those of moments, and where either end.  A bound on the force that an opening of a joint
-makes, N/m, and the rows of the position constraints."""
+equations of motion: those of forces, then those of moments, and where either end.  What closing joints left of the forces
+for an opening of 1 m, in units of what may be left, and for how many states that serves; the rows of position constraints, the system
+that joints are closed by, and memory for a pose."""
 
 ITERATION = Layout({
     "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,

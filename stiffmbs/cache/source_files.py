@@ -24,6 +24,13 @@ def python_files(folder: Path) -> list[Path]:
     return [folder / name for name in sorted(os.listdir(folder)) if name.endswith(PYTHON)]
 
 
+def files_within(package: Path) -> Iterator[Path]:
+    """All files of a package, by name."""
+    for place, folders, names in os.walk(package):
+        folders[:] = sorted(set(folders) - {NOT_READ})
+        yield from (Path(place, name) for name in sorted(names))
+
+
 def modules_within(package: Path, folder: str) -> Iterator[Path]:
     """The modules in all folders of a name within a package, and in the folders of these, by name."""
     for place, folders, names in os.walk(package):

@@ -1,0 +1,44 @@
+"""A little further on behind an event, where the motion goes to the other side of an event function at once."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, state_view
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
+from stiffmbs.solve.native.explicit.stages import copied
+from stiffmbs.solve.native.tables.views import dynamics_view
+
+SHORTER, ROUNDINGS = 0.125, 1e-15
+"""By how much a shorter way is tried as long as it passes as many event functions, and part of the time that no way is shorter than."""
+
+
+@compiled
+def _passed(s, t, ahead, q, count, values):
+    """How many of the first `count` event functions have another sign after going straight on from q for so long."""
+    copied(s.q, q, s.n_q)
+    add_rates(s, s.u, ahead, s.q)
+    take_unit_length(s)
+    later = evaluate(s, SWITCH, t + ahead)
+    passed = 0
+    for k in range(count):
+        passed += later[k] != 0.0 and values[k] * later[k] <= 0.0
+    return passed
+
+
+def gone_past(t, most, count, q, values, dynamics):
+    """Move the state at hand straight on, for so long at the most, to where event functions that change on that way have changed.
+
+    How long that takes; 0 with the state as it was where none changes.  Memory: `q` for positions, `values` for event functions.
+    """
+    s = state_view(dynamics_view(dynamics).state)
+    copied(q, s.q, s.n_q)
+    copied(values, evaluate(s, SWITCH, t), count)
+    passed = _passed(s, t, most, q, count, values)
+    if passed == 0:
+        copied(s.q, q, s.n_q)
+        return 0.0
+    ahead = most
+    while ahead * SHORTER > ROUNDINGS * abs(t) and _passed(s, t, ahead * SHORTER, q, count, values) == passed:
+        ahead *= SHORTER
+    _passed(s, t, ahead, q, count, values)
+    return ahead
