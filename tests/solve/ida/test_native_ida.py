@@ -166,7 +166,7 @@ def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, 
     monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
     assert type(chosen(chain.equations)[1]) is FixedOrder
     monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
-    _, matrix = chosen(chain.equations)
+    _, matrix, _ = chosen(chain.equations)
     assert isinstance(matrix, Banded)
     assert (matrix.rows.size, matrix.lower) == (chain.equations.pattern[0].size, 10)
     assert isinstance(chosen(squeezer.equations)[1], Dense)
