@@ -19,6 +19,8 @@ from stiffmbs.show.digits import with_bar
 from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
 TOLERANCES = (1e-4, 1e-6, 1e-8)
+AROUND = (0.7, 1.0, 1.4)
+"""Times each of them, where runs at neighbouring tolerances scatter."""
 NEARLY_ALL, SMALLEST = 0.98, 0.3
 """A peak in a thousand may be outside, as two runs have its error by accident: one of the 83 of a half car at times."""
 IN_DOUBT = {
@@ -50,15 +52,16 @@ def test_bars_hold_the_true_error_and_are_not_far_from_it(problem):
     """Half of the runs have bars of less than 6 errors for half of their peaks.
 
     Not each of them: where friction sticks and slips, slips of two runs may be nearer to each other than to the truth by
-    luck.  dop853 on stick_slip at rtol 0.7e-4 to 1.4e-4 has medians between 2.4 and 3300, bdf 2.0.
+    luck.  dop853 on stick_slip at rtol 0.7e-4 to 1.4e-4 has medians between 2.4 and 3300, bdf 2.0, so more runs are made of it.
     """
     medians = []
-    for solver, rtol, found in measured(PROBLEMS[problem], TOLERANCES):
+    factors = AROUND if problem == "stick_slip" else (1.0,)
+    for solver, rtol, found in measured(PROBLEMS[problem], [k * rtol for rtol in TOLERANCES for k in factors]):
         for parts in (found.reported, found.peaks, found.over_time):
             assert np.mean(parts >= 1) >= NEARLY_ALL, (solver, rtol)
             assert parts.min() > SMALLEST, (solver, rtol)
         medians.append(np.median(found.reported))
-    assert np.mean(np.array(medians) < 6) >= 0.5
+    assert np.median(medians) < 6
 
 
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
