@@ -199,6 +199,9 @@ class SundaeEngine:
         """There is no such call of scikit-sundae."""
         return False
 
+    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> None:
+        """Nor one for that."""
+
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
         ends_there, served = len(times) > 0 and times[-1] == stop, 0
