@@ -7,13 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..compile.equations import Equations
+from ..compile.equations import ABSENT
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from .algebraic_states import no_value_ahead
+from .algebraic_states import no_value_ahead, rates_of_algebraic
 from .dynamics import Dynamics
 from .error_control.error_test import CHOSEN, ErrorControl
+from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.precision import SLOW, governed_by_rounding, too_fine
+from .error_control.relaxation import relax
 from .events.chattering import Chattering
 from .events.divergence import FOLLOWED_STEPS, refuse_beyond_sense
 from .events.limits import refuse_beyond_limits
@@ -21,14 +23,11 @@ from .events.long_steps import LongSteps
 from .events.masked import MaskedEvents
 from .events.restart import just_after, restarted_past, straight_on
 from .events.velocity_jumps import WORTH_TELLING, VelocityJumps
-from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
-from .ida.choice import chosen, dense_cost
-from .ida.engine import Engine, Reached
+from .formulations import READ_BY_FORMULATIONS
+from .ida.choice import dense_cost, driven_by_callbacks, driven_natively
+from .ida.engine import Reached
 from .ida.libraries import available
-from .ida.native_engine import NativeEngine
-from .ida.starting.step_by_step import begin_step_by_step
-from .ida.sundae import SundaeEngine
-from .initial import InitialValues
+from .initial import InitialValues, rates_of
 from .solver import Traits
 from .step_logging import is_logged, log_step
 from .suspect import suspect
@@ -113,24 +112,6 @@ def _failure(integrator: Integrator, reached: Reached) -> str:
     return missing or reached.failure + suspect(integrator.dynamics, reached.t, q, u)
 
 
-def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
-    """The equations with their unknowns in the natural order."""
-    return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)
-
-
-def _native(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine, float]:
-    """The native driver, where SUNDIALS' libraries are as it needs them, and the cost of its linear solver, ns."""
-    equations, matrix, cost = chosen(_natural(dynamics, settings))
-    return equations, NativeEngine(equations, dynamics, matrix, settings, control), cost
-
-
-def _through_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
-    """The driver by scikit-sundae's callbacks."""
-    equations = _natural(dynamics, settings)
-    tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # Newton's iteration stays as IDA has it
-    return equations, SundaeEngine(equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5)
-
-
 class Integrator:
     """IDA over the pieces of a run: from breakpoint to breakpoint, from event to event.
 
@@ -160,11 +141,11 @@ class Integrator:
         native, reason = available()
         if native:
             self.equations, self.engine, cost = dynamics.kept(
-                memory, (settings, control), lambda: _native(dynamics, settings, control)
+                memory, (settings, control), lambda: driven_natively(dynamics, settings, control)
             )
             self.engine.forget()
         else:
-            self.equations, self.engine = _through_callbacks(dynamics, settings)
+            self.equations, self.engine = driven_by_callbacks(dynamics, settings)
             cost = dense_cost(self.equations.n)
             self._notes.append(
                 f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
@@ -293,8 +274,26 @@ class Integrator:
             self._begin_step_by_step(start, t)
 
     def _begin_step_by_step(self, start: InitialValues, t: float) -> None:
-        """A start that does not need the compiled one."""
-        begin_step_by_step(self.engine, self.dynamics, self.equations, (self.settings, self.control), start, t)
+        """A start that does not need the compiled one: for algebraic states, infinite stiffness, and scikit-sundae's callbacks."""
+        equations, at = self.equations, self.equations.at
+        state, coordinates = self.dynamics.state, equations.coordinates
+        rates = rates_of(self.dynamics, t, start)
+        state.a[:], state.mu[:] = start.acceleration, 0.0
+        equations.start_from(start.q)
+        y, yp = np.zeros(equations.n), np.zeros(equations.n)
+        y[equations.independent] = coordinates.state(start.q, start.u)
+        if len(self.dynamics.system.algebraic_coordinates):
+            rates[self.dynamics.system.algebraic_coordinates] = rates_of_algebraic(
+                self.dynamics, t, start.q, start.u, start.acceleration
+            )
+        yp[equations.independent] = coordinates.state(rates, start.acceleration)
+        solved = at["lam"] != ABSENT
+        multipliers = yp if equations.formulation.integrated else y
+        multipliers[at["lam"][solved]] = start.lam[solved]
+        relax(self.dynamics, self.settings, t)
+        stiffness = stiffness_at(self.dynamics, t)
+        newton = self.control.newton or newton_tolerance(stiffness, self.settings)
+        self.engine.begin(t, y, yp, newton, stiffness)
 
     def statistics(self) -> dict[str, int | float | str]:
         """The linear solver, IDA's counters, and how often it started anew."""
