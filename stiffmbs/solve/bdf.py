@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -247,7 +246,7 @@ class Integrator:
     def _explained(self, reached: Reached) -> Reached:
         """A failure in the words of the force that causes it, where it jumps back and forth."""
         jumping = self._masked.failed(reached.t, *self.split(reached.y))
-        return replace(reached, failure=jumping or reached.failure)
+        return reached._replace(failure=jumping or reached.failure)
 
     def _segment(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
         """Integrate from t to `stop` or to the first event."""

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from .starting.anew import Begun
 
 
-@dataclass(frozen=True)
-class Reached:
+class Reached(NamedTuple):
     """Where an integrator has come since it was last heard of.
 
     Attributes

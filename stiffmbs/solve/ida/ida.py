@@ -327,7 +327,7 @@ class NativeIda:
         if self._ida.cells["within"]:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
         found = np.zeros(self.n_event_functions, dtype=np.intc)
-        self._ida.ask("IDAGetRootInfo", found.ctypes.data)
+        self._ida.ask("IDAGetRootInfo", address(found))
         return found * self._ida.signs.astype(np.intc)
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:

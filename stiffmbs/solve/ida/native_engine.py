@@ -183,7 +183,7 @@ class NativeEngine:
 
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
         failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
-        fired = tuple(map(int, np.flatnonzero(self._ida.roots()))) if status is Status.ROOT else ()
+        fired = tuple(self._ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
         return Reached(times, rows, self._ida.t, self._ida.y, fired, failure)
 
     def _worst(self) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -231,7 +230,7 @@ class SundaeEngine:
                 served += 1
         except KeyboardInterrupt:  # what was computed is handed over first
             self._interrupted = True
-        return replace(self._reached(last, False), times=times[:served], rows=rows[:served])
+        return self._reached(last, False)._replace(times=times[:served], rows=rows[:served])
 
     def _to(self, time: float, stop: float) -> Any:
         """Integrate to a time, over the stops that inputs ask for on the way to `stop`."""
