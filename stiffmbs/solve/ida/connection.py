@@ -208,7 +208,6 @@ class Connection:
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and keep the history of the call; returns IDA's last flag."""
-        with self._session.call():
-            flag = loop.call(*arguments, self.table)
+        flag: int = self._session.call(loop.call, *arguments, self.table)
         self.history.add(int(self.cells["recorded"]))
         return flag

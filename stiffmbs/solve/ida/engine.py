@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,10 +13,10 @@ from ..trajectory import History
 
 if TYPE_CHECKING:
     from ..initial import InitialValues
+    from .starting.anew import Begun
 
 
-@dataclass(frozen=True)
-class Reached:
+class Reached(NamedTuple):
     """Where an integrator has come since it was last heard of.
 
     Attributes
@@ -63,6 +62,10 @@ class Engine(Protocol):
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
         """The same by one call that finds all of that; False, with nothing started, where it does not serve."""
+
+    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
+        """Start anew at consistent values behind a state in the middle of a run, and where a straight way `ahead` (s) meets other events,
+        behind these; None, with nothing started, where that does not serve."""
 
     def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""

@@ -15,7 +15,6 @@ from ...compile.state import State
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
-from ..error_control.newton import Stiffness
 from ..events.long_steps import LongStepLog
 from ..native.statuses import ROOT_RETURN, STOP_RETURN
 from ..native.tables.steps import MOST_STEPS
@@ -27,8 +26,7 @@ from .status import Status, failure_sentence
 from .step_log import StepLog
 
 if TYPE_CHECKING:
-    from ..initial import InitialValues
-    from .starts import Starts
+    from .starting.starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
@@ -141,6 +139,11 @@ class NativeIda:
             ida.take_own_convergence_test()
 
     @property
+    def begun(self) -> bool:
+        """Whether it was started since it was made or told to forget."""
+        return self._begun
+
+    @property
     def t(self) -> float:
         """Time of the solution in `y`, s."""
         return float(self._ida.cells["returned"])
@@ -240,21 +243,16 @@ class NativeIda:
         self._ida.begin(t)
         self._begun, self._flag = True, 0
 
-    def begin_by(
-        self, starts: Starts, start: InitialValues, t: float, highest_order: int
-    ) -> tuple[Stiffness, float] | None:
-        """Start, or start again, by a compiled start; what that returns."""
-        found = starts.begin(start, t, self._begun, highest_order)
-        if found:
-            self.history.begin(t)
-            self._begun, self._flag = True, 0
-        return found
+    def begun_at(self, t: float) -> None:
+        """Take note that a compiled start has started it, or started it again."""
+        self.history.begin(t)
+        self._begun, self._flag = True, 0
 
     def starts(
         self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
     ) -> Starts | None:
         """Compiled starts; None where they do not serve."""
-        from .starts import Starts
+        from .starting.starts import Starts
 
         if not Starts.serve(dynamics):
             return None
@@ -329,7 +327,7 @@ class NativeIda:
         if self._ida.cells["within"]:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
         found = np.zeros(self.n_event_functions, dtype=np.intc)
-        self._ida.ask("IDAGetRootInfo", found.ctypes.data)
+        self._ida.ask("IDAGetRootInfo", address(found))
         return found * self._ida.signs.astype(np.intc)
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:

@@ -25,8 +25,9 @@ from .status import Status
 
 if TYPE_CHECKING:
     from ..initial import InitialValues
-    from .restarts import Restarts
-    from .starts import Starts
+    from .starting.anew import Begun, StartsAnew
+    from .starting.restarts import Restarts
+    from .starting.starts import Starts
 
 ROWS_OF_STEPS = 1000
 """Room for rows in one call that reports every step."""
@@ -102,11 +103,26 @@ class NativeEngine:
             self._started = True
             return False
         self._ida.filter_always(self._order.held)
-        found = self._ida.begin_by(self._starts, start, t, self._order.order)
+        if not self._starts.begin(start, t, self._ida.begun, self._order.order):
+            return False
+        self._take_up(self._starts, t)
+        return True
+
+    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
+        """Start anew at consistent values behind a state, by one compiled call."""
+        if self._starts is None or self._starts_anew is None:
+            return None
+        self._ida.filter_always(self._order.held)
+        found = self._starts_anew.begin((q, u), t, ahead, self._ida.begun, self._order.order)
         if found:
-            self._stiffness, self._newton = found
-            self._follow_stiffness(t)
-        return found is not None
+            self._take_up(self._starts, found.t)
+        return found
+
+    def _take_up(self, starts: Starts, t: float) -> None:
+        """Go on from a compiled start."""
+        self._ida.begun_at(t)
+        self._stiffness, self._newton = starts.found()
+        self._follow_stiffness(t)
 
     def _follow_stiffness(self, t: float) -> None:
         """Correct states within long steps, and look at vibrations, by the stiffness at a start."""
@@ -167,7 +183,7 @@ class NativeEngine:
 
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
         failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
-        fired = tuple(map(int, np.flatnonzero(self._ida.roots()))) if status is Status.ROOT else ()
+        fired = tuple(self._ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
         return Reached(times, rows, self._ida.t, self._ida.y, fired, failure)
 
     def _worst(self) -> str:
@@ -183,7 +199,7 @@ class NativeEngine:
 
     def restarts(self, dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> Restarts | None:
         """Compiled starts of this integrator from the state in q and u; None where they do not serve."""
-        from .restarts import Restarts
+        from .starting.restarts import Restarts
 
         if self._starts is None or not Restarts.serve(dynamics.system, self._ida.connection):
             return None
@@ -193,6 +209,13 @@ class NativeEngine:
     def _starts(self) -> Starts | None:
         """Compiled starts; None where they do not serve."""
         return self._make_starts()
+
+    @cached_property
+    def _starts_anew(self) -> StartsAnew | None:
+        """Compiled starts in the middle of a run; None where they do not serve."""
+        from .starting.anew import StartsAnew
+
+        return StartsAnew(self._starts, self._dynamics) if self._starts else None
 
     def at(self, t: float) -> np.ndarray:
         """All unknowns at a time within the last step."""

@@ -7,6 +7,7 @@ import stiffmbs
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.bdf import Integrator
 from stiffmbs.solve.events.restart import restarted
+from stiffmbs.solve.ida.native_engine import NativeEngine
 
 SCENES = {
     "half_car": {"formulation": "SI1"},
@@ -59,25 +60,46 @@ def test_a_compiled_start_leaves_the_same_numbers(name, examples):
         np.testing.assert_array_equal(one, other)
 
 
-@pytest.mark.parametrize("name", ["half_car", "bouncing_ball"])
-def test_a_run_of_compiled_starts_is_the_run_of_starts_by_python(name, examples, monkeypatch):
+@pytest.mark.parametrize("name", ["half_car", "bouncing_ball", "cam_follower"])
+@pytest.mark.parametrize("starts", [("begin_anew", None), ("begin_anew", None, "begin_at", False)])
+def test_a_run_of_compiled_starts_is_the_run_of_starts_by_python(name, starts, examples, monkeypatch):
     job = prepare(stiffmbs.load_scene(examples / f"{name}.yaml"), solver="bdf", duration=1.0)
     job.integrate()
-    done, begin_at = [], type(Integrator(job.dynamics, job.settings).engine).begin_at
+    done, begin_anew = [], NativeEngine.begin_anew
 
     def noted(*arguments):
-        done.append(begin_at(*arguments))
+        done.append(begin_anew(*arguments))
         return done[-1]
 
-    engine = "stiffmbs.solve.ida.native_engine.NativeEngine.begin_at"
-    monkeypatch.setattr(engine, noted)
+    monkeypatch.setattr(NativeEngine, "begin_anew", noted)
     found = job.integrate()
     assert len(done) > 1 and all(done)
-    monkeypatch.setattr(engine, lambda *arguments: False)
+    for name, outcome in zip(starts[::2], starts[1::2], strict=True):
+        monkeypatch.setattr(NativeEngine, name, lambda *arguments, outcome=outcome: outcome)
     expected = job.integrate()
     for name in ("t", "q", "u", "step_times"):
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
     assert {**found.statistics, "seconds": 0} == {**expected.statistics, "seconds": 0}
+    assert found.note == expected.note
+
+
+def test_what_was_counted_before_a_start_that_is_left_to_python_counts_once(examples, monkeypatch):
+    job = prepare(stiffmbs.load_scene(examples / "half_car.yaml"), solver="bdf", duration=1.0)
+    job.integrate()
+    expected = job.integrate().statistics
+    engine = Integrator(job.dynamics, job.settings).engine
+    begin_anew = NativeEngine.begin_anew
+
+    def without_end(*arguments):
+        scales = engine._starts._kept[0]["f_q_scale"]
+        kept, scales[:] = scales.copy(), 0.0  # the stiffness is infinite
+        found = begin_anew(*arguments)
+        scales[:] = kept
+        assert found is None
+        return found
+
+    monkeypatch.setattr(NativeEngine, "begin_anew", without_end)
+    assert {**job.integrate().statistics, "seconds": 0} == {**expected, "seconds": 0}
 
 
 def test_infinite_stiffness_is_left_to_python(examples):

@@ -92,6 +92,16 @@ iteration may leave."""
 RESTART = Layout({"start": INTS, "q": FLOATS, "u": FLOATS})
 """What IDA is started anew with behind a jump of inputs (`stiffmbs.solve.ida.native.restart`): the state from one call to the next."""
 
+ANEW = Layout({
+    "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
+    "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,
+    "t": FLOAT_CELL, "jump": FLOAT_CELL, "meets": INT_CELL,
+})  # fmt: skip
+"""What IDA is started anew with behind an event or a breakpoint (`stiffmbs.solve.ida.native.anew`): event functions, the first of those that
+are limits of forces, counters of turns and the angles that they count, a move to both sides of a state, and memory for a state and
+event functions.  Cells: the size of the move; where it was started, the largest change of a velocity, and whether event functions that follow
+velocities change between both sides."""
+
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
     "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,

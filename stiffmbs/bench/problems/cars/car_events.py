@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ...jobs.run import Job, prepare
-from ...solve.bdf import Integrator
-from ...solve.ida.engine import Engine, Reached
-from ..benchmark import Row
-from ..drives import CARS, SOLVERS, Car
+from ....jobs.run import Job, prepare
+from ....solve.bdf import Integrator
+from ....solve.ida.engine import Engine, Reached
+from ...benchmark import Row
+from ...drives import CARS, SOLVERS, Car
 
 RTOL, ROUNDS = 1e-4, 15
 
