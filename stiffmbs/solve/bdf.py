@@ -32,6 +32,8 @@ from .step_logging import is_logged, log_step
 from .suspect import suspect
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
+MOST_PASSED = 64
+"""Breakpoints at which the integrator may start anew before it is heard of."""
 READ = ("formulation", "rtol", "atol", "max_step", "max_order")
 """Settings that it follows."""
 
@@ -72,7 +74,7 @@ def integrated(
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
-        for reached in integrator.run(start, grid):
+        for reached in integrator.run(start, grid, passing=pays is None and not is_logged()):
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
             if is_logged() and (step := integrator.engine.last_step()):
                 log_step(reached.t, *step)
@@ -167,8 +169,14 @@ class Integrator:
         (q,), (u,) = self.equations.states(y[None, self.equations.independent])
         return q, u
 
-    def run(self, start: InitialValues, grid: Grid) -> Iterator[Reached]:
-        """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
+    def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
+        """Where the integrator comes at the times of the grid, or after its steps; a failure comes last.
+
+        Parameters
+        ----------
+        passing : bool
+            Whether it may start anew at breakpoints on the way to where it is heard of next.
+        """
         t = grid.start
         self._jumps.clear()
         features = self.dynamics.input_features(grid.start, grid.end)
@@ -177,31 +185,36 @@ class Integrator:
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._masked = MaskedEvents(self.dynamics, chattering)
         ready: InitialValues | None = start
-        for stop in (*grid.with_stops(features.breakpoints).tolist(), grid.end):
-            while just_after(t) < stop:
-                if ready:
-                    refuse_beyond_limits(self.dynamics, t, ready.q, ready.u)
-                    self._begin(ready, t)
-                    chattering.begin(t, ready.q, ready.u)
-                for reached in self._segment(t, stop, grid):
-                    yield reached if not reached.failure else self._explained(reached)
-                    if reached.t < stop and not (reached.fired or reached.failure):
-                        chattering.look(reached.t, *self.split(reached.y), self.steps())
-                if reached.failure:
-                    return
-                if reached.fired:
-                    chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0])
-                before = t = reached.t
-                if t < grid.end:
-                    q, u = self.split(reached.y)
-                    if self._masked.any:
-                        self._masked.note(t, q, u, self.steps(), reached.fired)
-                    if t >= stop:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
-                        t = just_after(t)
-                    ready, t = self._anew(q, u, before, t, self._ahead(reached, stop), chattering)
-                    yield from self._at_once(before, t, grid)
-                    self._events += before < stop
-                    self._breakpoints += before >= stop
+        stops = [*grid.with_stops(features.breakpoints).tolist(), grid.end]
+        while stops:
+            if just_after(t) >= stops[0]:
+                del stops[0]
+                continue
+            if ready:
+                refuse_beyond_limits(self.dynamics, t, ready.q, ready.u)
+                self._begin(ready, t)
+                chattering.begin(t, ready.q, ready.u)
+            for reached in self._segment(t, stops[: MOST_PASSED if passing else 1], grid):
+                del stops[: reached.passed]
+                self._breakpoints += reached.passed
+                yield reached if not reached.failure else self._explained(reached)
+                if reached.t < stops[0] and not (reached.fired or reached.failure):
+                    chattering.look(reached.t, *self.split(reached.y), self.steps())
+            if reached.failure:
+                return
+            if reached.fired:
+                chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0])
+            before = t = reached.t
+            if t < grid.end:
+                q, u = self.split(reached.y)
+                if self._masked.any:
+                    self._masked.note(t, q, u, self.steps(), reached.fired)
+                if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
+                    t = just_after(t)
+                ready, t = self._anew(q, u, before, t, self._ahead(reached, stops[0]), chattering)
+                yield from self._at_once(before, t, grid)
+                self._events += before < stops[0]
+                self._breakpoints += before >= stops[0]
 
     def _anew(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
@@ -248,11 +261,11 @@ class Integrator:
         jumping = self._masked.failed(reached.t, *self.split(reached.y))
         return reached._replace(failure=jumping or reached.failure)
 
-    def _segment(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
-        """Integrate from t to `stop` or to the first event."""
+    def _segment(self, t: float, stops: list[float], grid: Grid) -> Iterator[Reached]:
+        """Integrate from t to the first stop or past it, or to the first event."""
         if grid.times is None:
-            return self.engine.by_steps(stop)
-        return self.engine.to_times(grid.within(just_after(t), stop), stop)
+            return self.engine.by_steps(stops[0])
+        return self.engine.to_times(grid.within(just_after(t), stops[-1]), stops)
 
     def _at_once(self, before: float, t: float, grid: Grid) -> Iterator[Reached]:
         """Output times that rounding alone keeps from t, as 0.1 s * 7 from a breakpoint at 0.7 s: theirs is the state at t, at hand.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -31,6 +31,8 @@ class Reached(NamedTuple):
         The event functions that stopped it by changing their sign; empty where none did.
     failure : str
         Why it cannot go on; empty where it can.
+    passed : int
+        Breakpoints at which it started anew on the way.
     """
 
     times: np.ndarray
@@ -39,6 +41,7 @@ class Reached(NamedTuple):
     y: np.ndarray
     fired: tuple[int, ...] = ()
     failure: str = ""
+    passed: int = 0
 
 
 class Engine(Protocol):
@@ -67,8 +70,11 @@ class Engine(Protocol):
         """Start anew at consistent values behind a state in the middle of a run, and where a straight way `ahead` (s) meets other events,
         behind these; None, with nothing started, where that does not serve."""
 
-    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Integrate to the first stop or to a later one, and report at times up to there; ends early at an event or a failure.
+
+        Stops that it passes are told by `passed`: it has started anew there.
+        """
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""

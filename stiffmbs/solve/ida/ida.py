@@ -9,7 +9,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import address
+from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ...describe.settings import RunSettings
@@ -26,9 +26,15 @@ from .status import Status, failure_sentence
 from .step_log import StepLog
 
 if TYPE_CHECKING:
+    from .starting.anew import StartsAnew
     from .starting.starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
+ADVANCE_PAST = Routine(
+    "stiffmbs.solve.ida.native.passing",
+    "advance_past",
+    "int32(int64, float64*, int64, float64*, int64, int64, float64*, int64*, int64*)",
+)
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
 LONGEST_CALL, STEP_TIME = 0.1, 1e-7
@@ -182,6 +188,11 @@ class NativeIda:
         self._ida.cells["traced"] = 0
         return rows
 
+    @property
+    def may_pass(self) -> bool:
+        """Whether `advance_past` serves: steps are not kept, and memory to correct states within long steps is there."""
+        return self._ida.output_correction.ready and not len(self._trace)
+
     def look_after(self, steps: int) -> None:
         """Have the next call of `advance` or `steps` return after so many steps at the latest."""
         self._look = max(steps, 1)
@@ -286,6 +297,17 @@ class NativeIda:
         self._ida.ask("IDASetStopTime", stop)
         derivatives = 0 if yp_out is None else address(yp_out)
         self._run(ADVANCE, len(times), address(times), stop, min(self._pace, self._look), address(y_out), derivatives)
+        return int(self._ida.cells["served"]), self._status()
+
+    def advance_past(
+        self, anew: StartsAnew, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
+    ) -> tuple[int, Status]:
+        """Go on as `advance` does towards the first of some stops, and past it to the others, where `anew` may pass them."""
+        times = np.ascontiguousarray(times, dtype=float)
+        self._check_rows(y_out, len(times))
+        most = min(self._pace, self._look)
+        at_times, at_stops, at_rows = addresses(times, stops, y_out)
+        self._run(ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, anew.table)
         return int(self._ida.cells["served"]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -201,8 +201,10 @@ class SundaeEngine:
     def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> None:
         """Nor one for that."""
 
-    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Integrate to the first stop and report at times up to there; ends early at an event or a failure."""
+        stop = stops[0]
+        times = times[times <= stop]
         ends_there, served = len(times) > 0 and times[-1] == stop, 0
         while served < len(times):
             reached = self._several(times[served : served + TOGETHER], stop)

@@ -19,15 +19,6 @@ anew_view = view_of("Anew", ANEW)
 
 
 @compiled
-def _count_anew(w, s, t):
-    """Set the counters of turns to the very angles that they count."""
-    if w.n_counted > 0:
-        values = evaluate(s, POSITION, t)
-        for k in range(w.n_counted):
-            s.q[w.counted_row[k]] = values[w.counted_source[k]]
-
-
-@compiled
 def _beyond_limits(w, s, t):
     """Whether the state at hand is beyond the limits of a force."""
     if w.first_limit == w.n_event_functions:
@@ -56,6 +47,26 @@ def _meets(w, s, t):
     return meets
 
 
+@compiled
+def back_with_jump(w, s, m, t):
+    """Bring the state at hand back to the constraints, and note the largest change of a velocity; 0 or a negative status."""
+    copied(w.u, s.u, s.n_u)
+    status = brought_back(s, m, t)
+    w.jump = 0.0
+    for k in range(s.n_u):
+        w.jump = max(w.jump, abs(s.u[k] - w.u[k]))
+    return status
+
+
+@compiled
+def counted_anew(w, s, t):
+    """Set the counters of turns to the very angles that they count."""
+    if w.n_counted > 0:
+        values = evaluate(s, POSITION, t)
+        for k in range(w.n_counted):
+            s.q[w.counted_row[k]] = values[w.counted_source[k]]
+
+
 def anew(t, ahead, counted, highest_order, table):
     """Bring the state at hand back to the constraints, past events that come with the one at t, and start IDA; OK or a negative number.
 
@@ -66,16 +77,12 @@ def anew(t, ahead, counted, highest_order, table):
     m = dynamics_view(b.dynamics)
     s = state_view(m.state)
     c = native_ida_view(ints(b.ida))
-    copied(w.u, s.u, s.n_u)
-    if brought_back(s, m, t) < 0:
+    if back_with_jump(w, s, m, t) < 0:
         return int32(UNFINISHED)
-    w.jump = 0.0
-    for k in range(s.n_u):
-        w.jump = max(w.jump, abs(s.u[k] - w.u[k]))
     behind = t
     if ahead > 0.0:
         behind += moved_past(s, t, ahead, w.n_event_functions, w.q, w.values)
-    _count_anew(w, s, behind)
+    counted_anew(w, s, behind)
     if accelerated(s, m, behind) < 0 or _beyond_limits(w, s, behind):
         return int32(UNFINISHED)
     if prepared(b, s, m, equations_view(c.equations), c, behind) < 0:

@@ -8,7 +8,7 @@ from stiffmbs.solve.ida.native.start import UNFINISHED, begun, prepared, start_v
 from stiffmbs.solve.native.calls import call_int, int32
 from stiffmbs.solve.native.dynamics import to_accelerations, to_position_constraints, to_velocity_constraints
 from stiffmbs.solve.native.explicit.stages import copied
-from stiffmbs.solve.native.ida_loop import stepped
+from stiffmbs.solve.native.ida_loop import clear_call, stepped
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK, STOP_RETURN
 from stiffmbs.solve.native.tables.steps import MOST_STEPS, RESTART
@@ -59,9 +59,7 @@ def restart(t, end, restarts):
         return int32(UNFINISHED)
     call_int(c.stop_at, (c.memory, end))
     c.stopping = end
-    c.served = 0
-    c.recorded = 0
-    c.traced = 0
+    clear_call(c)
     flag = int32(OK)
     for _ in range(MOST_STEPS):
         if flag != OK:

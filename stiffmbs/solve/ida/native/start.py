@@ -140,10 +140,12 @@ def prepared(w, s, m, e, c, t):
         w.rate[k] = 0.0
     add_rates(s, s.u, 1.0, w.rate)
     add_rates_behind(s, m, 1.0, w.rate)
-    _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
     _relax(w, s, t)
     _look_at_stiffness(w, s, t)
-    return OK if isfinite(w.of_positions + w.of_velocities) else UNFINISHED
+    if not isfinite(w.of_positions + w.of_velocities):
+        return UNFINISHED
+    _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
+    return OK
 
 
 @compiled
