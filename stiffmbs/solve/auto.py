@@ -177,6 +177,9 @@ class _Shared:
             return False
         if seen.tried * self._explicit_step < self._amends:
             return False
+        rest = (self._grid.end - seen.t) / (seen.t - before.t)
+        if rest * (seen.tried - before.tried) * self._explicit_step <= WORTH_A_TRIAL * self._costs.start:
+            return False  # nor is it by the rate, as no steps are longer than stability allows
         worth, rate = self._worth_a_trial(work.t, work.q, work.u)
         if worth:
             self._messages.append(

@@ -6,6 +6,8 @@ import pytest
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
 from stiffmbs.jobs.job import prepare
+from stiffmbs.solve import auto
+from stiffmbs.solve.explicit.fastest_rate import fastest_rate
 from stiffmbs.stress.parallelogram import parallelogram, swing_error
 
 
@@ -152,6 +154,15 @@ def test_output_points_within_one_explicit_step_do_not_ask_for_a_change_of_hands
     assert len(solution.time) == 100_001
     w = np.sqrt(9.81 / np.sqrt(10025))
     np.testing.assert_allclose(solution["bob.x"], 5 * np.cos(w * solution.time), atol=0.01)
+
+
+def test_the_rate_is_asked_for_once_where_explicit_steps_to_the_end_cost_less_than_trials(examples, monkeypatch):
+    asked = []
+    monkeypatch.setattr(auto, "fastest_rate", lambda *state: asked.append(state[1]) or fastest_rate(*state))
+    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e6")])
+    solution = stiffmbs.run(scene, solver="auto", rtol=1e-4)
+    assert solution.solver["name"] == "projected"
+    assert asked == [0.0]
 
 
 @pytest.mark.long
