@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import yaml
 
 import stiffmbs
 from stiffmbs.jobs.run import prepare
@@ -173,3 +174,17 @@ def test_an_output_time_a_rounding_behind_a_breakpoint_is_left_to_python(monkeyp
     job = prepare(hopping([0.2, 0.7]), solver="bdf", duration=1.0, rtol=1e-6, output=0.01)
     found, passed = both_ways(job, monkeypatch)
     assert (found.statistics["breakpoints"], passed, len(found.t)) == (2, 1, 101)
+
+
+def test_rows_before_a_breakpoint_keep_the_offsets_of_their_start(examples, monkeypatch):
+    """Projections change what stands still by rounding."""
+    scene = yaml.safe_load((examples / "spatial_slider_crank.yaml").read_text())
+    corners = "10*(max(0, min(t - 0.1, 0.2)) - 2*max(0, min(t - 0.45, 0.3)) + max(0, t - 0.8))"
+    last = [*scene["bodies"]][-1]
+    scene.setdefault("forces", {}).update(
+        push={"type": "force", "i": last, "force": [corners, "0", "0"]},
+        hold={"type": "force", "i": last, "force": [f"-3*vx({last}) - 20*dx({last})", "0", "0"]},
+    )
+    text = yaml.safe_dump(scene, sort_keys=False)
+    found, _ = both_ways(prepare(stiffmbs.read_scene(text), solver="bdf", duration=1.5, rtol=1e-5), monkeypatch)
+    assert found.statistics["breakpoints"] == 5

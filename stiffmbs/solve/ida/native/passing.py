@@ -50,6 +50,16 @@ def _take_state(s, b, e, y, yp):
 
 
 @compiled
+def _same_offsets(s, b, e):
+    """Whether what moves with other coordinates does so with the offsets of the last start: rows of one call are all read by these."""
+    others = 0
+    for k in range(s.n_q):
+        leader = b.leader[k]
+        others += e.offset[k] != s.q[k] - (e.q_ratio[k] * s.q[leader] if leader >= 0 else 0.0)
+    return others == 0
+
+
+@compiled
 def _started_behind(w, b, c, t):
     """Start anew at t from where IDA has come; a negative number, with IDA where it was, where that is left to Python."""
     m = dynamics_view(b.dynamics)
@@ -59,6 +69,8 @@ def _started_behind(w, b, c, t):
     if back_with_jump(w, s, m, t) < 0 or w.jump > w.largest_jump:
         return UNFINISHED
     counted_anew(w, s, t)
+    if not _same_offsets(s, b, e):
+        return UNFINISHED
     if accelerated(s, m, t) < 0 or prepared(b, s, m, e, c, t) < 0:
         return UNFINISHED
     _limit(w, b, c)
