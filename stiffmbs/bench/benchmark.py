@@ -46,9 +46,10 @@ class Benchmark(Protocol):
 
 
 def families() -> dict[str, Sequence[Benchmark]]:
-    """The benchmarks in the files of `stiffmbs.bench.problems`, by the name of the file; the smallest comes first."""
+    """The benchmarks in the files of `stiffmbs.bench.problems` and of its folders, by the name of the file; the smallest comes first."""
     from . import problems as package
 
-    names = sorted(module.name for module in pkgutil.iter_modules(package.__path__))
-    found = {name: importlib.import_module(f"{package.__name__}.{name}").BENCHMARKS for name in names}
+    modules = pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    files = {module.name.rpartition(".")[2]: module.name for module in modules if not module.ispkg}
+    found = {name: importlib.import_module(files[name]).BENCHMARKS for name in sorted(files)}
     return {name: benchmarks for name, benchmarks in found.items() if benchmarks}  # scenes may be in no folder at hand

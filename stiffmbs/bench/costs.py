@@ -97,16 +97,15 @@ def main() -> None:
             implicit[0].append(np.r_[1.0, counted["residuals"] * residual, counted["jacobians"] * matrix])
             implicit[1].append(spent)
         job, found = runs(model, solver="projected", scheme="dop853", **duration)
-        system, by_lu = job.dynamics.system, not job.dynamics.eliminated.serves
-        step = np.array([1.0, system.n_operations("acceleration"), system.n_c, by_lu * system.n_c**2])
+        system, eliminated = job.dynamics.system, job.dynamics.eliminated
+        linear = (eliminated.multiplications, 0) if eliminated.serves else (0, system.n_c**2)
+        step = np.array([1.0, system.n_operations("acceleration"), system.n_c, *linear])
         for spent, counted in found:
             explicit[0].append(np.r_[1.0, (counted["steps"] + counted["rejected"]) * step])
             explicit[1].append(spent)
-    for names, data in ((("EXPLICIT_STEP", "BY_LU"), explicit), (("RESIDUAL", "MATRIX"), implicit)):
+    for names, data in ((("EXPLICIT_STEP", "BY_ELIMINATION", "BY_LU"), explicit), (("RESIDUAL", "MATRIX"), implicit)):
         costs, told = fit(*data)
-        print(
-            f"{', '.join(names)} = {np.array2string(costs[1:], precision=3, separator=', ')}, {costs[0]:.0f} us a run"
-        )
+        print(f"{', '.join(names)} = {', '.join(f'{each:.3g}' for each in costs[1:])}, {costs[0]:.0f} us a run")
         print(f"times told within {told.min():.2f} .. {told.max():.2f} of what they are")
 
 

@@ -81,14 +81,11 @@ class Seen:
 
     @classmethod
     def of(cls, model: ModelData, solution: Solution) -> Seen:
-        """Those of a solution."""
-        places = [f"{name}.{axis}" for name in model.bodies for axis in "xyz"]
-        forces = [
-            f"{name}.{axis}"
-            for name, force in model.forces.items()
-            if force.type == "bushing"
-            for axis in ("fx", "fy", "fz")
-        ]
+        """Those of a solution; of one in the plane without z."""
+        axes = "xyz" if model.dimensions == 3 else "xy"
+        places = [f"{name}.{axis}" for name in model.bodies for axis in axes]
+        bushings = [name for name, force in model.forces.items() if force.type == "bushing"]
+        forces = [f"{name}.f{axis}" for name in bushings for axis in axes]
         return cls(*(np.array([solution[name] for name in names]).T for names in (places, forces)))
 
     def errors(self, exact: Seen) -> dict[str, float]:

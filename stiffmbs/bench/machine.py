@@ -30,6 +30,14 @@ def largest_memory() -> float:
     return most / (2**20 if sys.platform == "darwin" else 2**10)
 
 
+def seconds_of_children() -> float:
+    """Processor time of all processes that have been waited for so far, s."""
+    import resource
+
+    of_children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return of_children.ru_utime + of_children.ru_stime
+
+
 def _processor() -> str:
     """Its name as the system tells it."""
     try:

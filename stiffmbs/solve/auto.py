@@ -9,6 +9,7 @@ is tried, for as long as it keeps ahead, and best from the start, before explici
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,9 +37,9 @@ HELD_BACK = 0.05
 steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
 LOOK_AT_IMPLICIT = 3.0
 """Starts of the implicit integrator, without their steps, that its steps between two looks cost: a look takes a tenth of one."""
-MAY_LOSE = 0.15
+MAY_LOSE = 0.45
 """The implicit integrator is left when it has fallen behind explicit steps by a start and such a part of what these still cost up to
-the end, half as much in each further trial: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
+the end, by a start alone in further trials: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
 WORTH_A_TRIAL = 8.0
 """What is left for explicit steps must cost so many starts of the implicit integrator before one is made."""
 AMENDS = 3.0
@@ -74,6 +75,18 @@ class _Pace:
     steps: int = 0
     tried: int = 0
     held: int = 0
+
+
+class _Spent(NamedTuple):
+    """What the implicit integrator has taken so far: time of the motion, starts at breakpoints and events, cost."""
+
+    t: float
+    restarts: int
+    cost: float
+
+    def since(self, before: _Spent) -> _Spent:
+        """What it has taken from there on."""
+        return _Spent(self.t - before.t, self.restarts - before.restarts, self.cost - before.cost)
 
 
 class _Shared:
@@ -164,6 +177,9 @@ class _Shared:
             return False
         if seen.tried * self._explicit_step < self._amends:
             return False
+        rest = (self._grid.end - seen.t) / (seen.t - before.t)
+        if rest * (seen.tried - before.tried) * self._explicit_step <= WORTH_A_TRIAL * self._costs.start:
+            return False  # nor is it by the rate, as no steps are longer than stability allows
         worth, rate = self._worth_a_trial(work.t, work.q, work.u)
         if worth:
             self._messages.append(
@@ -176,7 +192,7 @@ class _Shared:
         """Implicit steps from t on; the time at which they were left, or None at the end."""
         self._implicit = self._implicit or bdf.Integrator(self._dynamics, self._settings)
         self._implicit.engine.pause_after(int(LOOK_AT_IMPLICIT * self._costs.memory / self._costs.step))
-        self._pace, self._before, self._lost = _Pace(t), self._spent(), 0.0
+        self._spent, self._lost = self._spent_up_to(t), 0.0
         pays = None if self._gave_up else self._implicit_pays
         segment = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
         self._segments.append(Segment(replace(segment, solver="bdf"), bdf.traits(self._settings)))
@@ -184,7 +200,7 @@ class _Shared:
         if segment.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
         self._state = self._implicit.split(reached.y)
-        self._may_lose /= 2
+        self._may_lose = 0.0
         self._amends = max(AMENDS * (self._costs.start + self._lost), 2.0 * self._amends)
         self._messages.append(
             f"projected again from t = {reached.t:.4g} s on, as bdf took shorter steps than they pay for"
@@ -195,9 +211,10 @@ class _Shared:
         """Whether what BDF has lost against explicit steps since it was last ahead of them is little beside what these still cost."""
         if self._is_breakpoint(reached.t):
             return True
-        spent, way = self._spent(), reached.t - self._pace.t
-        self._lost = max(self._lost + spent - self._before - way * self._explicit_cost, 0.0)
-        self._pace, self._before = _Pace(reached.t), spent
+        before, self._spent = self._spent, self._spent_up_to(reached.t)
+        taken = self._spent.since(before)
+        explicit = taken.t * self._explicit_cost + taken.restarts * cost.STEPS_OF_A_RESTART * self._explicit_step
+        self._lost = max(self._lost + taken.cost - explicit, 0.0)
         left = (self._grid.end - reached.t) * self._explicit_cost
         return self._lost <= self._costs.start + self._may_lose * left
 
@@ -206,12 +223,13 @@ class _Shared:
         breakpoints = self._dynamics.input_features(self._grid.start, self._grid.end).breakpoints
         return bool(np.any((breakpoints >= just_before(t)) & (breakpoints <= just_after(t))))
 
-    def _spent(self) -> float:
-        """What the implicit integrator has cost so far, but for the small steps after each of its starts at breakpoints and events."""
+    def _spent_up_to(self, t: float) -> _Spent:
+        """What the implicit integrator has taken so far."""
         assert self._implicit is not None
         counted = self._implicit.statistics()
-        small = cost.STEPS_OF_A_START * (int(counted["breakpoints"]) + int(counted["events"]))
-        return self._costs.work(int(counted["residuals"]), int(counted["jacobians"])) - small * self._costs.step
+        restarts = int(counted["breakpoints"]) + int(counted["events"])
+        work = self._costs.work(int(counted["residuals"]), int(counted["jacobians"]))
+        return _Spent(t, restarts, work)
 
     def _together(self) -> Trajectory:
         """The segments as one trajectory, and how it came about."""

@@ -3,40 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 import numpy as np
 
-from ..compile.equations import ABSENT, Equations
+from ..compile.equations import ABSENT
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from .algebraic_states import no_value_ahead, rates_of_algebraic
 from .dynamics import Dynamics
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
-from .error_control.precision import governed_by_rounding, too_fine
+from .error_control.precision import SLOW, governed_by_rounding, too_fine
 from .error_control.relaxation import relax
 from .events.chattering import Chattering
-from .events.divergence import refuse_beyond_sense
+from .events.divergence import FOLLOWED_STEPS, refuse_beyond_sense
 from .events.limits import refuse_beyond_limits
 from .events.long_steps import LongSteps
 from .events.masked import MaskedEvents
 from .events.restart import just_after, restarted_past, straight_on
-from .events.velocity_jumps import VelocityJumps
-from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
-from .ida.choice import chosen, dense_cost
-from .ida.engine import Engine, Reached
+from .events.velocity_jumps import WORTH_TELLING, VelocityJumps
+from .formulations import READ_BY_FORMULATIONS
+from .ida.choice import dense_cost, driven_by_callbacks, driven_natively
+from .ida.engine import Reached
 from .ida.libraries import available
-from .ida.native_engine import NativeEngine
-from .ida.sundae import SundaeEngine
 from .initial import InitialValues, rates_of
 from .solver import Traits
 from .step_logging import is_logged, log_step
 from .suspect import suspect
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
-SHORT = 8
-"""Stretches of a run before its counters are looked at: reading them costs as much as some steps."""
+MOST_PASSED = 64
+"""Breakpoints at which the integrator may start anew before it is heard of."""
 READ = ("formulation", "rtol", "atol", "max_step", "max_order")
 """Settings that it follows."""
 
@@ -77,20 +74,19 @@ def integrated(
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
-        for stretch, reached in enumerate(integrator.run(start, grid)):
+        for reached in integrator.run(start, grid, passing=pays is None and not is_logged()):
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
             if is_logged() and (step := integrator.engine.last_step()):
                 log_step(reached.t, *step)
             watch(reached.t)
             integrator.reached = reached
-            failure = _failure(integrator, reached) if reached.failure or stretch > SHORT else ""
-            if failure:
+            if failure := _failure(integrator, reached):
                 raise SolverError(f"stopped at t = {reached.t:.9g} s: {failure}")
             if pays and not pays(reached):
                 break
-            if reached.t < grid.end:
+            if reached.t < grid.end and integrator.steps() >= FOLLOWED_STEPS:
                 state = integrator.split(reached.y)
-                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *state, integrator.steps())
+                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *state)
     statistics = {**integrator.statistics(), "seconds": ending.seconds}
     history = integrator.engine.history()
     return Trajectory(
@@ -106,33 +102,15 @@ def integrated(
 
 def _failure(integrator: Integrator, reached: Reached) -> str:
     """Why a run ends where it has come; empty where it goes on."""
-    q, u = integrator.split(reached.y)
-    if governed_by_rounding(integrator.statistics()):
-        reason = too_fine(integrator.dynamics, integrator.settings, reached.t, q)
-        if reason:
-            return reason
-    if not reached.failure:
+    by_rounding = integrator.steps() > SLOW and governed_by_rounding(integrator.statistics())
+    if not (by_rounding or reached.failure):
         return ""
+    q, u = integrator.split(reached.y)
+    reason = too_fine(integrator.dynamics, integrator.settings, reached.t, q) if by_rounding else ""
+    if reason or not reached.failure:
+        return reason
     missing = no_value_ahead(integrator.dynamics, reached.t, q, u)
     return missing or reached.failure + suspect(integrator.dynamics, reached.t, q, u)
-
-
-def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
-    """The equations with their unknowns in the natural order."""
-    return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)
-
-
-def _native(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> tuple[Equations, Engine, float]:
-    """The native driver, where SUNDIALS' libraries are as it needs them, and the cost of its linear solver, ns."""
-    equations, matrix, cost = chosen(_natural(dynamics, settings))
-    return equations, NativeEngine(equations, dynamics, matrix, settings, control), cost
-
-
-def _through_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
-    """The driver by scikit-sundae's callbacks."""
-    equations = _natural(dynamics, settings)
-    tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # Newton's iteration stays as IDA has it
-    return equations, SundaeEngine(equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5)
 
 
 class Integrator:
@@ -164,11 +142,11 @@ class Integrator:
         native, reason = available()
         if native:
             self.equations, self.engine, cost = dynamics.kept(
-                memory, (settings, control), lambda: _native(dynamics, settings, control)
+                memory, (settings, control), lambda: driven_natively(dynamics, settings, control)
             )
             self.engine.forget()
         else:
-            self.equations, self.engine = _through_callbacks(dynamics, settings)
+            self.equations, self.engine = driven_by_callbacks(dynamics, settings)
             cost = dense_cost(self.equations.n)
             self._notes.append(
                 f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
@@ -191,8 +169,14 @@ class Integrator:
         (q,), (u,) = self.equations.states(y[None, self.equations.independent])
         return q, u
 
-    def run(self, start: InitialValues, grid: Grid) -> Iterator[Reached]:
-        """Where the integrator comes at the times of the grid, or after its steps; a failure comes last."""
+    def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
+        """Where the integrator comes at the times of the grid, or after its steps; a failure comes last.
+
+        Parameters
+        ----------
+        passing : bool
+            Whether it may start anew at breakpoints on the way to where it is heard of next.
+        """
         t = grid.start
         self._jumps.clear()
         features = self.dynamics.input_features(grid.start, grid.end)
@@ -200,31 +184,55 @@ class Integrator:
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._masked = MaskedEvents(self.dynamics, chattering)
-        for stop in (*grid.with_stops(features.breakpoints).tolist(), grid.end):
-            while just_after(t) < stop:
-                refuse_beyond_limits(self.dynamics, t, start.q, start.u)
-                self._begin(start, t)
-                chattering.begin(t, start.q, start.u)
-                for reached in self._segment(t, stop, grid):
-                    yield reached if not reached.failure else self._explained(reached)
-                    if reached.t < stop and not (reached.fired or reached.failure):
-                        chattering.look(reached.t, *self.split(reached.y), self.steps())
-                if reached.failure:
-                    return
-                if reached.fired:
-                    chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0])
-                before = t = reached.t
-                if t < grid.end:
-                    q, u = self.split(reached.y)
-                    if self._masked.any:
-                        self._masked.note(t, q, u, self.steps(), reached.fired)
-                    if t >= stop:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
-                        t = just_after(t)
-                    start, t = restarted_past(self.dynamics, t, q, u, self._ahead(reached, stop))
-                    self._jumps.note(before, start.u - u)
-                    yield from self._at_once(start, before, t, grid)
-                    self._events += before < stop
-                    self._breakpoints += before >= stop
+        ready: InitialValues | None = start
+        stops = [*grid.with_stops(features.breakpoints).tolist(), grid.end]
+        while stops:
+            if just_after(t) >= stops[0]:
+                del stops[0]
+                continue
+            if ready:
+                refuse_beyond_limits(self.dynamics, t, ready.q, ready.u)
+                self._begin(ready, t)
+                chattering.begin(t, ready.q, ready.u)
+            for reached in self._segment(t, stops[: MOST_PASSED if passing else 1], grid):
+                del stops[: reached.passed]
+                self._breakpoints += reached.passed
+                yield reached if not reached.failure else self._explained(reached)
+                if reached.t < stops[0] and not (reached.fired or reached.failure):
+                    chattering.look(reached.t, *self.split(reached.y), self.steps())
+            if reached.failure:
+                return
+            if reached.fired:
+                chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0])
+            before = t = reached.t
+            if t < grid.end:
+                q, u = self.split(reached.y)
+                if self._masked.any:
+                    self._masked.note(t, q, u, self.steps(), reached.fired)
+                if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
+                    t = just_after(t)
+                ready, t = self._anew(q, u, before, t, self._ahead(reached, stops[0]), chattering)
+                yield from self._at_once(before, t, grid)
+                self._events += before < stops[0]
+                self._breakpoints += before >= stops[0]
+
+    def _anew(
+        self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
+    ) -> tuple[InitialValues | None, float]:
+        """Go on at t from a state that was reached `before`, and past events on the way `ahead`: consistent values to start from, or None
+        where the engine has started, and their time."""
+        self.engine.leave_out(self._masked.steps)
+        begun = self.engine.begin_anew(q, u, t, ahead)
+        if begun is None:
+            start, t = restarted_past(self.dynamics, t, q, u, ahead)
+            self._jumps.note(before, start.u - u)
+            return start, t
+        state = self.dynamics.state
+        if begun.jump > WORTH_TELLING:
+            self._jumps.note(before, state.u - u)
+        if begun.meets:
+            chattering.begin(begun.t, state.q.copy(), state.u.copy())
+        return None, begun.t
 
     def _ahead(self, reached: Reached, stop: float) -> float:
         """How far beyond an event others that come with it are passed."""
@@ -251,23 +259,26 @@ class Integrator:
     def _explained(self, reached: Reached) -> Reached:
         """A failure in the words of the force that causes it, where it jumps back and forth."""
         jumping = self._masked.failed(reached.t, *self.split(reached.y))
-        return replace(reached, failure=jumping or reached.failure)
+        return reached._replace(failure=jumping or reached.failure)
 
-    def _segment(self, t: float, stop: float, grid: Grid) -> Iterator[Reached]:
-        """Integrate from t to `stop` or to the first event."""
+    def _segment(self, t: float, stops: list[float], grid: Grid) -> Iterator[Reached]:
+        """Integrate from t to the first stop or past it, or to the first event."""
         if grid.times is None:
-            return self.engine.by_steps(stop)
-        return self.engine.to_times(grid.within(just_after(t), stop), stop)
+            return self.engine.by_steps(stops[0])
+        return self.engine.to_times(grid.within(just_after(t), stops[-1]), stops)
 
-    def _at_once(self, start: InitialValues, before: float, t: float, grid: Grid) -> Iterator[Reached]:
-        """Output times that rounding alone keeps from t, as 0.1 s * 7 from a breakpoint at 0.7 s: the state at t is theirs.
+    def _at_once(self, before: float, t: float, grid: Grid) -> Iterator[Reached]:
+        """Output times that rounding alone keeps from t, as 0.1 s * 7 from a breakpoint at 0.7 s: theirs is the state at t, at hand.
 
         Those up to `before` have been given.
         """
         times = grid.within(before, just_after(t))
         if len(times):
-            state = self.equations.coordinates.state(start.q, start.u)
-            yield Reached(times, np.tile(state, (len(times), 1)), t, state)
+            y = np.zeros(self.equations.n)
+            y[self.equations.independent] = self.equations.coordinates.state(
+                self.dynamics.state.q, self.dynamics.state.u
+            )
+            yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
 
     def _begin(self, start: InitialValues, t: float) -> None:
         self.engine.leave_out(self._masked.steps)

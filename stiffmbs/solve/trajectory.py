@@ -82,7 +82,7 @@ class Grid:
         """The output times that lie after one time and not after another."""
         if self.times is None:
             return np.empty(0)
-        first, end = np.searchsorted(self.times, (after, until), side="right")
+        first, end = self.times.searchsorted((after, until), side="right")
         return self.times[first:end]
 
 

@@ -60,10 +60,23 @@ class InputFeatures:
             h = min(h, max(float(self.longest[k]), float(self.starts[k]) - t))
         return h
 
+    @cached_property
+    def _last_within(self) -> dict[tuple[float, float], InputFeatures]:
+        """Those that were asked for last, as runs of one job ask for the same."""
+        return {}
+
     def within(self, start: float, end: float) -> InputFeatures:
         """Those between two times."""
         if not len(self.starts) and not len(self.breakpoints):
             return self
+        found = self._last_within.get((start, end))
+        if found is None:
+            found = self._cut(start, end)
+            self._last_within.clear()
+            self._last_within[start, end] = found
+        return found
+
+    def _cut(self, start: float, end: float) -> InputFeatures:
         inside = (self.starts < end) & (self.ends > start)
         breakpoints = self.breakpoints[(self.breakpoints > start) & (self.breakpoints < end)]
         return InputFeatures(breakpoints, self.starts[inside], self.longest[inside], self.note)

@@ -52,7 +52,7 @@ class _Beside:
     def __init__(self, dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
         dynamics.state.load("event_function")
         self._dynamics, self.t, self.q, self.u = dynamics, t, q, u
-        self._direction = dynamics.kept("direction beside a state", None, lambda: _direction(len(q), len(u)))
+        self._direction = direction_of(dynamics)
         self._count = dynamics.system.n_event_functions
         self._there = np.empty(len(q))
         self._kept = np.ascontiguousarray(q, dtype=float), np.ascontiguousarray(u, dtype=float)
@@ -187,8 +187,13 @@ def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
     return bool(near > max(JUMPS * far, LEAST_JUMP))
 
 
+def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:
+    """The direction of moves to both sides of a state: every coordinate and velocity takes part in it."""
+    system = dynamics.system
+    return dynamics.kept("direction beside a state", None, lambda: _direction(system.n_q, system.n_u))
+
+
 def _direction(n_q: int, n_u: int) -> tuple[np.ndarray, np.ndarray]:
-    """A direction of moves that every coordinate and velocity takes part in."""
     rng = np.random.default_rng(1)
     first, second = (rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) for n in (n_q, n_u))
     return first, second

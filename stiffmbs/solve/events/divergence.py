@@ -23,8 +23,8 @@ INSTANTS = 2000
 """Of those stored, at which growth is looked at."""
 
 
-def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
-    """Stop a run that has diverged, after very many steps.
+def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray) -> None:
+    """Stop a run that has diverged; to be asked after `FOLLOWED_STEPS` alone.
 
     Parameters
     ----------
@@ -35,8 +35,6 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
         Where it is, s.
     q, u : ndarrays, shapes (n_q,), (n_u,)
         There.
-    steps : int
-        Taken so far.
 
     Raises
     ------
@@ -44,8 +42,6 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
         Where a body is faster than light, or the motion grows like an exponential beyond `UNBOUNDED_MOTION`; names the body and the
         element that pulls hardest.
     """
-    if steps < FOLLOWED_STEPS:
-        return
     system = dynamics.system
     speed, body = fastest(system, u)
     if speed > SPEED_OF_LIGHT:

@@ -42,7 +42,7 @@ class MaskedEvents:
         self._dynamics, self._chattering = dynamics, chattering
         n = dynamics.system.n_event_functions
         self.steps, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        self._steps = 0
+        self._steps, self._quiet = 0, True
 
     @property
     def any(self) -> bool:
@@ -57,8 +57,10 @@ class MaskedEvents:
         SolverError
             Where a force keeps jumping back and forth; names the element.
         """
-        left_behind = steps - self._steps > TIMES_THE_WAIT * self.steps + FEW_STEPS
-        self._steps = steps
+        since, self._steps = steps - self._steps, steps
+        if self._quiet and since > FEW_STEPS:  # none is left alone, and none comes soon
+            return
+        left_behind = since > TIMES_THE_WAIT * self.steps + FEW_STEPS
         self._in_succession[left_behind] = 0
         again = np.array(
             [event_function for event_function in fired if not left_behind[event_function]], dtype=np.int64
@@ -68,6 +70,7 @@ class MaskedEvents:
         if len(telling):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
         self.steps = np.where(self._in_succession, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 1, 0), 0)
+        self._quiet = not self._in_succession.any()
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Why the integrator could not go on, where a force that jumps is the reason; empty for other reasons."""

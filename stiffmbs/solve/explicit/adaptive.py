@@ -12,7 +12,7 @@ from ...errors import SolverError
 from ..algebraic_states import no_value_ahead
 from ..dynamics import Dynamics
 from ..events.chattering import Chattering
-from ..events.divergence import refuse_beyond_sense
+from ..events.divergence import FOLLOWED_STEPS, refuse_beyond_sense
 from ..events.limits import refuse_beyond_limits
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
@@ -135,8 +135,8 @@ class AdaptiveRun:
             if is_logged():
                 log_step(work.t, work.h)
             self._watch(work.t)
-            if work.t < self._grid.end:
-                refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u, work.count("steps"))
+            if work.t < self._grid.end and work.count("steps") >= FOLLOWED_STEPS:
+                refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u)
             if status == UNSTABLE:
                 stable_step.ask(work, self._grid.end)
                 status = PAUSED

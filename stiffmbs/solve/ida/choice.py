@@ -1,18 +1,25 @@
-"""Which linear solver a pattern gets: the one with the least estimated cost."""
+"""How IDA is driven, and which linear solver a pattern gets: the one with the least estimated cost."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ...compile.equations import Equations
+from ...describe.settings import RunSettings
+from ..dynamics import Dynamics
+from ..error_control.error_test import ErrorControl
+from ..formulations import FORMULATIONS
 from ..linear.elimination_order import EliminationOrder, elimination_order
 from .block_lu import BlockLU
+from .engine import Engine
 from .fixed_order import FixedOrder
 from .libraries import Unavailable, ida_libraries
 from .matrices import Banded, Dense, Matrix, Sparse
+from .native_engine import NativeEngine
 from .operations import replaceable
 from .ordering import narrowed
 from .paired_columns import PairedColumns
+from .sundae import SundaeEngine
 
 SOLUTIONS = 8
 """Solutions with one factorisation (measured: 7 to 20)."""
@@ -117,3 +124,23 @@ def _served(matrix: Matrix) -> bool:
     except Unavailable:
         return False
     return True
+
+
+def driven_natively(
+    dynamics: Dynamics, settings: RunSettings, control: ErrorControl
+) -> tuple[Equations, Engine, float]:
+    """The equations and their driver, where SUNDIALS' libraries are as it needs them, and the cost of its linear solver, ns."""
+    equations, matrix, cost = chosen(_natural(dynamics, settings))
+    return equations, NativeEngine(equations, dynamics, matrix, settings, control), cost
+
+
+def driven_by_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
+    """The equations and their driver by scikit-sundae's callbacks."""
+    equations = _natural(dynamics, settings)
+    tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # Newton's iteration stays as IDA has it
+    return equations, SundaeEngine(equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5)
+
+
+def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
+    """The equations with their unknowns in the natural order."""
+    return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)

@@ -14,7 +14,7 @@ from ..dynamics import Dynamics
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog
 from ..events.step_bound import StepBound
-from ..native.tables.steps import LONG_STEPS, MOST_STEPS, NATIVE_IDA, SAMPLES
+from ..native.tables.steps import HISTORY_ROWS, LONG_STEPS, NATIVE_IDA, SAMPLES
 from .error_norm import ErrorNorm
 from .iteration import Iteration
 from .matrices import Matrix
@@ -102,7 +102,7 @@ class Connection:
 
     def _packed(self) -> np.ndarray:
         functions = {name: self._session.libraries.address(function) for name, function in FUNCTIONS.items()}
-        history, formulation = self.history.rows(MOST_STEPS), self._equations.formulation
+        history, formulation = self.history.rows(HISTORY_ROWS), self._equations.formulation
         for term_set in (formulation.residual_set, formulation.matrix_set):
             self._state.load(term_set)
         self._equations_table, self._slots = self._equations.table(self._assembled.slots)
@@ -208,7 +208,6 @@ class Connection:
 
     def run(self, loop: Routine, *arguments: Any) -> int:
         """Call a compiled loop and keep the history of the call; returns IDA's last flag."""
-        with self._session.call():
-            flag = loop.call(*arguments, self.table)
+        flag: int = self._session.call(loop.call, *arguments, self.table)
         self.history.add(int(self.cells["recorded"]))
         return flag

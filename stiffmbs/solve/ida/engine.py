@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,10 +13,10 @@ from ..trajectory import History
 
 if TYPE_CHECKING:
     from ..initial import InitialValues
+    from .starting.anew import Begun
 
 
-@dataclass(frozen=True)
-class Reached:
+class Reached(NamedTuple):
     """Where an integrator has come since it was last heard of.
 
     Attributes
@@ -32,6 +31,8 @@ class Reached:
         The event functions that stopped it by changing their sign; empty where none did.
     failure : str
         Why it cannot go on; empty where it can.
+    passed : int
+        Breakpoints at which it started anew on the way.
     """
 
     times: np.ndarray
@@ -40,6 +41,7 @@ class Reached:
     y: np.ndarray
     fired: tuple[int, ...] = ()
     failure: str = ""
+    passed: int = 0
 
 
 class Engine(Protocol):
@@ -64,8 +66,15 @@ class Engine(Protocol):
     def begin_at(self, start: InitialValues, t: float) -> bool:
         """The same by one call that finds all of that; False, with nothing started, where it does not serve."""
 
-    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
+        """Start anew at consistent values behind a state in the middle of a run, and where a straight way `ahead` (s) meets other events,
+        behind these; None, with nothing started, where that does not serve."""
+
+    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Integrate to the first stop or to a later one, and report at times up to there; ends early at an event or a failure.
+
+        Stops that it passes are told by `passed`: it has started anew there.
+        """
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""

@@ -9,13 +9,12 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import address
+from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 from ..error_control.error_test import ErrorControl
-from ..error_control.newton import Stiffness
 from ..events.long_steps import LongStepLog
 from ..native.statuses import ROOT_RETURN, STOP_RETURN
 from ..native.tables.steps import MOST_STEPS
@@ -27,10 +26,15 @@ from .status import Status, failure_sentence
 from .step_log import StepLog
 
 if TYPE_CHECKING:
-    from ..initial import InitialValues
-    from .starts import Starts
+    from .starting.anew import StartsAnew
+    from .starting.starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
+ADVANCE_PAST = Routine(
+    "stiffmbs.solve.ida.native.passing",
+    "advance_past",
+    "int32(int64, float64*, int64, float64*, int64, int64, float64*, int64*, int64*)",
+)
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
 LONGEST_CALL, STEP_TIME = 0.1, 1e-7
@@ -141,6 +145,11 @@ class NativeIda:
             ida.take_own_convergence_test()
 
     @property
+    def begun(self) -> bool:
+        """Whether it was started since it was made or told to forget."""
+        return self._begun
+
+    @property
     def t(self) -> float:
         """Time of the solution in `y`, s."""
         return float(self._ida.cells["returned"])
@@ -178,6 +187,11 @@ class NativeIda:
         rows: np.ndarray = self._trace[: int(self._ida.cells["traced"])].copy()
         self._ida.cells["traced"] = 0
         return rows
+
+    @property
+    def may_pass(self) -> bool:
+        """Whether `advance_past` serves: steps are not kept, and memory to correct states within long steps is there."""
+        return self._ida.output_correction.ready and not len(self._trace)
 
     def look_after(self, steps: int) -> None:
         """Have the next call of `advance` or `steps` return after so many steps at the latest."""
@@ -240,21 +254,16 @@ class NativeIda:
         self._ida.begin(t)
         self._begun, self._flag = True, 0
 
-    def begin_by(
-        self, starts: Starts, start: InitialValues, t: float, highest_order: int
-    ) -> tuple[Stiffness, float] | None:
-        """Start, or start again, by a compiled start; what that returns."""
-        found = starts.begin(start, t, self._begun, highest_order)
-        if found:
-            self.history.begin(t)
-            self._begun, self._flag = True, 0
-        return found
+    def begun_at(self, t: float) -> None:
+        """Take note that a compiled start has started it, or started it again."""
+        self.history.begin(t)
+        self._begun, self._flag = True, 0
 
     def starts(
         self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
     ) -> Starts | None:
         """Compiled starts; None where they do not serve."""
-        from .starts import Starts
+        from .starting.starts import Starts
 
         if not Starts.serve(dynamics):
             return None
@@ -288,6 +297,17 @@ class NativeIda:
         self._ida.ask("IDASetStopTime", stop)
         derivatives = 0 if yp_out is None else address(yp_out)
         self._run(ADVANCE, len(times), address(times), stop, min(self._pace, self._look), address(y_out), derivatives)
+        return int(self._ida.cells["served"]), self._status()
+
+    def advance_past(
+        self, anew: StartsAnew, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
+    ) -> tuple[int, Status]:
+        """Go on as `advance` does towards the first of some stops, and past it to the others, where `anew` may pass them."""
+        times = np.ascontiguousarray(times, dtype=float)
+        self._check_rows(y_out, len(times))
+        most = min(self._pace, self._look)
+        at_times, at_stops, at_rows = addresses(times, stops, y_out)
+        self._run(ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, anew.table)
         return int(self._ida.cells["served"]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
@@ -329,7 +349,7 @@ class NativeIda:
         if self._ida.cells["within"]:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
         found = np.zeros(self.n_event_functions, dtype=np.intc)
-        self._ida.ask("IDAGetRootInfo", found.ctypes.data)
+        self._ida.ask("IDAGetRootInfo", address(found))
         return found * self._ida.signs.astype(np.intc)
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -25,8 +25,9 @@ from .status import Status
 
 if TYPE_CHECKING:
     from ..initial import InitialValues
-    from .restarts import Restarts
-    from .starts import Starts
+    from .starting.anew import Begun, StartsAnew
+    from .starting.restarts import Restarts
+    from .starting.starts import Starts
 
 ROWS_OF_STEPS = 1000
 """Room for rows in one call that reports every step."""
@@ -102,11 +103,26 @@ class NativeEngine:
             self._started = True
             return False
         self._ida.filter_always(self._order.held)
-        found = self._ida.begin_by(self._starts, start, t, self._order.order)
+        if not self._starts.begin(start, t, self._ida.begun, self._order.order):
+            return False
+        self._take_up(self._starts, t)
+        return True
+
+    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
+        """Start anew at consistent values behind a state, by one compiled call."""
+        if self._starts is None or self._starts_anew is None:
+            return None
+        self._ida.filter_always(self._order.held)
+        found = self._starts_anew.begin((q, u), t, ahead, self._ida.begun, self._order.order)
         if found:
-            self._stiffness, self._newton = found
-            self._follow_stiffness(t)
-        return found is not None
+            self._take_up(self._starts, found.t)
+        return found
+
+    def _take_up(self, starts: Starts, t: float) -> None:
+        """Go on from a compiled start."""
+        self._ida.begun_at(t)
+        self._stiffness, self._newton = starts.found()
+        self._follow_stiffness(t)
 
     def _follow_stiffness(self, t: float) -> None:
         """Correct states within long steps, and look at vibrations, by the stiffness at a start."""
@@ -140,20 +156,38 @@ class NativeEngine:
                 self._ida.t, self._ida.y.copy(), self._ida.yp.copy(), eased, self._stiffness
             )  # IDA reads it at a start alone
 
-    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
-        status, served = Status.GOING, 0
+    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Integrate to the first stop or to a later one, and report at times up to there; ends early at an event or a failure."""
+        status, served, passed = Status.GOING, 0, 0
+        anew = self._starts_anew if len(stops) > 1 else None
+        if anew is None or not (anew.may_pass and self._ida.may_pass):
+            anew, stops = None, stops[:1]
+        times = times[: times.searchsorted(stops[-1], side="right")]
         while status is Status.GOING:
-            times = times[served:]
+            times, stops = times[served:], stops[passed:]
             rows = allocated(len(times), self._width)
-            served, status = self._ida.advance(times, stop, rows)
+            served, status, passed = self._advance(anew, times, stops, rows)
             *earlier, last = list(blocks(served)) or [slice(0, 0)]
             for block in earlier:
                 yield self._reached(times[block], rows[block], Status.GOING)
                 release(rows)
-            yield self._reached(times[last], rows[last], status)
+            yield self._reached(times[last], rows[last], status, passed)
             if status is Status.GOING:
-                self._adapt(stop)
+                self._adapt(stops[passed])
+
+    def _advance(
+        self, anew: StartsAnew | None, times: np.ndarray, stops: Sequence[float], rows: np.ndarray
+    ) -> tuple[int, Status, int]:
+        """Go on to the first stop, or past it by `anew`; the output times served, how it ended, and the stops that were passed."""
+        if anew is None:
+            return *self._ida.advance(times, stops[0], rows), 0
+        before = self._ida.history.count
+        served, status = self._ida.advance_past(anew, times, np.array(stops), self._order.order, rows)
+        passed, steps = anew.passed
+        if passed:
+            self._stiffness, self._newton = anew.starts.found()
+            self._order.begin(anew.t, before + steps, float(np.sqrt(self._stiffness.of_positions)))
+        return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
@@ -165,10 +199,10 @@ class NativeEngine:
             if status is Status.GOING:
                 self._adapt(stop)
 
-    def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status) -> Reached:
+    def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status, passed: int = 0) -> Reached:
         failure = f"{self._ida.failure()}{self._worst()}" if status is Status.FAILED else ""
-        fired = tuple(map(int, np.flatnonzero(self._ida.roots()))) if status is Status.ROOT else ()
-        return Reached(times, rows, self._ida.t, self._ida.y, fired, failure)
+        fired = tuple(self._ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
+        return Reached(times, rows, self._ida.t, self._ida.y, fired, failure, passed)
 
     def _worst(self) -> str:
         """Where the last step's error, or the last correction of Newton's iteration, was largest; nothing where that is not known."""
@@ -183,7 +217,7 @@ class NativeEngine:
 
     def restarts(self, dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> Restarts | None:
         """Compiled starts of this integrator from the state in q and u; None where they do not serve."""
-        from .restarts import Restarts
+        from .starting.restarts import Restarts
 
         if self._starts is None or not Restarts.serve(dynamics.system, self._ida.connection):
             return None
@@ -193,6 +227,14 @@ class NativeEngine:
     def _starts(self) -> Starts | None:
         """Compiled starts; None where they do not serve."""
         return self._make_starts()
+
+    @cached_property
+    def _starts_anew(self) -> StartsAnew | None:
+        """Compiled starts in the middle of a run; None where they do not serve."""
+        from .starting.anew import StartsAnew
+
+        least = NUMBERS_END / self._rtol
+        return StartsAnew(self._starts, self._dynamics, least) if self._starts else None
 
     def at(self, t: float) -> np.ndarray:
         """All unknowns at a time within the last step."""

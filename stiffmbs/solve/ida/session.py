@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
@@ -51,13 +51,16 @@ class Session:
         """Note routines that a linear solver may ask for."""
         self._needed.append(routines)
 
-    @contextmanager
-    def call(self) -> Iterator[None]:
-        """Around a call of compiled code: libraries on one thread; raises afterwards what kept a routine from being compiled."""
-        with self.libraries.on_one_thread():
-            yield
+    def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Call compiled code, libraries on one thread; raises afterwards what kept a routine from being compiled."""
+        if self.libraries.may_start_threads:
+            with self.libraries.on_one_thread():
+                found = function(*arguments)
+        else:
+            found = function(*arguments)
         for routines in self._needed:
             routines.raise_fault()
+        return found
 
     def vector(self, values: np.ndarray) -> int:
         """An N_Vector whose values are those of an array, which must live as long."""

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -199,8 +198,13 @@ class SundaeEngine:
         """There is no such call of scikit-sundae."""
         return False
 
-    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report at times up to there; ends early at an event or a failure."""
+    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> None:
+        """Nor one for that."""
+
+    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Integrate to the first stop and report at times up to there; ends early at an event or a failure."""
+        stop = stops[0]
+        times = times[times <= stop]
         ends_there, served = len(times) > 0 and times[-1] == stop, 0
         while served < len(times):
             reached = self._several(times[served : served + TOGETHER], stop)
@@ -228,7 +232,7 @@ class SundaeEngine:
                 served += 1
         except KeyboardInterrupt:  # what was computed is handed over first
             self._interrupted = True
-        return replace(self._reached(last, False), times=times[:served], rows=rows[:served])
+        return self._reached(last, False)._replace(times=times[:served], rows=rows[:served])
 
     def _to(self, time: float, stop: float) -> Any:
         """Integrate to a time, over the stops that inputs ask for on the way to `stop`."""

@@ -34,6 +34,8 @@ class Eliminated:
         Whether the system is of the kind: no force depends on multipliers or algebraic states, and the factors stay sparse.
     pivots_tell : bool
         Whether pivots tell how near to singular a pose is: it serves, and no inertia is so small that it decides about them.
+    multiplications : int
+        Of the elimination.
     table : ndarray of int
         Addresses (`stiffmbs.solve.native.tables.linear.ELIMINATED`), zeros where it does not serve.
     """
@@ -49,7 +51,8 @@ class Eliminated:
         order = [joint for joint in _balanced_order(bodies, len(rows)) if len(rows[joint])]
         joints = Joints([rows[joint] for joint in order], [bodies.get(joint, []) for joint in order])
         hanging = len(system.term("acceleration", "f_lam").source)
-        few = joints.updates <= MOST_UPDATES_PER_ENTRY * max(len(kept), 1)
+        self.multiplications = joints.updates
+        few = self.multiplications <= MOST_UPDATES_PER_ENTRY * max(len(kept), 1)
         self.serves = not hanging and not system.algebraic.any() and few
         resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
         self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))

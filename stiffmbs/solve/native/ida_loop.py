@@ -209,34 +209,45 @@ def _served(c, times, count, y_out, yp_out):
     return flag
 
 
-def advance(count, times, stop, most, y_out, yp_out, ida):
-    """At most `most` steps, and as many as the history holds, towards `stop`, serving output times on the way; returns IDA's last flag.
+@compiled
+def advanced(c, ida, count, times, stop, most, y_out, yp_out):
+    """At most `most` steps towards `stop`, serving output times on the way; returns IDA's last flag.
 
     The first step's size follows from the distance to the first output time, as in IDA's own mode for them.
     """
-    c = native_ida_view(ida)
     c.stopping = stop
-    c.served = 0
-    c.recorded = 0
-    c.traced = 0
     flag = _served(c, times, count, y_out, yp_out)
     for _ in range(min(most, MOST_STEPS)):
         if flag != OK:
             break
-        flag = stepped(c, ida, times[c.served] if c.served < count else stop, stop)
+        toward = times[c.served] if c.served < count else stop
+        flag = stepped(c, ida, min(toward, stop), stop)
         if flag >= 0:
             outcome = _served(c, times, count, y_out, yp_out)
             flag = outcome if outcome < 0 else flag
     return int32(flag)
 
 
+@compiled
+def clear_call(c):
+    """Nothing is served, recorded or kept in this call yet."""
+    c.served = 0
+    c.recorded = 0
+    c.traced = 0
+
+
+def advance(count, times, stop, most, y_out, yp_out, ida):
+    """`advanced` from Python."""
+    c = native_ida_view(ida)
+    clear_call(c)
+    return advanced(c, ida, count, times, stop, most, y_out, yp_out)
+
+
 def steps(most, stop, t_out, y_out, ida):
     """At most `most` steps towards `stop`, each of them reported; returns IDA's last flag."""
     c = native_ida_view(ida)
     c.stopping = stop
-    c.served = 0
-    c.recorded = 0
-    c.traced = 0
+    clear_call(c)
     flag = int32(OK)
     while flag == OK and c.served < min(most, MOST_STEPS):
         flag = stepped(c, ida, stop, stop)

@@ -110,25 +110,21 @@ class VariationalEquations:
             When the matrix of a step is singular.
         """
         rows = np.ascontiguousarray(rows)
-        with self._session.call():
-            done = ADVANCE.call(len(rows), rows.ctypes.data, self._at)
+        done = self._session.call(ADVANCE.call, len(rows), rows.ctypes.data, self._at)
         if done < len(rows):
             raise _singular(rows[done, 0])
 
     def within(self, row: np.ndarray) -> np.ndarray:
         """s at a time behind the last step, shape (directions, n); `row` is as for `advance`."""
         out, row = np.empty((self._count, self.equations.n)), np.ascontiguousarray(row)
-        with self._session.call():
-            flag = WITHIN.call(row.ctypes.data, out.ctypes.data, self._at)
-        if flag:
+        if self._session.call(WITHIN.call, row.ctypes.data, out.ctypes.data, self._at):
             raise _singular(row[0])
         return out
 
     def defects(self, row: np.ndarray, s: np.ndarray) -> np.ndarray:
         """r_y s + r_p at a state, shape (directions, n)."""
         out, row, given = np.empty_like(s), np.ascontiguousarray(row), np.ascontiguousarray(s)
-        with self._session.call():
-            DEFECTS.call(row.ctypes.data, given.ctypes.data, out.ctypes.data, self._at)
+        self._session.call(DEFECTS.call, row.ctypes.data, given.ctypes.data, out.ctypes.data, self._at)
         return out
 
     @property

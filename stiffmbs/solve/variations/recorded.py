@@ -99,8 +99,8 @@ class Recorder(Integrator):
             state.evaluate("event_function", t)
             return float(state.values["event_function"][event])
 
-    def run(self, start: InitialValues, grid: Grid) -> Iterator[Reached]:
-        """As of any integrator; the steps are in `segments` afterwards."""
+    def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
+        """As of any integrator, but that none of its breakpoints is passed; the steps are in `segments` afterwards."""
         self.native.keep_steps(True)
         try:
             for reached in super().run(start, grid):

@@ -7,6 +7,8 @@ import stiffmbs
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.bdf import Integrator
 from stiffmbs.solve.events.restart import restarted
+from stiffmbs.solve.ida.ida import NativeIda
+from stiffmbs.solve.ida.native_engine import NativeEngine
 
 SCENES = {
     "half_car": {"formulation": "SI1"},
@@ -59,25 +61,48 @@ def test_a_compiled_start_leaves_the_same_numbers(name, examples):
         np.testing.assert_array_equal(one, other)
 
 
-@pytest.mark.parametrize("name", ["half_car", "bouncing_ball"])
-def test_a_run_of_compiled_starts_is_the_run_of_starts_by_python(name, examples, monkeypatch):
+@pytest.mark.parametrize("name", ["half_car", "bouncing_ball", "cam_follower"])
+@pytest.mark.parametrize("starts", [("begin_anew", None), ("begin_anew", None, "begin_at", False)])
+def test_a_run_of_compiled_starts_is_the_run_of_starts_by_python(name, starts, examples, monkeypatch):
     job = prepare(stiffmbs.load_scene(examples / f"{name}.yaml"), solver="bdf", duration=1.0)
     job.integrate()
-    done, begin_at = [], type(Integrator(job.dynamics, job.settings).engine).begin_at
+    done, begin_anew = [], NativeEngine.begin_anew
 
     def noted(*arguments):
-        done.append(begin_at(*arguments))
+        done.append(begin_anew(*arguments))
         return done[-1]
 
-    engine = "stiffmbs.solve.ida.native_engine.NativeEngine.begin_at"
-    monkeypatch.setattr(engine, noted)
+    monkeypatch.setattr(NativeIda, "may_pass", False)
+    monkeypatch.setattr(NativeEngine, "begin_anew", noted)
     found = job.integrate()
     assert len(done) > 1 and all(done)
-    monkeypatch.setattr(engine, lambda *arguments: False)
+    for name, outcome in zip(starts[::2], starts[1::2], strict=True):
+        monkeypatch.setattr(NativeEngine, name, lambda *arguments, outcome=outcome: outcome)
     expected = job.integrate()
     for name in ("t", "q", "u", "step_times"):
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
     assert {**found.statistics, "seconds": 0} == {**expected.statistics, "seconds": 0}
+    assert found.note == expected.note
+
+
+def test_what_was_counted_before_a_start_that_is_left_to_python_counts_once(examples, monkeypatch):
+    job = prepare(stiffmbs.load_scene(examples / "half_car.yaml"), solver="bdf", duration=1.0)
+    job.integrate()
+    expected = job.integrate().statistics
+    engine = Integrator(job.dynamics, job.settings).engine
+    begin_anew = NativeEngine.begin_anew
+
+    def without_end(*arguments):
+        scales = engine._starts._kept[0]["f_q_scale"]
+        kept, scales[:] = scales.copy(), 0.0  # the stiffness is infinite
+        found = begin_anew(*arguments)
+        scales[:] = kept
+        assert found is None
+        return found
+
+    monkeypatch.setattr(NativeIda, "may_pass", False)
+    monkeypatch.setattr(NativeEngine, "begin_anew", without_end)
+    assert {**job.integrate().statistics, "seconds": 0} == {**expected, "seconds": 0}
 
 
 def test_infinite_stiffness_is_left_to_python(examples):
@@ -88,3 +113,63 @@ def test_infinite_stiffness_is_left_to_python(examples):
     assert engine.begin_at(job.start, 0.0)
     engine._starts._kept[0]["f_q_scale"][:] = 0.0
     assert not engine.begin_at(job.start, 0.0)
+
+
+def hopping(times):
+    """A block on a spring, pushed by a force with a corner at each of some times."""
+    force = " + ".join(f"max(0, t - {t!r})" for t in times)
+    return stiffmbs.read_scene(
+        f"""
+bodies:
+  block: {{mass: 1, inertia: 1, position: [0, 0]}}
+joints:
+  rail: {{type: prismatic, i: block, j: ground}}
+forces:
+  spring: {{type: force, i: block, force: ["20*({force}) - 400*dx(block) - vx(block)", 0]}}
+"""
+    )
+
+
+def both_ways(job, monkeypatch):
+    """The run that passes breakpoints in one call, and the one that comes back to Python at each; how many were passed."""
+    job.integrate()
+    found, passed = job.integrate(), []
+    advance_past = NativeIda.advance_past
+
+    def counted(ida, anew, *arguments):
+        result = advance_past(ida, anew, *arguments)
+        passed.append(anew.passed[0])
+        return result
+
+    monkeypatch.setattr(NativeIda, "advance_past", counted)
+    job.integrate()
+    monkeypatch.setattr(NativeIda, "may_pass", False)
+    expected = job.integrate()
+    for name in ("t", "q", "u", "step_times"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+    np.testing.assert_array_equal(found.history.order, expected.history.order)
+    assert {**found.statistics, "seconds": 0} == {**expected.statistics, "seconds": 0}
+    assert found.note == expected.note and found.message == expected.message
+    return found, sum(passed)
+
+
+@pytest.mark.parametrize(("rtol", "expected"), [(1e-3, 3), (1e-9, 2)])
+def test_breakpoints_are_passed_in_one_call_with_the_same_numbers(examples, rtol, expected, monkeypatch):
+    """As long as there are rows for the steps of one call."""
+    job = prepare(stiffmbs.load_scene(examples / "half_car.yaml"), solver="bdf", duration=1.0, rtol=rtol)
+    found, passed = both_ways(job, monkeypatch)
+    assert found.statistics["breakpoints"] == 3 and passed == expected
+
+
+def test_many_breakpoints_are_passed_in_a_few_calls(monkeypatch):
+    times = [0.01 * k for k in range(1, 100)]
+    found, passed = both_ways(prepare(hopping(times), solver="bdf", duration=1.0, rtol=1e-6), monkeypatch)
+    assert found.statistics["breakpoints"] == 99
+    assert passed > 90
+
+
+def test_an_output_time_a_rounding_behind_a_breakpoint_is_left_to_python(monkeypatch):
+    """0.01 s * 70 is above 0.7 s by one rounding."""
+    job = prepare(hopping([0.2, 0.7]), solver="bdf", duration=1.0, rtol=1e-6, output=0.01)
+    found, passed = both_ways(job, monkeypatch)
+    assert (found.statistics["breakpoints"], passed, len(found.t)) == (2, 1, 101)

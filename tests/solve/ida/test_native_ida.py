@@ -62,7 +62,7 @@ class Problem:
     def through_scikit_sundae(self, times):
         ida = SundaeEngine(self.equations, State(self.system), self.rtol, self.atol, max_step=0.0)
         ida.begin(0.0, self.y, self.yp, newton=0.33, stiffness=Stiffness(0.0, 0.0))
-        blocks = [(reached.rows.copy(), reached.y.copy()) for reached in ida.to_times(times, times[-1])]
+        blocks = [(reached.rows.copy(), reached.y.copy()) for reached in ida.to_times(times, times[-1:])]
         return np.concatenate([rows for rows, _ in blocks]), blocks[-1][1], ida
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, ints, state_view, view_of
 from stiffmbs.compile.machine.native.evaluate import load
-from stiffmbs.solve.ida.native.start import UNFINISHED, start_view, started
+from stiffmbs.solve.ida.native.start import UNFINISHED, begun, prepared, start_view
 from stiffmbs.solve.native.calls import call_int, int32
 from stiffmbs.solve.native.dynamics import to_accelerations, to_position_constraints, to_velocity_constraints
 from stiffmbs.solve.native.explicit.stages import copied
-from stiffmbs.solve.native.ida_loop import stepped
+from stiffmbs.solve.native.ida_loop import clear_call, stepped
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK, STOP_RETURN
 from stiffmbs.solve.native.tables.steps import MOST_STEPS, RESTART
@@ -21,15 +21,19 @@ restart_view = view_of("Restart", RESTART)
 
 
 @compiled
-def _consistent(s, m, t):
-    """The state at hand on the constraints, with new accelerations and multipliers; 0 or a negative status."""
+def brought_back(s, m, t):
+    """The state at hand on the constraints; 0 or a negative status."""
     if s.n_c > 0:
         status = to_position_constraints(s, m, t, POSITION_TOLERANCE, MOST_MOVES)
         if status < 0:
             return status
-        status = to_velocity_constraints(s, m, t)
-        if status < 0:
-            return status
+        return to_velocity_constraints(s, m, t)
+    return 0
+
+
+@compiled
+def accelerated(s, m, t):
+    """New accelerations and multipliers of the state at hand; 0 or a negative status."""
     status = to_accelerations(s, m, t)
     if status < 0:
         return status
@@ -49,15 +53,13 @@ def restart(t, end, restarts):
     e = equations_view(c.equations)
     copied(s.q, w.q, s.n_q)
     copied(s.u, w.u, s.n_u)
-    if _consistent(s, m, t) < 0:
+    if brought_back(s, m, t) < 0 or accelerated(s, m, t) < 0:
         return int32(UNFINISHED)
-    if started(b, s, m, e, c, t) < 0:
+    if prepared(b, s, m, e, c, t) < 0 or begun(b, c, t) < 0:
         return int32(UNFINISHED)
     call_int(c.stop_at, (c.memory, end))
     c.stopping = end
-    c.served = 0
-    c.recorded = 0
-    c.traced = 0
+    clear_call(c)
     flag = int32(OK)
     for _ in range(MOST_STEPS):
         if flag != OK:

@@ -96,8 +96,8 @@ def _look_at_stiffness(w, s, t):
 
 
 @compiled
-def _begin(w, c, t):
-    """Start IDA anew, as `stiffmbs.solve.ida.ida.NativeIda.begin` does; OK, or a flag below zero."""
+def begun(w, c, t):
+    """Start IDA at the unknowns that are prepared, as `stiffmbs.solve.ida.ida.NativeIda.begin` does; OK, or a flag below zero."""
     call_int(w.set_newton, (c.memory, w.newton))
     flag = call_int(w.start_anew, (c.memory, t, c.y, c.yp))
     call_int(w.set_first_step, (c.memory, 0.0))
@@ -129,8 +129,8 @@ def _begin(w, c, t):
 
 
 @compiled
-def started(w, s, m, e, c, t):
-    """Start IDA at the consistent state at hand, with its accelerations and multipliers; OK or a negative number.
+def prepared(w, s, m, e, c, t):
+    """Make ready for a start at the consistent state at hand, with its accelerations and multipliers; OK or a negative number.
 
     Rates behind those of bodies are read from the terms of accelerations, which have to be those of this state.
     """
@@ -140,12 +140,18 @@ def started(w, s, m, e, c, t):
         w.rate[k] = 0.0
     add_rates(s, s.u, 1.0, w.rate)
     add_rates_behind(s, m, 1.0, w.rate)
-    _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
     _relax(w, s, t)
     _look_at_stiffness(w, s, t)
     if not isfinite(w.of_positions + w.of_velocities):
         return UNFINISHED
-    return _begin(w, c, t)
+    _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
+    return OK
+
+
+@compiled
+def keep_counters(w, c):
+    """Keep what IDA has counted, as its start sets that to zero."""
+    add_counters(w.n_counters, w.counter, c.memory, w.count, w.counts)
 
 
 def start(t, counted, highest_order, table):
@@ -159,9 +165,11 @@ def start(t, counted, highest_order, table):
     c = native_ida_view(ints(w.ida))
     if m.n_behind > 0:
         evaluate(s, ACCELERATION, t)
+    if prepared(w, s, m, equations_view(c.equations), c, t) < 0:
+        return int32(UNFINISHED)
     if counted:
-        add_counters(w.n_counters, w.counter, c.memory, w.count, w.counts)
-    if started(w, s, m, equations_view(c.equations), c, t) < 0:
+        keep_counters(w, c)
+    if begun(w, c, t) < 0:
         return int32(UNFINISHED)
     call_int(w.set_highest_order, (c.memory, int32(highest_order)))
     return int32(OK)

@@ -25,12 +25,12 @@ def _passed(s, t, ahead, q, count, values):
     return passed
 
 
-def gone_past(t, most, count, q, values, dynamics):
+@compiled
+def moved_past(s, t, most, count, q, values):
     """Move the state at hand straight on, for so long at the most, to where event functions that change on that way have changed.
 
     How long that takes; 0 with the state as it was where none changes.  Memory: `q` for positions, `values` for event functions.
     """
-    s = state_view(dynamics_view(dynamics).state)
     copied(q, s.q, s.n_q)
     copied(values, evaluate(s, SWITCH, t), count)
     passed = _passed(s, t, most, q, count, values)
@@ -42,3 +42,8 @@ def gone_past(t, most, count, q, values, dynamics):
         ahead *= SHORTER
     _passed(s, t, ahead, q, count, values)
     return ahead
+
+
+def gone_past(t, most, count, q, values, dynamics):
+    """`moved_past` from Python."""
+    return moved_past(state_view(dynamics_view(dynamics).state), t, most, count, q, values)

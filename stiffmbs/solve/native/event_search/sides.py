@@ -19,9 +19,9 @@ def _take(s, size, q, u, along_q, along_u):
         s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
 
 
-def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
+@compiled
+def crossing(s, t, size, q, u, along_q, along_u, count, found):
     """Which of the first `count` event functions differ in sign between the two sides of a move; how many."""
-    s = state_view(dynamics_view(dynamics).state)
     _take(s, size, q, u, along_q, along_u)
     values = evaluate(s, SWITCH, t)
     for k in range(count):
@@ -36,6 +36,11 @@ def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
     return total
 
 
+def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
+    """`crossing` from Python."""
+    return crossing(state_view(dynamics_view(dynamics).state), t, size, q, u, along_q, along_u, count, found)
+
+
 def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
     """The first `count` event functions at a moved state, in `values`."""
     s = state_view(dynamics_view(dynamics).state)
@@ -43,9 +48,9 @@ def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
     copied(values, evaluate(s, SWITCH, t), count)
 
 
-def by_velocities(t, size, q, u, along_u, count, found, dynamics):
+@compiled
+def following_velocities(s, t, size, q, u, along_u, count, found):
     """Which of the first `count` event functions change at all with velocities at a state."""
-    s = state_view(dynamics_view(dynamics).state)
     copied(s.q, q, s.n_q)
     for k in range(s.n_u):
         s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
@@ -54,6 +59,11 @@ def by_velocities(t, size, q, u, along_u, count, found, dynamics):
     values = evaluate(s, SWITCH, t)
     for k in range(count):
         found[k] = found[k] != values[k]
+
+
+def by_velocities(t, size, q, u, along_u, count, found, dynamics):
+    """`following_velocities` from Python."""
+    following_velocities(state_view(dynamics_view(dynamics).state), t, size, q, u, along_u, count, found)
 
 
 def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):

@@ -65,8 +65,8 @@ last step, size of the one that it will try next; where it was last told to stop
 was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
 of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call; the time for which the state holds the values of event functions."""
 
-MOST_STEPS, HISTORY_WIDTH = 2048, 3
-"""Steps of any one call, and rows of the history: time of the end, order, size."""
+MOST_STEPS, HISTORY_ROWS, HISTORY_WIDTH = 2048, 4096, 3
+"""Steps of any one call up to a breakpoint, and of all that it passes, which the history has rows for: time of the end, order, size."""
 
 SAMPLES = 16
 """Rows of the samples: the time and what is reported."""
@@ -91,6 +91,19 @@ iteration may leave."""
 
 RESTART = Layout({"start": INTS, "q": FLOATS, "u": FLOATS})
 """What IDA is started anew with behind a jump of inputs (`stiffmbs.solve.ida.native.restart`): the state from one call to the next."""
+
+ANEW = Layout({
+    "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
+    "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,
+    "t": FLOAT_CELL, "jump": FLOAT_CELL, "meets": INT_CELL,
+    "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "indistinct": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
+})  # fmt: skip
+"""What IDA is started anew with behind an event or a breakpoint (`stiffmbs.solve.ida.native.anew`): event functions, the first of those that
+are limits of forces, counters of turns and the angles that they count, a move to both sides of a state, and memory for a state and
+event functions.  Cells: the size of the move; where it was started, the largest change of a velocity, and whether event functions that follow
+velocities change between both sides; for breakpoints that are passed in one call (`stiffmbs.solve.ida.native.passing`) what the length of
+long steps and the residual of states within them follow from, the largest change of a velocity that need not be told, the part of a time
+within which another one is the same, how many were passed, and the steps of the call before the last of them."""
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,

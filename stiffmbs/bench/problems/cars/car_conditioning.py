@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...jobs.job import Job, prepare
-from ...solve.bdf import solve
-from ...solve.dynamics import Dynamics
-from ...solve.error_control.tolerances import absolute_tolerances
-from ...solve.events.restart import restarted
-from ...solve.initial import InitialValues
-from ..benchmark import Row
-from ..drives import CARS, SOLVERS, Car
+from ....jobs.job import Job, prepare
+from ....solve.bdf import solve
+from ....solve.dynamics import Dynamics
+from ....solve.error_control.tolerances import absolute_tolerances
+from ....solve.events.restart import restarted
+from ....solve.initial import InitialValues
+from ...benchmark import Row
+from ...drives import CARS, SOLVERS, Car
 
 RTOLS, STARTS = (1e-4, 1e-3, 1e-5, 1e-6), 5
 """Tolerances, the first of which is also that of the errors at the start; their number."""

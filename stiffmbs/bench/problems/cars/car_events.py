@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ...jobs.run import Job, prepare
-from ...solve.bdf import Integrator
-from ...solve.ida.engine import Engine, Reached
-from ..benchmark import Row
-from ..drives import CARS, SOLVERS, Car
+from ....jobs.run import Job, prepare
+from ....solve.bdf import Integrator
+from ....solve.ida.engine import Engine, Reached
+from ...benchmark import Row
+from ...drives import CARS, SOLVERS, Car
 
 RTOL, ROUNDS = 1e-4, 15
 
@@ -30,10 +30,10 @@ class _Watched:
     def __getattr__(self, name: str) -> Any:
         return getattr(self.engine, name)
 
-    def to_times(self, times: np.ndarray, stop: float) -> Iterator[Reached]:
+    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
         if self.ended is not None:
             self.waits.append(time.process_time() - self.ended)
-        for reached in self.engine.to_times(times, stop):
+        for reached in self.engine.to_times(times, stops):
             self.ended = time.process_time()
             yield reached
 

@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import packed
-from ...compile.machine.routines import Routine
-from ...compile.state import SETS
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
-from ..error_control.error_test import ErrorControl
-from ..error_control.newton import LOOSEST, NUMBERS_END, SOFT, TIGHTEST, RowSums, Stiffness, row_sums_of
-from ..error_control.relaxation import creep_of_positions, creep_of_velocities, lightness
-from ..native.tables.steps import START
-from .connection import Connection
-from .statistics import Statistics
+from ....compile.equations import ABSENT, Equations
+from ....compile.machine.layout import packed
+from ....compile.machine.routines import Routine
+from ....compile.state import SETS
+from ....describe.settings import RunSettings
+from ...dynamics import Dynamics
+from ...error_control.error_test import ErrorControl
+from ...error_control.newton import LOOSEST, NUMBERS_END, SOFT, TIGHTEST, RowSums, Stiffness, row_sums_of
+from ...error_control.relaxation import creep_of_positions, creep_of_velocities, lightness
+from ...native.tables.steps import START
+from ..connection import Connection
+from ..statistics import Statistics
 
 if TYPE_CHECKING:
-    from ..initial import InitialValues
+    from ...initial import InitialValues
 
 _START = Routine("stiffmbs.solve.ida.native.start", "start", "int32(float64, int64, int64, int64*)")
 FUNCTIONS = {
@@ -75,10 +75,8 @@ class Starts:
         """Whether a compiled start does all that one needs: rates of algebraic states follow from more than the state."""
         return not len(dynamics.system.algebraic_coordinates)
 
-    def begin(
-        self, start: InitialValues, t: float, counted: bool, highest_order: int
-    ) -> tuple[Stiffness, float] | None:
-        """Start at consistent values.
+    def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> bool:
+        """Start at consistent values; False, with nothing started, where the stiffness there is not finite, or IDA refuses.
 
         Parameters
         ----------
@@ -88,17 +86,14 @@ class Starts:
         counted : bool
             Whether what IDA has counted belongs to this run.
         highest_order : int
-
-        Returns
-        -------
-        tuple of Stiffness and float, or None
-            The stiffness there and the part of the tolerance that Newton's iteration may leave; None where that
-            is not finite, or IDA refuses: nothing is started then.
         """
         state = self._state
         state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
-        if _START.short_call(t, counted, highest_order, self._at) < 0:
-            return None
+        begun: bool = _START.short_call(t, counted, highest_order, self._at) == 0
+        return begun
+
+    def found(self) -> tuple[Stiffness, float]:
+        """The stiffness at the last start and the part of the tolerance that Newton's iteration may leave."""
         cells = self._cells
         return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
 

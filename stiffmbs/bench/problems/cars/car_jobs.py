@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...describe.model_data import ModelData
-from ...jobs.job import Job, prepare
-from ..benchmark import Row
-from ..drives import CARS, Car
-from ..machine import largest_memory
-from ..many_runs import on_threads
+from ....describe.model_data import ModelData
+from ....jobs.job import Job, prepare
+from ...benchmark import Row
+from ...drives import CARS, Car
+from ...machine import largest_memory
+from ...many_runs import on_threads
 
 MANOEUVRE = "step"
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compile.machine.layout import packed
-from ...compile.machine.routines import Routine
-from ...compile.system import System
-from ..native.tables.steps import RESTART
-from .connection import Connection
+from ....compile.machine.layout import packed
+from ....compile.machine.routines import Routine
+from ....compile.system import System
+from ...native.tables.steps import RESTART
+from ..connection import Connection
 from .starts import Starts
 
 _RESTART = Routine("stiffmbs.solve.ida.native.restart", "restart", "int32(float64, float64, int64*)")

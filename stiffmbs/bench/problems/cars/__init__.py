@@ -1,0 +1,1 @@
+"""Benchmark problems about cars on their manoeuvres."""

@@ -1,0 +1,97 @@
+"""Steps over breakpoints in one call: IDA starts anew at each that asks for nothing but consistent values."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, state_view
+from stiffmbs.compile.machine.native.evaluate import load
+from stiffmbs.solve.ida.native.anew import anew_view, back_with_jump, counted_anew
+from stiffmbs.solve.ida.native.restart import accelerated
+from stiffmbs.solve.ida.native.start import UNFINISHED, begun, keep_counters, prepared, start_view
+from stiffmbs.solve.native.calls import call_int, int32
+from stiffmbs.solve.native.ida_loop import advanced, clear_call
+from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
+from stiffmbs.solve.native.output_correction import output_correction_view
+from stiffmbs.solve.native.statuses import STOP_RETURN
+from stiffmbs.solve.native.tables.steps import HISTORY_ROWS
+from stiffmbs.solve.native.tables.views import dynamics_view
+
+
+@compiled
+def _long_step(w, b):
+    """`stiffmbs.solve.error_control.newton.Stiffness.long_step` at the last start."""
+    longest = float("inf")
+    if b.of_positions > 0.0:
+        longest = sqrt(w.amplified / b.of_positions)
+    if b.of_velocities > 0.0:
+        longest = min(longest, w.amplified / b.of_velocities)
+    return longest
+
+
+@compiled
+def _limit(w, b, c):
+    """Set the step beyond which states within it are corrected, and what may be left of them."""
+    correction = output_correction_view(c.output_correction)
+    fastest = max(b.of_positions, b.of_velocities * b.of_velocities)
+    correction.long = _long_step(w, b)
+    correction.enough = max(b.soft / fastest if fastest > 0.0 else float("inf"), w.least)
+
+
+@compiled
+def _take_state(s, b, e, y, yp):
+    """The state that unknowns stand for; what stands still as it was at the last start."""
+    for k in range(s.n_q):
+        if b.leader[k] < 0:
+            s.q[k] = e.offset[k]
+    for k in range(s.n_u):
+        s.u[k] = 0.0
+    load(s, e, y, yp)
+
+
+@compiled
+def _started_behind(w, b, c, t):
+    """Start anew at t from where IDA has come; a negative number, with IDA where it was, where that is left to Python."""
+    m = dynamics_view(b.dynamics)
+    s = state_view(m.state)
+    e = equations_view(c.equations)
+    _take_state(s, b, e, array_of(c, c.y), array_of(c, c.yp))
+    if back_with_jump(w, s, m, t) < 0 or w.jump > w.largest_jump:
+        return UNFINISHED
+    counted_anew(w, s, t)
+    if accelerated(s, m, t) < 0 or prepared(b, s, m, e, c, t) < 0:
+        return UNFINISHED
+    _limit(w, b, c)
+    keep_counters(b, c)
+    return begun(b, c, t)
+
+
+def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table, ida):
+    """At most `most` steps to each of the stops, starting anew behind all but the last, and serving output times; IDA's last flag.
+
+    Returns at a stop that is left to Python; how many were passed is in the table.
+    """
+    w = anew_view(table)
+    b = start_view(w.start)
+    c = native_ida_view(ida)
+    clear_call(c)
+    w.passed = 0
+    w.steps_before = 0
+    while True:
+        stop = stops[w.passed]
+        flag = call_int(c.stop_at, (c.memory, stop))
+        if flag < 0:
+            return int32(flag)
+        flag = advanced(c, ida, count, times, stop, most, y_out, 0)
+        if flag != STOP_RETURN or w.passed + 1 == n_stops or c.recorded + most > HISTORY_ROWS:
+            return int32(flag)
+        t = c.returned + w.indistinct * abs(c.returned)
+        same = t + w.indistinct * abs(t)
+        if same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
+            return int32(flag)
+        if _started_behind(w, b, c, t) < 0:
+            return int32(flag)
+        call_int(b.set_highest_order, (c.memory, int32(highest_order)))
+        w.t = t
+        w.passed += 1
+        w.steps_before = c.recorded
