@@ -191,8 +191,9 @@ class _Shared:
     def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
         """Implicit steps from t on; the time at which they were left, or None at the end."""
         self._implicit = self._implicit or bdf.Integrator(self._dynamics, self._settings)
-        self._implicit.engine.pause_after(int(LOOK_AT_IMPLICIT * self._costs.memory / self._costs.step))
-        self._spent, self._lost = self._spent_up_to(t), 0.0
+        self._look_after = int(LOOK_AT_IMPLICIT * self._costs.memory / self._costs.step)
+        self._implicit.engine.pause_after(self._look_after)
+        self._spent, self._lost, self._next_look = self._spent_up_to(t), 0.0, self._implicit.steps() + self._look_after
         pays = None if self._gave_up else self._implicit_pays
         segment = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
         self._segments.append(Segment(replace(segment, solver="bdf"), bdf.traits(self._settings)))
@@ -209,8 +210,11 @@ class _Shared:
 
     def _implicit_pays(self, reached: Reached) -> bool:
         """Whether what BDF has lost against explicit steps since it was last ahead of them is little beside what these still cost."""
-        if self._is_breakpoint(reached.t):
+        assert self._implicit is not None
+        steps = self._implicit.steps()
+        if steps < self._next_look or self._is_breakpoint(reached.t):  # at an event between two looks
             return True
+        self._next_look = steps + self._look_after
         before, self._spent = self._spent, self._spent_up_to(reached.t)
         taken = self._spent.since(before)
         explicit = taken.t * self._explicit_cost + taken.restarts * cost.STEPS_OF_A_RESTART * self._explicit_step

@@ -247,14 +247,7 @@ class Integrator:
     def long_steps(self) -> tuple[LongSteps, ...]:
         """Steps far longer than those before them, as far as they are kept."""
         kept = self.engine.long_steps()
-        if kept is None:
-            return ()
-        begin, end, rows = kept
-        if not len(begin):
-            return ()
-        q, u = self.equations.states(rows.reshape(-1, rows.shape[-1]))
-        shape = rows.shape[:2]
-        return (LongSteps(self.dynamics, begin, end, q.reshape(*shape, -1), u.reshape(*shape, -1)),)
+        return (LongSteps.of(self.dynamics, self.equations, *kept),) if kept and len(kept[0]) else ()
 
     def _explained(self, reached: Reached) -> Reached:
         """A failure in the words of the force that causes it, where it jumps back and forth."""

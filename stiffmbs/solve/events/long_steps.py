@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebvander
 
+from ...compile.equations import Equations
 from ...compile.machine.layout import packed
 from ...compile.system import System
 from ..dynamics import Dynamics
@@ -57,6 +58,15 @@ class LongSteps(NamedTuple):
     end: np.ndarray
     q: np.ndarray
     u: np.ndarray
+
+    @classmethod
+    def of(
+        cls, dynamics: Dynamics, equations: Equations, begin: np.ndarray, end: np.ndarray, rows: np.ndarray
+    ) -> LongSteps:
+        """From what an integrator of some equations reports at those places, shape (n, places, numbers reported)."""
+        q, u = equations.states(rows.reshape(-1, rows.shape[-1]))
+        shape = rows.shape[:2]
+        return cls(dynamics, begin, end, q.reshape(*shape, -1), u.reshape(*shape, -1))
 
     @property
     def whole(self) -> bool:
