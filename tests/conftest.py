@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from stiffmbs.commands.starting.shipped import scene_files
+from stiffmbs.interrupts import NEW_OBJECTS
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 EXAMPLE_SCENES = scene_files()
@@ -17,6 +18,7 @@ EXAMPLE_SCENES = scene_files()
 G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 
 os.environ.setdefault("SYMPY_CACHE_SIZE", "None")  # as the command has it: deriving takes a fourth less
+gc.set_threshold(NEW_OBJECTS)  # as the command has it: 3 % of a run
 
 
 def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:

@@ -89,6 +89,29 @@ def test_statements_do_what_they_do_in_python(body):
         assert compiled == expected
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        "for k in range(i + 3):\n    last = k*x\nreturn last + k", "if x > y:\n    a = x\nelse:\n    b = y\n    a = b\nreturn a",
+        "for k in range(3):\n    a = x*k\n    for m in range(2):\n        b = a + m\n    c = b*a\nreturn c - b + m",
+        "for k in range(9):\n    if k > j:\n        at = k\n        break\nreturn at + x",
+        "k = 0\nwhile k < 4:\n    k = k + 1\n    a = k*y\nreturn a", "x = x + 1\na, b = x, y\nreturn a - b",
+    ],
+)  # fmt: skip
+def test_a_value_given_in_one_place_is_that_of_the_last_time(body):
+    """Read in its block, after it, and where its statement is passed over at times."""
+    compiled, expected = both(body, 0.3, 1.7, 4, 2)
+    assert compiled == expected
+
+
+def test_straight_code_needs_no_memory():
+    source = "def f(x, y):\n    a = x*x\n    for k in range(3):\n        b = a + k\n        y[k] = b*b\n"
+    namespace = {}
+    exec(source, namespace)
+    text = assembly([Entry(namespace["f"], "f", ["float64", "float64*"], "void")], source)
+    assert text.count("alloca") == 1  # of the range
+
+
 def test_pointers_are_read_and_written():
     body = "for k in range(n):\n    p[k] += q[n - 1 - k]*p[k]\n    r[k] = k*2 - r[k]"
     source = "def f(n, p, q, r):\n" + "\n".join(f"    {line}" for line in body.splitlines())

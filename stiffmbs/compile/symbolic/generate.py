@@ -198,9 +198,10 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
         if counter(k) in needed
     ]
     body += [f"{symbol.name} = {printer.doprint(part)}" for symbol, part in shared]
+    entries_of = {k: entries for k, entries, *_ in outputs}
+    body += [f"to{k} = place[{1 + k}] + {entries}*e" for k, entries in entries_of.items()]
     body += [
-        f"value[place[{1 + k}] + {entries}*e + {n}] = {printer.doprint(result)}"
-        for (k, entries, n, _), result in zip(outputs, results, strict=True)
+        f"value[to{k} + {n}] = {printer.doprint(result)}" for (k, _, n, _), result in zip(outputs, results, strict=True)
     ]
     lines = [f"def {name}({KERNEL_ARGUMENTS}):", "    for e in range(count):", *(f"        {line}" for line in body)]
     wanted = {PYTHON: "python_call(", GEOMETRY: "common_normal("}

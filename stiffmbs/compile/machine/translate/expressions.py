@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
+from contextlib import contextmanager
 from typing import Any
 
 from .arithmetic import compared, computed, negated
 from .code import Code, common, constant
 from .functions import FUNCTIONS
-from .values import POINTERS_TO, Builtin, Cell, Operand, Record, Untranslatable, Value, refuse
+from .values import POINTERS_TO, Builtin, Cell, Operand, Record, Untranslatable, Value, Wider, refuse
 
 
 class Expressions:
@@ -23,23 +25,52 @@ class Expressions:
     outside : mapping
         The names of the function's module.
     wider : mapping
-        Kinds of variables that need a wider one than that of their first value.
+        Kinds of variables that need memory, for a wider one than that of their first value or as they are read elsewhere.
+    given_once : set of str
+        Names that are given a value in one place.
 
     Attributes
     ----------
     variables : dict
         The places of the function's variables.
+    values : dict
+        The names that need no memory: their values, in the block that gives them and those within it.
+    left : dict
+        Such names of blocks that have ended.
     records : dict
         Views under the names that they were given.
     """
 
-    def __init__(self, code: Code, outside: Mapping[str, Any], wider: Mapping[str, str]) -> None:
+    def __init__(
+        self, code: Code, outside: Mapping[str, Any], wider: Mapping[str, str], given_once: AbstractSet[str]
+    ) -> None:
         self.code = code
         self.variables: dict[str, Value] = {}
+        self.values: dict[str, Value] = {}
+        self.left: dict[str, Value] = {}
         self.records: dict[str, Record] = {}
-        self._outside, self._wider = outside, wider
+        self._outside, self._wider, self._given_once = outside, wider, given_once
 
-    def declare(self, name: str, kind: str) -> Value:
+    def set(self, name: str, value: Value) -> None:
+        """Give a name a value; the first decides the kind of a variable, unless a later one needs a wider kind."""
+        if name in self._given_once and name not in self._wider:
+            self.values[name] = self.code.converted(value, "int" if value.kind == "int32" else value.kind)
+            return
+        variable = self.variables.get(name) or self._declared(name, value.kind)
+        kind = common([variable, value])
+        if kind != variable.kind:
+            raise Wider(name, kind)
+        self.code.store(variable, value)
+
+    @contextmanager
+    def block(self) -> Iterator[None]:
+        """Statements that may be passed over: the values that they give to names are not those of what follows."""
+        outer, self.values = self.values, dict(self.values)
+        yield
+        self.left |= {name: value for name, value in self.values.items() if name not in outer}
+        self.values = outer
+
+    def _declared(self, name: str, kind: str) -> Value:
         """A new variable, for a first value of the given kind."""
         self.variables[name] = self.code.variable(self._wider.get(name, "int" if kind == "int32" else kind))
         return self.variables[name]
@@ -104,8 +135,12 @@ class Expressions:
         return self.code.truth(self.value(node))
 
     def _named(self, name: str) -> Operand:
+        if name in self.values:
+            return self.values[name]
         if name in self.variables:
             return self.code.load(self.variables[name])
+        if name in self.left:
+            raise Wider(name, self.left[name].kind)
         if name in self.records:
             return self.records[name]
         found = self._outside.get(name)

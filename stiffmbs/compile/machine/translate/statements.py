@@ -9,7 +9,7 @@ from dataclasses import replace
 from .arithmetic import computed
 from .code import Code, Lines, common
 from .expressions import Expressions
-from .values import Operand, Record, Untranslatable, Value, Wider, refuse
+from .values import Operand, Record, Untranslatable, Value, refuse
 
 
 class Statements:
@@ -91,7 +91,7 @@ class Statements:
         expressions, code = self.expressions, self.code
         match target, value:
             case ast.Name(name), Value():
-                self._set(name, value)
+                expressions.set(name, value)
             case ast.Name(name), Record() if name not in expressions.records:
                 expressions.records[name] = value
             case ((ast.Subscript() | ast.Attribute()), Value()):
@@ -102,24 +102,18 @@ class Statements:
             case _:
                 raise Untranslatable("an assignment that is not of the language")
 
-    def _set(self, name: str, value: Value) -> None:
-        """Set a variable; the first value decides its kind, unless a later one needs a wider kind."""
-        variable = self.expressions.variables.get(name) or self.expressions.declare(name, value.kind)
-        kind = common([variable, value])
-        if kind != variable.kind:
-            raise Wider(name, kind)
-        self.code.store(variable, value)
-
     def _if(self, test: ast.expr, then: list[ast.stmt], otherwise: list[ast.stmt]) -> None:
         code = self.code
         first, second, end = code.name("then"), code.name("else"), code.name("end")
         code.choose(self.expressions.truth(test), first, second)
         code.label(first)
-        self.write(then)
+        with self.expressions.block():
+            self.write(then)
         if code.reached:
             code.branch(end)
         code.label(second)
-        self.write(otherwise)
+        with self.expressions.block():
+            self.write(otherwise)
         code.label(end)
 
     def _while(self, test: ast.expr, body: list[ast.stmt]) -> None:
@@ -131,7 +125,8 @@ class Statements:
         else:
             code.choose(self.expressions.truth(test), inside, end)
         code.label(inside)
-        self._loop(body, end, head)
+        with self.expressions.block():
+            self._loop(body, end, head)
         if code.reached:
             code.branch(head)
         code.label(end)
@@ -150,8 +145,9 @@ class Statements:
             code.put_value("bool", f"icmp {'slt' if step > 0 else 'sgt'} {now.typed}, {stop.text}"), inside, end
         )
         code.label(inside)
-        self._assign(ast.Name(name), now)
-        self._loop(body, end, following)
+        with self.expressions.block():
+            self._assign(ast.Name(name), now)
+            self._loop(body, end, following)
         code.label(following)
         if code.reached:
             code.store(counter, code.put_value("int", f"add nsw {code.load(counter).typed}, {step}"))
@@ -174,7 +170,7 @@ def parameters(names: Sequence[str], values: Sequence[Operand], expressions: Exp
             declared += [own.typed for own in fields.values()]
         elif isinstance(value, Value):
             given = Value(value.kind, f"%{name}.")
-            expressions.code.store(expressions.declare(name, value.kind), given)
+            expressions.set(name, given)
             declared.append(given.typed)
         else:
             raise Untranslatable(f"{name}: found a tuple, expected a value or a view")

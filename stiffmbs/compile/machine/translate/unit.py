@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from .assignments import given_once
 from .code import Code, tags
 from .expressions import Expressions
 from .statements import Statements, parameters
@@ -137,7 +138,7 @@ class Unit:
         wider: Mapping[str, str],
     ) -> tuple[str, str | None]:
         code = Code(self)
-        expressions = Expressions(code, outside, wider)
+        expressions = Expressions(code, outside, wider, given_once(tree))
         statements = Statements(code, expressions)
         declared = parameters([argument.arg for argument in tree.args.args], values, expressions)
         statements.write(tree.body)

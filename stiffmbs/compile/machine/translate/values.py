@@ -31,7 +31,7 @@ class Untranslatable(TypeError):
 
 
 class Wider(Exception):
-    """A variable is given values of several kinds: the function must be translated anew with a kind that holds all."""
+    """A variable needs memory of a kind that holds all its values: the function must be translated anew with it."""
 
     def __init__(self, name: str, kind: str) -> None:
         super().__init__(name, kind)
