@@ -224,15 +224,21 @@ class Integrator:
         self.engine.leave_out(self._masked.steps)
         begun = self.engine.begin_anew(q, u, t, ahead)
         if begun is None:
-            start, t = restarted_past(self.dynamics, t, q, u, ahead)
-            self._jumps.note(before, start.u - u)
-            return start, t
+            return self._consistent(q, u, before, t, ahead)
         state = self.dynamics.state
         if begun.jump > WORTH_TELLING:
             self._jumps.note(before, state.u - u)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())
         return None, begun.t
+
+    def _consistent(
+        self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float
+    ) -> tuple[InitialValues, float]:
+        """Consistent values near a state at t that was reached `before`, past events on the way `ahead`, and their time."""
+        start, t = restarted_past(self.dynamics, t, q, u, ahead)
+        self._jumps.note(before, start.u - u)
+        return start, t
 
     def _ahead(self, reached: Reached, stop: float) -> float:
         """How far beyond an event others that come with it are passed."""

@@ -11,6 +11,7 @@ from ...describe.settings import RunSettings
 from ...errors import SolverError
 from ..bdf import Integrator
 from ..dynamics import Dynamics
+from ..events.chattering import Chattering
 from ..events.restart import INDISTINCT
 from ..ida.engine import Reached
 from ..ida.native_engine import NativeEngine
@@ -68,6 +69,12 @@ class Recorder(Integrator):
         self.native: NativeEngine = self.engine
         self.segments: list[Segment] = []
         self._numbers = 0
+
+    def _anew(
+        self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
+    ) -> tuple[InitialValues, float]:
+        """Consistent values, which a segment keeps; no engine starts by itself."""
+        return self._consistent(q, u, before, t, ahead)
 
     def _begin(self, start: InitialValues, t: float) -> None:
         super()._begin(start, t)
