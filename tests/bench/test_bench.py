@@ -26,6 +26,7 @@ from stiffmbs.commands.main import main
 
 FAMILIES = families()
 PROBLEMS = {name: family[0] for name, family in FAMILIES.items() if isinstance(family[0], Problem)}
+LONG_RACES = ("andrews", "axle_on_bushings", "half_car", "trees_in_space")
 BY_HAND = {
     "cart_pendulum": cart_pendulum.si2(),
     "chain": chain.si2(4, 1.0),
@@ -58,7 +59,7 @@ def test_starts_by_hand_are_consistent(name):
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(name, marks=pytest.mark.long if name in ("andrews", "trees_in_space") else ()) for name in PROBLEMS],
+    [pytest.param(name, marks=pytest.mark.long if name in LONG_RACES else ()) for name in PROBLEMS],
 )
 def test_contestants_agree_with_the_reference(name):
     problem = PROBLEMS[name]
@@ -67,6 +68,7 @@ def test_contestants_agree_with_the_reference(name):
         np.testing.assert_allclose(contestant.at(1e-10)(), reference, atol=3e-7, err_msg=contestant.solver)
 
 
+@pytest.mark.long
 def test_references_have_the_published_values():
     cart = PROBLEMS["cart_pendulum"].reference()[-1]
     assert (cart[0], cart[5] + np.pi / 2) == pytest.approx(

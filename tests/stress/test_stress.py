@@ -18,8 +18,10 @@ from stiffmbs.stress.simulation import simulation
 
 ALWAYS = 1
 """Cases of each family that are run without being asked for: compiling the kinds of all of them takes minutes."""
+COSTLY = ("space", "held_twice")
+"""Families whose first case compiles more kinds than others."""
 QUICK = [
-    pytest.param(family, case, marks=pytest.mark.long if number >= ALWAYS else ())
+    pytest.param(family, case, marks=pytest.mark.long if number >= ALWAYS or family in COSTLY else ())
     for family, cases in catalogue().items()
     for number, case in enumerate(case for case in cases if case.quick)
 ]

@@ -107,6 +107,7 @@ def test_a_sliding_wheel_does_not_wind_up_its_deflection():
     assert abs(model.run(duration=2, output=0.1)["tyre.deflection_x"]).max() < LENGTHS[0]
 
 
+@pytest.mark.long
 def test_from_a_standstill_to_speed_and_back_without_chatter():
     model = gliding(MagicFormulaTyre(i="wheel", properties={"coefficients": SMALL}), 0.0)
     torque = "900*step(t, 0.5, 0, 1, 1) - 1800*step(t, 12, 0, 12.5, 1)*tanh(wy(wheel, fork)/0.5)"

@@ -203,6 +203,7 @@ def test_what_is_refused(road, name, said):
     assert "line" in str(error.value)
 
 
+@pytest.mark.long
 def test_a_quarter_car_answers_a_random_road_as_its_transfer_function_says():
     """The load's variance from the road's density and the linear model's response, over a long stretch (no lift-off)."""
     import stiffmbs

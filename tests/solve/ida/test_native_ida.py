@@ -380,6 +380,7 @@ def test_two_threads_solve_what_one_does(pendulum):
         np.testing.assert_array_equal(rows, expected)
 
 
+@pytest.mark.long
 def test_everything_is_freed(chain):
     def memory():
         gc.collect()
