@@ -90,6 +90,12 @@ def test_what_is_no_number_is_refused(found):
         in_si(found, "length")
 
 
+@pytest.mark.parametrize("found", ["sqrt 4 m", "abs 2 m", "length 2 m", "2*length 3 m", "other 2 m"])
+def test_a_name_before_a_number_with_a_unit_is_no_call(found):
+    with pytest.raises(FormulaError, match="expected a number or a formula"):
+        in_si(found, "length", {"length": Quantity(1.0, (0, 1, 0))})
+
+
 def test_wrong_dimension_is_refused():
     with pytest.raises(FormulaError, match=r"'3 kg', which is in kg, expected a length in m"):
         in_si("3 kg", "length")

@@ -99,6 +99,8 @@ def _python_spelling(text: str) -> str:
     k = 0
     while k < len(tokens):
         if _is_number(tokens[k]) and k + 1 < len(tokens) and tokens[k + 1].isidentifier():
+            if words and words[-1].isidentifier():  # the bracket would make a call of it
+                raise SyntaxError
             words += ["(", tokens[k]]
             k += 1
             while k < len(tokens) and tokens[k].isidentifier():

@@ -33,9 +33,9 @@ class _Parsed(NamedTuple):
 def _parsed(text: str) -> _Parsed:
     """A text, which is read once: studies read the same ones again and again."""
     tree = parse(text)
-    if "(" in text:
-        check_functions(tree, IN_NUMBERS)
     nodes = list(ast.walk(tree))
+    if any(isinstance(node, ast.Call) for node in nodes):
+        check_functions(tree, IN_NUMBERS)
     names = {node.id for node in nodes if isinstance(node, ast.Name)}
     names |= {node.attr for node in nodes if isinstance(node, ast.Attribute)}
     powers = (node.right for node in nodes if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow))
