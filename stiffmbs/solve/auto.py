@@ -40,7 +40,7 @@ LOOK_AT_IMPLICIT = 3.0
 MAY_LOSE = 0.45
 """The implicit integrator is left when it has fallen behind explicit steps by a start and such a part of what these still cost up to
 the end, by a start alone in further trials: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
-WORTH_A_TRIAL = 8.0
+WORTH_A_TRIAL = 7.0
 """What is left for explicit steps must cost so many starts of the implicit integrator before one is made."""
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
